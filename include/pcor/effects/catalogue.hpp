@@ -1,0 +1,83 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+#include <tuple>
+
+#include "pcor/effects/lams_elevation.hpp"
+#include "pcor/effects/recovery_factor.hpp"
+#include "pcor/effects/static_alpha.hpp"
+#include "pcor/effects/static_alpha_quad.hpp"
+#include "pcor/effects/static_attack.hpp"
+#include "pcor/effects/static_beta_even.hpp"
+#include "pcor/effects/static_beta_odd.hpp"
+#include "pcor/effects/static_constant.hpp"
+#include "pcor/effects/static_lag.hpp"
+#include "pcor/effects/static_mach.hpp"
+#include "pcor/effects/static_mach2.hpp"
+#include "pcor/effects/static_mach3.hpp"
+#include "pcor/effects/static_qp.hpp"
+#include "pcor/physics/scalar.hpp"
+#include "pcor/realtime/state.hpp"
+
+namespace pcor {
+
+/// Every effect of the program. To add one: write its file in `effects/` and name it here.
+using Catalogue = std::tuple<effects::StaticLag,            //
+                             effects::RecoveryFactorError,  //
+                             effects::LamsElevation,        //
+                             effects::StaticConstant,       //
+                             effects::StaticAlpha,          //
+                             effects::StaticAttack,         //
+                             effects::StaticAlphaQuad,      //
+                             effects::StaticQp,             //
+                             effects::StaticMach,           //
+                             effects::StaticMach2,          //
+                             effects::StaticMach3,          //
+                             effects::StaticBetaOdd,        //
+                             effects::StaticBetaEven>;
+
+inline constexpr std::size_t catalogue_size = std::tuple_size_v<Catalogue>;
+
+namespace detail {
+
+template <class... Effect>
+constexpr std::array<EffectFacts, sizeof...(Effect)> facts_of_effects(const std::tuple<Effect...>*) {
+  return {Effect::facts()...};
+}
+
+template <class S, class P>
+using EffectFunction = Promoted<S, P> (*)(const State<S>&, const P*);
+
+template <class S, class P, class Effect>
+Promoted<S, P> effect_value(const State<S>& state, const P* parameters) {
+  return Promoted<S, P>(Effect::value(state, parameters));
+}
+
+template <class S, class P, class... Effect>
+constexpr std::array<EffectFunction<S, P>, sizeof...(Effect)> functions_of_effects(
+    const std::tuple<Effect...>*) {
+  return {&effect_value<S, P, Effect>...};
+}
+
+}  // namespace detail
+
+/// The facts of every effect, in the order of the catalogue.
+inline constexpr std::array<EffectFacts, catalogue_size> effect_facts =
+    detail::facts_of_effects(static_cast<const Catalogue*>(nullptr));
+
+/// The formulas of every effect, for a state of scalar `S` and parameters of scalar `P`.
+template <class S, class P>
+inline constexpr auto effect_functions =
+    detail::functions_of_effects<S, P>(static_cast<const Catalogue*>(nullptr));
+
+/// The place in the catalogue of the effect called `id`, or `catalogue_size` where there is none.
+constexpr std::size_t effect_named(std::string_view id) {
+  for (std::size_t i = 0; i < catalogue_size; ++i) {
+    if (effect_facts[i].id == id) return i;
+  }
+  return catalogue_size;
+}
+
+}  // namespace pcor

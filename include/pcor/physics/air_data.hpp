@@ -1,0 +1,77 @@
+#pragma once
+
+#include "pcor/physics/moist_air.hpp"
+
+namespace pcor {
+
+/// Mach number from static pressure `p` and dynamic pressure `q` (same unit):
+///
+///     M = { (2 c_v/R_a) [ ((p+q)/p)^(R_a/c_p) - 1 ] }^(1/2)
+///
+/// `q` is the impact pressure of compressible flow, pt - p. Result: 1, zero or above.
+/// Domain: p > 0, q >= 0; anything else gives NaN. The temperature is not needed.
+/// Accuracy: 1e-14 relative at q/p = 0.1, 1e-10 at q/p = 1e-5. Source: memo eq. 7 (2 c_v/R_a, see its
+/// misprint).
+template <class S>
+S mach_number(const S& p, const S& q, const MoistAir<S>& air) {
+  using std::sqrt;
+  const S temperature_ratio = power(S(1.0) + q / p, air.poisson_exponent);
+  const S mach = sqrt(S(2.0) * air.specific_heat_volume / air.gas_constant * (temperature_ratio - S(1.0)));
+  return select(p > S(0.0), mach, missing<S>());
+}
+
+/// Dynamic pressure at Mach number `mach` and static pressure `p`, in the unit of `p`: the inverse of
+/// `mach_number`.
+///
+///     q = p [ (1 + M^2 (gamma-1)/2)^(c_p/R_a) - 1 ]
+///
+/// Domain: p > 0, M >= 0. Source: memo eq. 6.
+template <class S>
+S dynamic_pressure_from_mach(const S& p, const S& mach, const MoistAir<S>& air) {
+  const S temperature_ratio = S(1.0) + mach * mach * (air.heat_capacity_ratio - S(1.0)) * S(0.5);
+  return p * (power(temperature_ratio, S(1.0) / air.poisson_exponent) - S(1.0));
+}
+
+/// The ratio of dynamic to static pressure of air that moves at `airspeed` (m/s) with temperature
+/// `temperature` (K):
+///
+///     chi = (1 + v^2/(2 c_p T))^(c_p/R_a) - 1 = q/p
+///
+/// Domain: T > 0; anything else gives NaN. Result: 1. Source: memo eq. 10.
+template <class S>
+S pressure_ratio_of_airspeed(const S& airspeed, const S& temperature, const MoistAir<S>& air) {
+  const S heating = airspeed * airspeed / (S(2.0) * air.specific_heat_pressure * temperature);
+  const S ratio = power(S(1.0) + heating, S(1.0) / air.poisson_exponent) - S(1.0);
+  return select(temperature > S(0.0), ratio, missing<S>());
+}
+
+/// Dynamic pressure of air at static pressure `p` that moves at `airspeed` (m/s) with `temperature` (K), in
+/// the unit of `p`: q = p chi. Domain: p > 0, T > 0. Source: memo eq. 8.
+template <class S>
+S dynamic_pressure_from_airspeed(const S& p, const S& airspeed, const S& temperature,
+                                 const MoistAir<S>& air) {
+  return p * pressure_ratio_of_airspeed(airspeed, temperature, air);
+}
+
+/// Speed of sound, m/s: (gamma R_a T)^(1/2). Domain: T >= 0 K; below it NaN.
+template <class S>
+S speed_of_sound(const S& temperature, const MoistAir<S>& air) {
+  using std::sqrt;
+  return sqrt(air.heat_capacity_ratio * air.gas_constant * temperature);
+}
+
+/// True airspeed, m/s: v = M (gamma R_a T)^(1/2), with the ambient `temperature` in K. Source: memo before
+/// eq. 6.
+template <class S>
+S true_airspeed(const S& mach, const S& temperature, const MoistAir<S>& air) {
+  return mach * speed_of_sound(temperature, air);
+}
+
+/// Temperature where the air is brought to rest, K: T* = T + v^2/(2 c_p) = T (1 + M^2 (gamma-1)/2).
+/// Source: memo eq. 5.
+template <class S>
+S stagnation_temperature(const S& temperature, const S& mach, const MoistAir<S>& air) {
+  return temperature * (S(1.0) + mach * mach * (air.heat_capacity_ratio - S(1.0)) * S(0.5));
+}
+
+}  // namespace pcor

@@ -1,0 +1,72 @@
+#pragma once
+
+#include "pcor/physics/constants.hpp"
+#include "pcor/physics/scalar.hpp"
+
+namespace pcor {
+
+/// Saturation vapour pressure over (supercooled) liquid water, hPa, at `temperature` in K.
+///
+///     ln(e/Pa) = 54.842763 - 6763.22/T - 4.21 ln T + 0.000367 T
+///                + tanh(0.0415 (T - 218.8)) (53.878 - 1331.22/T - 9.44523 ln T + 0.014025 T)
+///
+/// Domain: 123 to 332 K, accuracy 0.05 % as stated by the source; T <= 0 gives NaN.
+/// Source: Murphy and Koop, Q. J. R. Meteorol. Soc. 131, 1539-1565 (2005), eq. 10.
+template <class S>
+S vapor_pressure_over_water(const S& temperature) {
+  using std::exp;
+  using std::log;
+  const S logarithm = log(temperature);
+  const S inverse = S(1.0) / temperature;
+  const S blend = hyperbolic_tangent(S(0.0415) * (temperature - S(218.8)));
+  const S warm = S(54.842763) - S(6763.22) * inverse - S(4.210) * logarithm + S(0.000367) * temperature;
+  const S cold = S(53.878) - S(1331.22) * inverse - S(9.44523) * logarithm + S(0.014025) * temperature;
+  return S(0.01) * exp(warm + blend * cold);
+}
+
+/// Saturation vapour pressure over ice, hPa, at `temperature` in K.
+///
+///     ln(e/Pa) = 9.550426 - 5723.265/T + 3.53068 ln T - 0.00728332 T
+///
+/// Domain: 110 K to 273.16 K, accuracy 0.025 % as stated by the source; T <= 0 gives NaN.
+/// Source: Murphy and Koop (2005), eq. 7.
+template <class S>
+S vapor_pressure_over_ice(const S& temperature) {
+  using std::exp;
+  using std::log;
+  return S(0.01) * exp(S(9.550426) - S(5723.265) / temperature + S(3.53068) * log(temperature) -
+                       S(0.00728332) * temperature);
+}
+
+/// Saturation vapour pressure of a chilled mirror, hPa: over ice below the ice point, over water from it on.
+template <class S>
+S saturation_vapor_pressure(const S& temperature) {
+  return select(temperature < S(constants::ice_point), vapor_pressure_over_ice(temperature),
+                vapor_pressure_over_water(temperature));
+}
+
+/// The factor by which air at `pressure` (hPa) raises the vapour pressure at `temperature` (K), 1:
+///
+///     f = 1 + 1e-5 p (4.923 - 0.0325 T + 5.84e-5 T^2)
+///
+/// Source: Murphy and Koop (2005), appendix.
+template <class S>
+S enhancement_factor(const S& temperature, const S& pressure) {
+  return S(1.0) + S(1e-5) * pressure * (S(4.923) + temperature * (S(-0.0325) + S(5.84e-5) * temperature));
+}
+
+/// Vapour pressure, hPa, from the dew or frost point of a chilled mirror (K) in air at `pressure` (hPa).
+/// Below the ice point the mirror is taken to carry ice.
+template <class S>
+S vapor_pressure_from_dew_point(const S& dew_point, const S& pressure) {
+  return saturation_vapor_pressure(dew_point) * enhancement_factor(dew_point, pressure);
+}
+
+/// Mixing ratio of water vapour, kg/kg: r = eps e/(p - e), both pressures in one unit, 0 <= e < p.
+/// Source: memo before eq. 13.
+template <class S>
+S mixing_ratio(const S& vapor_pressure, const S& pressure) {
+  return S(constants::molar_mass_ratio) * vapor_pressure / (pressure - vapor_pressure);
+}
+
+}  // namespace pcor

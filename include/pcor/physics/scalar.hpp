@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+namespace pcor {
+
+/// The scalars that the physics is written for.
+///
+/// Every formula of the library is a template over its scalar `S`: `double` in the real-time loop, a vector
+/// pack in batch processing, an automatically differentiated number in a fit. A scalar has the four
+/// operations, comparisons, construction from `double`, and `sqrt`, `exp`, `log`, `sin`, `cos`, `tan` by
+/// argument-dependent lookup. Comparisons of a vector pack give one truth value for each lane, so formulas
+/// choose with `select` instead of `if`.
+
+/// The type of an expression in a state of scalar `X` and parameters of scalar `P`.
+template <class X, class P>
+using Promoted = decltype(std::declval<X>() * std::declval<P>());
+
+/// `yes` where the condition holds, else `no`.
+template <class S>
+constexpr S select(bool condition, const S& yes, const S& no) {
+  return condition ? yes : no;
+}
+
+/// True where the condition holds in every lane.
+constexpr bool all(bool condition) { return condition; }
+
+/// True where the condition holds in some lane.
+template <class Condition>
+constexpr bool any(const Condition& condition) {
+  return !all(!condition);
+}
+
+/// True where the value is not a number.
+template <class S>
+constexpr auto is_missing(const S& value) {
+  return !(value == value);
+}
+
+/// Not a number, in the scalar `S`.
+template <class S>
+constexpr S missing() {
+  return S(std::numeric_limits<double>::quiet_NaN());
+}
+
+/// `base` to the `exponent`, for a base above zero. A negative base gives NaN.
+template <class S>
+S power(const S& base, const S& exponent) {
+  if constexpr (std::is_floating_point_v<S>) {
+    return std::pow(base, exponent);
+  } else {
+    return exp(exponent * log(base));
+  }
+}
+
+/// `base` to a constant `exponent`.
+template <class S, class = std::enable_if_t<!std::is_floating_point_v<S>>>
+S power(const S& base, double exponent) {
+  return exp(S(exponent) * log(base));
+}
+
+/// Decimal logarithm.
+template <class S>
+S decimal_logarithm(const S& x) {
+  if constexpr (std::is_floating_point_v<S>) {
+    return std::log10(x);
+  } else {
+    return S(0.43429448190325182765) * log(x);
+  }
+}
+
+/// Hyperbolic tangent, from one exponential.
+template <class S>
+S hyperbolic_tangent(const S& x) {
+  using std::exp;
+  return S(1.0) - S(2.0) / (exp(S(2.0) * x) + S(1.0));
+}
+
+}  // namespace pcor

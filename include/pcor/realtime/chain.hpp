@@ -1,0 +1,532 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bitset>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pcor/effects/catalogue.hpp"
+#include "pcor/physics/air_data.hpp"
+#include "pcor/physics/humidity.hpp"
+#include "pcor/physics/lams.hpp"
+#include "pcor/realtime/formula.hpp"
+#include "pcor/realtime/model.hpp"
+#include "pcor/realtime/quality.hpp"
+#include "pcor/realtime/state.hpp"
+
+namespace pcor {
+
+/// The chain from what was recorded to the air, for one model: the physics of every stage, in the order in
+/// which a sample goes through the instrument backwards.
+///
+///     measure -> static_defect -> correct -> air -> LAMS temperature and dynamic pressure
+///             -> lams_static_defect
+///
+/// Every stage reads and writes a `State`. It is a template over the scalars of the state, `S`, and of the
+/// parameters, `P`, so that the same lines serve the real-time loop (both `double`), batches (`S` a vector
+/// pack) and fits (`P` a dual number). Where effects act before the static ports, `S` must be the promoted
+/// type. After `build` a chain allocates nothing, throws nothing, and holds nothing of a sample.
+class Chain {
+ public:
+  /// Prepares `model` for states in which the roles `recorded` are known. Returns nothing where the model
+  /// cannot be used; `error` then says why and what to do, in one line.
+  static std::optional<Chain> build(const Model& model, const std::vector<Quantity>& recorded,
+                                    std::string* error);
+
+  /// The coefficients of all effects, one after another in the order of the model.
+  const std::vector<double>& parameters() const { return parameters_; }
+
+  /// The variables that formulas use beyond the quantities of the library, by name. Number i belongs at
+  /// `extra_quantity(i)` of a state.
+  const std::vector<std::string>& extra_names() const { return extra_names_; }
+
+  /// True where the quantity is recorded.
+  bool recorded(Quantity quantity) const { return recorded_[index(quantity)]; }
+
+  /// True where some stage needs the quantity.
+  bool needs(Quantity quantity) const { return needed_[index(quantity)]; }
+
+  /// True where the chain computes the quantity from others because it is not recorded.
+  bool derives(Quantity quantity) const { return needs(quantity) && !recorded(quantity); }
+
+  /// True where some effect acts at the place.
+  bool acts(Where where) const { return begin_of(where) != begin_of(where, 1); }
+
+  bool has_temperature() const {
+    return recorded(Quantity::recovery_temperature) || recorded(Quantity::ambient_temperature);
+  }
+  bool has_lams() const { return recorded(Quantity::lams_airspeed); }
+  bool needs_rates() const {
+    return needs(Quantity::static_pressure_rate) || needs(Quantity::dynamic_pressure_rate);
+  }
+
+  /// The quantities that `measure` puts into a state.
+  template <class S, class P, class Flags>
+  void measure(State<S>& state, const P* parameters, Flags& flags) const {
+    const S p = state[Quantity::static_pressure];
+    const S q = state[Quantity::dynamic_pressure];
+    flags.set(is_missing(p), Quality::static_pressure_missing);
+    flags.set(is_missing(q), Quality::dynamic_pressure_missing);
+    flags.set(p <= S(0.0), Quality::impossible_static_pressure);
+    flags.set(q <= S(0.0), Quality::impossible_dynamic_pressure);
+
+    if (derives(Quantity::dynamic_ratio)) state[Quantity::dynamic_ratio] = q / p;
+    if (derives(Quantity::mach)) state[Quantity::mach] = mach_number(p, q, dry_air<S>());
+    if (needs(Quantity::attack_ratio) || needs(Quantity::sideslip_ratio)) radome_ratios(state, flags);
+    if (derives(Quantity::attack)) {
+      state[Quantity::attack] = radome_angle(attack_radome_, Quantity::attack_ratio, state);
+    }
+    if (derives(Quantity::sideslip)) {
+      state[Quantity::sideslip] = radome_angle(sideslip_radome_, Quantity::sideslip_ratio, state);
+    }
+    add(Where::attack, Quantity::attack, state, parameters);
+    add(Where::sideslip, Quantity::sideslip, state, parameters);
+
+    const S line = sum<S>(Where::static_line, state, parameters);
+    state[Quantity::port_static_pressure] = p + sum<S>(Where::static_transducer, state, parameters) + line;
+    state[Quantity::port_dynamic_pressure] = q + sum<S>(Where::dynamic_transducer, state, parameters) - line +
+                                             sum<S>(Where::total_line, state, parameters) +
+                                             sum<S>(Where::pitot, state, parameters);
+  }
+
+  /// Delta-p of the model, hPa: the sum of the effects at the static ports, under the policy. NaN where a
+  /// pressure or an input of an effect is missing. Where the dynamic pressure is zero or below, no airflow
+  /// causes a defect: zero under a taper, else NaN.
+  template <class S, class P, class Flags>
+  Promoted<S, P> static_defect(const State<S>& state, const P* parameters, Flags& flags) const {
+    using R = Promoted<S, P>;
+    const S p = state[Quantity::static_pressure];
+    const S q = state[Quantity::dynamic_pressure];
+    R defect = sum<R>(Where::static_defect, state, parameters);
+    const auto flowing = p > S(0.0) && q > S(0.0);
+    flags.set(flowing && is_missing(defect), Quality::effect_input_missing);
+    for (const Range& range : domain_) {
+      const S value = state[range.quantity];
+      flags.set(value < S(range.lower) || value > S(range.upper), Quality::outside_domain);
+    }
+    if (has_minimum()) {
+      const auto below = defect < R(policy_.minimum);
+      flags.set(below, Quality::minimum_applied);
+      defect = select(below, R(policy_.minimum), defect);
+    }
+    if (policy_.taper_below > 0.0) {
+      const auto slow = q < S(policy_.taper_below);
+      flags.set(slow, Quality::tapered);
+      if (any(slow)) defect = select(slow, taper(defect, q), defect);
+      return select(p > S(0.0), defect, missing<R>());
+    }
+    return select(flowing, defect, missing<R>());
+  }
+
+  /// Corrected pressures: p = p_port + delta-p, q = q_port - delta-p (memo eq. 1-3). Their sum stays.
+  template <class S>
+  void correct(State<S>& state, const S& defect) const {
+    state[Quantity::corrected_static_pressure] = state[Quantity::port_static_pressure] + defect;
+    state[Quantity::corrected_dynamic_pressure] = state[Quantity::port_dynamic_pressure] - defect;
+  }
+
+  /// Humidity, Mach number, ambient temperature and airspeed from the corrected pressures. They depend on
+  /// each other through the constants of moist air and the limit of saturation over water, so they are found
+  /// together.
+  template <class S, class P, class Flags>
+  void air(State<S>& state, const P* parameters, Flags& flags) const {
+    const S p = state[Quantity::corrected_static_pressure];
+    const S delta = sum<S>(Where::recovery, state, parameters);
+    const S thermometer = recovery_temperature_of(state, parameters);
+    S humidity = recorded_humidity(state, parameters, p, flags);
+    MoistAir<S> constants = solve_air(state, humidity, thermometer, delta);
+    if (moist_) {
+      const S saturation = vapor_pressure_over_water(state[Quantity::ambient_temperature]) / p;
+      const auto above = humidity > saturation;
+      flags.set(above, Quality::humidity_limited);
+      if (any(above)) {
+        humidity = select(above, saturation, humidity);
+        constants = solve_air(state, humidity, thermometer, delta);
+      }
+    }
+    state[Quantity::humidity] = humidity;
+    state[Quantity::corrected_airspeed] =
+        true_airspeed(state[Quantity::corrected_mach], state[Quantity::ambient_temperature], constants);
+    flags.set(is_missing(state[Quantity::ambient_temperature]), Quality::temperature_missing);
+    flags.set(state[Quantity::corrected_dynamic_pressure] < S(0.0), Quality::impossible_dynamic_pressure);
+  }
+
+  /// Delta-p that LAMS asks for at this sample, hPa, by the approach of the model. NaN where the laser or
+  /// anything that it needs is missing.
+  template <class S, class P, class Flags>
+  S lams_static_defect(const State<S>& state, const P* parameters, Flags& flags) const {
+    const S p = state[Quantity::port_static_pressure];
+    const S q = state[Quantity::port_dynamic_pressure];
+    const S v = lams_airspeed(state, parameters);
+    const S e = recorded_humidity(state, parameters, p, flags) * p;
+    const S thermometer = recovery_temperature_of(state, parameters);
+    const S delta = sum<S>(Where::recovery, state, parameters);
+    const auto recovery = [this, &delta](const S& mach) { return recovery_(mach) + delta; };
+    LamsSolution<S> solution;
+    switch (lams_.approach) {
+      case LamsApproach::simultaneous:
+        solution = lams_simultaneous(p, q, v, thermometer, e, recovery);
+        break;
+      case LamsApproach::iterated:
+        solution = lams_iterated(p, q, v, thermometer, e, recovery);
+        break;
+      case LamsApproach::with_temperature:
+        solution = lams_with_temperature(p, q, v, state[Quantity::ambient_temperature], e);
+        break;
+    }
+    const auto valid = p > S(0.0) && q > S(0.0) && v > S(0.0);
+    const S defect = select(valid, solution.static_defect, missing<S>());
+    flags.set(is_missing(defect), Quality::lams_missing);
+    return defect;
+  }
+
+  /// The true airspeed that LAMS measures, m/s: the speed along the beam over the cosine of its angle to the
+  /// wind.
+  template <class S, class P>
+  S lams_airspeed(const State<S>& state, const P* parameters) const {
+    const S elevation = S(lams_.elevation) + sum<S>(Where::beam_elevation, state, parameters);
+    const S azimuth = S(lams_.azimuth) + sum<S>(Where::beam_azimuth, state, parameters);
+    const S beam = state[Quantity::lams_airspeed] + sum<S>(Where::beam_speed, state, parameters);
+    const S sideslip = needs(Quantity::sideslip) ? state[Quantity::sideslip] : S(0.0);
+    return airspeed_from_beam(beam, beam_cosine(elevation, azimuth, state[Quantity::attack], sideslip));
+  }
+
+  /// Ambient temperature (K, eq. 12) and dynamic pressure (hPa, eq. 8) from LAMS and the corrected pressures.
+  /// They test the model, not the laser: with pressures corrected by LAMS at this very sample they return
+  /// their inputs.
+  template <class S, class P>
+  void lams_air(State<S>& state, const P* parameters) const {
+    const S v = lams_airspeed(state, parameters);
+    const MoistAir<S> constants = moist_air(state[Quantity::humidity]);
+    state[Quantity::lams_temperature] = pcor::lams_temperature(v, state[Quantity::corrected_mach], constants);
+    state[Quantity::lams_dynamic_pressure] = dynamic_pressure_from_airspeed(
+        state[Quantity::corrected_static_pressure], v, state[Quantity::ambient_temperature], constants);
+  }
+
+ private:
+  // An effect of the model: of the catalogue, or the formula of that number.
+  struct Term {
+    std::size_t effect = catalogue_size;
+    std::size_t formula = 0;
+    std::size_t first_parameter = 0;
+    Where where = Where::static_defect;
+  };
+
+  static constexpr std::size_t formula_variable_capacity = 12;
+
+  struct BoundFormula {
+    Formula formula;
+    std::vector<Quantity> variables;
+  };
+
+  struct Range {
+    Quantity quantity;
+    double lower;
+    double upper;
+  };
+
+  class Builder;
+
+  Chain() = default;
+
+  std::size_t begin_of(Where where, std::size_t next = 0) const {
+    return where_begin_[static_cast<std::size_t>(where) + next];
+  }
+
+  template <class R, class S, class P>
+  R sum(Where where, const State<S>& state, const P* parameters) const {
+    R total(0.0);
+    for (std::size_t i = begin_of(where); i < begin_of(where, 1); ++i) {
+      total = total + value(terms_[i], state, parameters + terms_[i].first_parameter);
+    }
+    return total;
+  }
+
+  template <class S, class P>
+  Promoted<S, P> value(const Term& term, const State<S>& state, const P* parameters) const {
+    if (term.effect != catalogue_size) return effect_functions<S, P>[term.effect](state, parameters);
+    const BoundFormula& bound = formulas_[term.formula];
+    std::array<S, formula_variable_capacity> variables;
+    for (std::size_t i = 0; i < bound.variables.size(); ++i) variables[i] = state[bound.variables[i]];
+    return bound.formula.value(variables.data(), parameters);
+  }
+
+  template <class S, class P>
+  void add(Where where, Quantity quantity, State<S>& state, const P* parameters) const {
+    if (acts(where)) state[quantity] = state[quantity] + sum<S>(where, state, parameters);
+  }
+
+  template <class S, class Flags>
+  void radome_ratios(State<S>& state, Flags& flags) const {
+    const S q = state[Quantity::radome_dynamic_pressure];
+    const auto flowing = q > S(0.0);
+    flags.set(q <= S(0.0), Quality::impossible_radome_pressure);
+    if (needs(Quantity::attack_ratio)) {
+      state[Quantity::attack_ratio] =
+          select(flowing, state[Quantity::attack_differential_pressure] / q, missing<S>());
+    }
+    if (needs(Quantity::sideslip_ratio)) {
+      state[Quantity::sideslip_ratio] =
+          select(flowing, state[Quantity::sideslip_differential_pressure] / q, missing<S>());
+    }
+  }
+
+  template <class S>
+  S radome_angle(const RadomeCalibration& radome, Quantity ratio, const State<S>& state) const {
+    return radome.needs_mach() ? radome(state[ratio], state[Quantity::mach]) : radome(state[ratio]);
+  }
+
+  bool has_minimum() const { return policy_.minimum > -std::numeric_limits<double>::infinity(); }
+
+  template <class R, class S>
+  R taper(const R& defect, const S& q) const {
+    const S fraction = power(q * S(1.0 / policy_.taper_below), S(policy_.taper_power));
+    return select(q > S(0.0), R(defect * fraction), R(0.0));
+  }
+
+  template <class S, class P>
+  S recovery_temperature_of(const State<S>& state, const P* parameters) const {
+    return state[Quantity::recovery_temperature] + sum<S>(Where::temperature, state, parameters);
+  }
+
+  // e/p at static pressure p, zero or above; zero where dry constants are asked for or nothing is recorded.
+  template <class S, class P, class Flags>
+  S recorded_humidity(const State<S>& state, const P* parameters, const S& p, Flags& flags) const {
+    if (!moist_) return S(0.0);
+    S e = recorded(Quantity::vapor_pressure) ? state[Quantity::vapor_pressure]
+          : recorded(Quantity::dew_point)    ? vapor_pressure_from_dew_point(state[Quantity::dew_point], p)
+                                             : missing<S>();
+    e = e + sum<S>(Where::humidity, state, parameters);
+    const auto unknown = is_missing(e) && !is_missing(p);
+    const auto negative = e < S(0.0);
+    flags.set(unknown, Quality::dry_air_assumed);
+    flags.set(negative, Quality::humidity_limited);
+    return select(unknown || negative, S(0.0), e / p);
+  }
+
+  template <class S>
+  MoistAir<S> solve_air(State<S>& state, const S& humidity, const S& thermometer, const S& delta) const {
+    const MoistAir<S> constants = moist_air(humidity);
+    const S mach = mach_number(state[Quantity::corrected_static_pressure],
+                               state[Quantity::corrected_dynamic_pressure], constants);
+    state[Quantity::corrected_mach] = mach;
+    if (recorded(Quantity::recovery_temperature)) {
+      state[Quantity::ambient_temperature] =
+          ambient_temperature(thermometer, mach, recovery_(mach) + delta, constants);
+    }
+    return constants;
+  }
+
+  std::vector<Term> terms_;  // by place
+  std::array<std::size_t, where_count + 1> where_begin_{};
+  std::vector<BoundFormula> formulas_;
+  std::vector<double> parameters_;
+  std::vector<std::string> extra_names_;
+  std::vector<Range> domain_;
+  std::bitset<state_capacity> recorded_;
+  std::bitset<state_capacity> needed_;
+  LamsMounting lams_;
+  RecoveryFactor recovery_;
+  RadomeCalibration attack_radome_;
+  RadomeCalibration sideslip_radome_;
+  Policy policy_;
+  bool moist_ = true;
+};
+
+// Checks a model against what is recorded, and fills a chain.
+class Chain::Builder {
+ public:
+  Builder(const Model& model, const std::vector<Quantity>& recorded, std::string& error)
+      : model_(model), error_(error) {
+    for (const Quantity quantity : recorded) chain_.recorded_.set(index(quantity));
+  }
+
+  bool run() {
+    chain_.lams_ = model_.lams;
+    chain_.recovery_ = model_.recovery;
+    chain_.attack_radome_ = model_.attack_radome;
+    chain_.sideslip_radome_ = model_.sideslip_radome;
+    chain_.policy_ = model_.policy;
+    chain_.moist_ = model_.moist;
+    for (const Quantity pressure : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
+      if (!require(pressure, "the chain")) return false;
+    }
+    for (const ModelEffect& effect : model_.effects) {
+      if (!(effect.is_formula() ? add_formula(effect) : add_effect(effect))) return false;
+    }
+    for (const DomainRange& range : model_.domain) {
+      if (!add_range(range)) return false;
+    }
+    if (chain_.has_lams() && !require_lams()) return false;
+    sort_terms();
+    return true;
+  }
+
+  Chain take() { return std::move(chain_); }
+
+ private:
+  bool fail(std::string why) {
+    error_ = std::move(why);
+    return false;
+  }
+
+  static std::string quoted(std::string_view name) { return "'" + std::string(name) + "'"; }
+
+  bool add_effect(const ModelEffect& effect) {
+    const std::size_t place = effect_named(effect.id);
+    if (place == catalogue_size) return fail("there is no effect " + quoted(effect.id));
+    const EffectFacts& facts = effect_facts[place];
+    if (effect.parameters.size() != facts.parameter_count()) {
+      return fail("effect " + quoted(effect.id) + " has " + std::to_string(facts.parameter_count()) +
+                  " parameters, not " + std::to_string(effect.parameters.size()));
+    }
+    for (std::size_t i = 0; i < facts.need_count(); ++i) {
+      if (!require(facts.needs[i], "effect " + quoted(effect.id))) return false;
+    }
+    Term term;
+    term.effect = place;
+    term.where = facts.where;
+    add_term(term, effect);
+    return true;
+  }
+
+  bool add_formula(const ModelEffect& effect) {
+    FormulaError formula_error;
+    std::optional<Formula> formula = Formula::parse(effect.formula, effect.parameter_names, &formula_error);
+    if (!formula) return fail("formula of effect " + quoted(effect.id) + ": " + formula_error.message);
+    if (effect.parameters.size() != effect.parameter_names.size()) {
+      return fail("effect " + quoted(effect.id) + " has " + std::to_string(effect.parameter_names.size()) +
+                  " parameters, not " + std::to_string(effect.parameters.size()));
+    }
+    if (formula->variables().size() > formula_variable_capacity) {
+      return fail("formula of effect " + quoted(effect.id) + " uses more than " +
+                  std::to_string(formula_variable_capacity) + " variables");
+    }
+    BoundFormula bound{std::move(*formula), {}};
+    for (const std::string& name : bound.formula.variables()) {
+      Quantity quantity = quantity_named(name);
+      if (quantity == Quantity::count) quantity = extra(name);
+      if (quantity == Quantity::count) {
+        return fail("the formulas of the model use more than " + std::to_string(extra_capacity) +
+                    " further variables");
+      }
+      if (!require(quantity, "the formula of effect " + quoted(effect.id))) return false;
+      bound.variables.push_back(quantity);
+    }
+    Term term;
+    term.formula = chain_.formulas_.size();
+    term.where = effect.where;
+    chain_.formulas_.push_back(std::move(bound));
+    add_term(term, effect);
+    return true;
+  }
+
+  void add_term(Term term, const ModelEffect& effect) {
+    term.first_parameter = chain_.parameters_.size();
+    chain_.parameters_.insert(chain_.parameters_.end(), effect.parameters.begin(), effect.parameters.end());
+    chain_.terms_.push_back(term);
+  }
+
+  // The place of a further variable; a new one where the name is new and there is room.
+  Quantity extra(const std::string& name) {
+    std::vector<std::string>& names = chain_.extra_names_;
+    const auto found = std::find(names.begin(), names.end(), name);
+    const auto number = static_cast<std::size_t>(found - names.begin());
+    if (found == names.end()) {
+      if (number == extra_capacity) return Quantity::count;
+      names.push_back(name);
+      chain_.recorded_.set(quantity_count + number);
+    }
+    return extra_quantity(number);
+  }
+
+  bool add_range(const DomainRange& range) {
+    const Quantity quantity = quantity_named(range.quantity);
+    if (quantity == Quantity::count) return fail("there is no quantity " + quoted(range.quantity));
+    if (!require(quantity, "the domain of the model")) return false;
+    chain_.domain_.push_back({quantity, range.lower, range.upper});
+    return true;
+  }
+
+  bool require_lams() {
+    if (!require(Quantity::attack, "LAMS, for the angle between its beam and the wind,")) return false;
+    if (chain_.recorded(Quantity::sideslip) || model_.sideslip_radome.is_calibrated()) {
+      if (!require(Quantity::sideslip, "LAMS")) return false;
+    }
+    const Quantity thermometer = model_.lams.approach == LamsApproach::with_temperature
+                                     ? Quantity::ambient_temperature
+                                     : Quantity::recovery_temperature;
+    return require(thermometer, "LAMS");
+  }
+
+  // Marks a quantity and all that it is derived from as needed.
+  bool require(Quantity quantity, const std::string& who) {
+    chain_.needed_.set(index(quantity));
+    if (chain_.recorded_[index(quantity)]) return true;
+    switch (quantity) {
+      case Quantity::time:
+      case Quantity::dynamic_ratio:
+      case Quantity::mach:
+      case Quantity::static_pressure_rate:
+      case Quantity::dynamic_pressure_rate:
+        return true;
+      case Quantity::attack_ratio:
+        return require(Quantity::attack_differential_pressure, who) &&
+               require(Quantity::radome_dynamic_pressure, who);
+      case Quantity::sideslip_ratio:
+        return require(Quantity::sideslip_differential_pressure, who) &&
+               require(Quantity::radome_dynamic_pressure, who);
+      case Quantity::attack:
+        return require_angle(model_.attack_radome, quantity, Quantity::attack_ratio, who);
+      case Quantity::sideslip:
+        return require_angle(model_.sideslip_radome, quantity, Quantity::sideslip_ratio, who);
+      default:
+        return fail_missing(quantity, who);
+    }
+  }
+
+  bool require_angle(const RadomeCalibration& radome, Quantity angle, Quantity ratio,
+                     const std::string& who) {
+    const std::string name(facts_of(angle).name);
+    if (!radome.is_calibrated()) {
+      return fail(who + " needs the role '" + name +
+                  "': name its variable in the table [variables], or give [radome] " + name +
+                  " = [offset, slope] to derive it from the radome pressures");
+    }
+    if (radome.needs_mach() && !require(Quantity::mach, who)) return false;
+    return require(ratio, who);
+  }
+
+  bool fail_missing(Quantity quantity, const std::string& who) {
+    const std::string name(facts_of(quantity).name);
+    if (!is_role(quantity))
+      return fail(who + " needs " + quoted(name) + ", which is known only after delta-p");
+    return fail(who + " needs the role " + quoted(name) + ": name its variable in the table [variables]");
+  }
+
+  void sort_terms() {
+    std::stable_sort(chain_.terms_.begin(), chain_.terms_.end(),
+                     [](const Term& a, const Term& b) { return a.where < b.where; });
+    for (const Term& term : chain_.terms_) ++chain_.where_begin_[static_cast<std::size_t>(term.where) + 1];
+    for (std::size_t i = 0; i < where_count; ++i) chain_.where_begin_[i + 1] += chain_.where_begin_[i];
+  }
+
+  const Model& model_;
+  std::string& error_;
+  Chain chain_;
+};
+
+inline std::optional<Chain> Chain::build(const Model& model, const std::vector<Quantity>& recorded,
+                                         std::string* error) {
+  std::string why;
+  Builder builder(model, recorded, why);
+  if (builder.run()) return builder.take();
+  if (error != nullptr) *error = why;
+  return std::nullopt;
+}
+
+}  // namespace pcor

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include "pcor/realtime/quality.hpp"
+#include "pcor/realtime/state.hpp"
+
+namespace pcor {
+
+/// A derived variable, or a few that are found together: computed once for every sample from others.
+///
+/// A functor declares what it reads and what it writes; the loop puts functors in order by that. What it both
+/// reads and writes it completes in place, before anyone else reads it. `compute` allocates nothing and
+/// throws nothing; for missing or impossible inputs it writes NaN and sets a quality bit.
+class Functor {
+ public:
+  Functor(std::vector<Quantity> inputs, std::vector<Quantity> outputs)
+      : inputs_(std::move(inputs)), outputs_(std::move(outputs)) {}
+  Functor(const Functor&) = delete;
+  Functor& operator=(const Functor&) = delete;
+  virtual ~Functor() = default;
+
+  const std::vector<Quantity>& inputs() const { return inputs_; }
+  const std::vector<Quantity>& outputs() const { return outputs_; }
+
+  /// Forgets what was kept of earlier samples. Called at the start and after every gap.
+  virtual void reset() noexcept {}
+
+  /// Computes the outputs of one sample.
+  virtual void compute(State<double>& state, QualityFlags& flags) noexcept = 0;
+
+ private:
+  std::vector<Quantity> inputs_;
+  std::vector<Quantity> outputs_;
+};
+
+}  // namespace pcor

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace pcor {
+
+/// What was wrong with a sample, or done to it. Each is one bit of the flag variable.
+enum class Quality : std::uint32_t {
+  static_pressure_missing = 1U << 0,
+  dynamic_pressure_missing = 1U << 1,
+  impossible_static_pressure = 1U << 2,
+  impossible_dynamic_pressure = 1U << 3,
+  effect_input_missing = 1U << 4,
+  impossible_radome_pressure = 1U << 5,
+  temperature_missing = 1U << 6,
+  dry_air_assumed = 1U << 7,
+  humidity_limited = 1U << 8,
+  lams_missing = 1U << 9,
+  tapered = 1U << 10,
+  minimum_applied = 1U << 11,
+  outside_domain = 1U << 12,
+  after_gap = 1U << 13,
+  corrected_with_lams = 1U << 14,
+};
+
+/// A quality bit and what it means.
+struct QualityFacts {
+  Quality bit;
+  std::string_view name;
+  std::string_view meaning;
+};
+
+inline constexpr std::array<QualityFacts, 15> quality_facts{{
+    {Quality::static_pressure_missing, "static_pressure_missing", "no static pressure: nothing is derived"},
+    {Quality::dynamic_pressure_missing, "dynamic_pressure_missing",
+     "no dynamic pressure: nothing is derived"},
+    {Quality::impossible_static_pressure, "impossible_static_pressure",
+     "static pressure zero or below: nothing is derived"},
+    {Quality::impossible_dynamic_pressure, "impossible_dynamic_pressure",
+     "dynamic pressure zero or below, as on the ground: no Mach number, no airspeed"},
+    {Quality::effect_input_missing, "effect_input_missing",
+     "an input of the model's effects is missing: no delta-p"},
+    {Quality::impossible_radome_pressure, "impossible_radome_pressure",
+     "radome dynamic pressure zero or below: no flow angles from the radome"},
+    {Quality::temperature_missing, "temperature_missing", "no temperature: no airspeed"},
+    {Quality::dry_air_assumed, "dry_air_assumed", "no humidity: constants of dry air"},
+    {Quality::humidity_limited, "humidity_limited",
+     "vapour pressure below zero or above saturation: set to the limit"},
+    {Quality::lams_missing, "lams_missing", "no valid airspeed from LAMS"},
+    {Quality::tapered, "tapered", "delta-p tapered at low dynamic pressure"},
+    {Quality::minimum_applied, "minimum_applied", "delta-p raised to the minimum of the law"},
+    {Quality::outside_domain, "outside_domain", "an input lies outside the domain of the law: extrapolated"},
+    {Quality::after_gap, "after_gap", "first samples after a gap: rates of change start anew"},
+    {Quality::corrected_with_lams, "corrected_with_lams",
+     "pressures corrected with LAMS, not with the model"},
+}};
+
+/// The quality bits of one sample.
+class QualityFlags {
+ public:
+  /// Sets `bit` where the condition holds.
+  constexpr void set(bool condition, Quality bit) {
+    if (condition) bits_ |= static_cast<std::uint32_t>(bit);
+  }
+  constexpr void set(Quality bit) { set(true, bit); }
+  constexpr bool has(Quality bit) const { return (bits_ & static_cast<std::uint32_t>(bit)) != 0; }
+  constexpr std::uint32_t bits() const { return bits_; }
+  constexpr void clear() { bits_ = 0; }
+
+ private:
+  std::uint32_t bits_ = 0;
+};
+
+/// Stands in for `QualityFlags` where a computation keeps none, as over vector packs and in fits.
+class NoQualityFlags {
+ public:
+  template <class Condition>
+  constexpr void set(const Condition&, Quality) {}
+};
+
+}  // namespace pcor

@@ -1,0 +1,150 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace pcor {
+
+/// Every quantity that the library knows by name. The first ones are recorded by the aircraft: they are the
+/// roles that a model file may give to variables. The others are derived.
+enum class Quantity : std::uint8_t {
+  static_pressure,
+  dynamic_pressure,
+  recovery_temperature,
+  ambient_temperature,
+  vapor_pressure,
+  dew_point,
+  radome_dynamic_pressure,
+  attack_differential_pressure,
+  sideslip_differential_pressure,
+  attack,
+  sideslip,
+  lams_airspeed,
+  mach,
+  true_airspeed,
+  altitude,
+  vertical_speed,
+  latitude,
+  pitch,
+  roll,
+  heading,
+  ground_speed,
+  ground_track,
+  normal_acceleration,
+  flaps,
+  liquid_water,
+  transducer_temperature,
+  cabin_pressure,
+
+  time,
+  dynamic_ratio,
+  attack_ratio,
+  sideslip_ratio,
+  static_pressure_rate,
+  dynamic_pressure_rate,
+  port_static_pressure,
+  port_dynamic_pressure,
+
+  static_defect,
+  lams_static_defect,
+  corrected_static_pressure,
+  corrected_dynamic_pressure,
+  humidity,
+  corrected_mach,
+  corrected_airspeed,
+  lams_temperature,
+  lams_dynamic_pressure,
+
+  count
+};
+
+constexpr std::size_t index(Quantity quantity) { return static_cast<std::size_t>(quantity); }
+
+inline constexpr std::size_t quantity_count = index(Quantity::count);
+
+/// How many quantities are roles: those before `time`.
+inline constexpr std::size_t role_count = index(Quantity::time);
+
+/// How many further variables one model or loop may name beyond the quantities of the library.
+inline constexpr std::size_t extra_capacity = 24;
+
+/// The number of values that a state holds.
+inline constexpr std::size_t state_capacity = quantity_count + extra_capacity;
+
+/// The place of the further variable number `number`.
+constexpr Quantity extra_quantity(std::size_t number) {
+  return static_cast<Quantity>(quantity_count + number);
+}
+
+/// What a quantity is called, its unit inside the library, and what it is.
+struct QuantityFacts {
+  std::string_view name;
+  std::string_view unit;
+  std::string_view description;
+};
+
+/// The facts of every quantity, in the order of the enumeration.
+inline constexpr std::array<QuantityFacts, quantity_count> quantity_facts{{
+    {"static_pressure", "hPa", "static pressure as measured, p_m"},
+    {"dynamic_pressure", "hPa", "dynamic pressure as measured, q_m"},
+    {"recovery_temperature", "K", "temperature that a thermometer in the airstream shows, T_r"},
+    {"ambient_temperature", "K", "temperature of the undisturbed air, T"},
+    {"vapor_pressure", "hPa", "water vapour pressure, e"},
+    {"dew_point", "K", "dew or frost point of a chilled mirror at ambient pressure"},
+    {"radome_dynamic_pressure", "hPa", "dynamic pressure at the centre of the radome, QCR"},
+    {"attack_differential_pressure", "hPa", "vertical differential pressure of the radome, ADIFR"},
+    {"sideslip_differential_pressure", "hPa", "horizontal differential pressure of the radome, BDIFR"},
+    {"attack", "deg", "angle of attack, alpha"},
+    {"sideslip", "deg", "sideslip, beta, positive for wind from starboard"},
+    {"lams_airspeed", "m/s", "airspeed along the laser beam, v_L"},
+    {"mach", "1", "Mach number in the laws: an independent one, else from the measured pair in dry air"},
+    {"true_airspeed", "m/s", "true airspeed of the recording system"},
+    {"altitude", "m", "GPS altitude"},
+    {"vertical_speed", "m/s", "vertical speed of the aircraft"},
+    {"latitude", "deg", "latitude, north positive"},
+    {"pitch", "deg", "pitch, nose up positive"},
+    {"roll", "deg", "roll, starboard wing down positive"},
+    {"heading", "deg", "true heading"},
+    {"ground_speed", "m/s", "ground speed"},
+    {"ground_track", "deg", "true ground track"},
+    {"normal_acceleration", "m/s2", "acceleration along the normal axis"},
+    {"flaps", "percent", "flap position"},
+    {"liquid_water", "g/m3", "liquid water content"},
+    {"transducer_temperature", "K", "temperature of the pressure transducers"},
+    {"cabin_pressure", "hPa", "cabin pressure"},
+
+    {"time", "s", "time since the first sample"},
+    {"dynamic_ratio", "1", "dynamic over static pressure as measured, q_m/p_m"},
+    {"attack_ratio", "1", "ADIFR/QCR"},
+    {"sideslip_ratio", "1", "BDIFR/QCR"},
+    {"static_pressure_rate", "hPa/s", "rate of change of the measured static pressure"},
+    {"dynamic_pressure_rate", "hPa/s", "rate of change of the measured dynamic pressure"},
+    {"port_static_pressure", "hPa", "static pressure at the port, after effects of transducer and line"},
+    {"port_dynamic_pressure", "hPa", "dynamic pressure at the ports, after effects of transducer and line"},
+
+    {"static_defect", "hPa", "delta-p of the model, added to the static pressure"},
+    {"lams_static_defect", "hPa", "delta-p from LAMS"},
+    {"corrected_static_pressure", "hPa", "corrected static pressure, p"},
+    {"corrected_dynamic_pressure", "hPa", "corrected dynamic pressure, q"},
+    {"humidity", "1", "water vapour pressure over static pressure, e/p, not above saturation"},
+    {"corrected_mach", "1", "Mach number from the corrected pressures"},
+    {"corrected_airspeed", "m/s", "true airspeed from the corrected pressures"},
+    {"lams_temperature", "K", "ambient temperature from LAMS without a thermometer"},
+    {"lams_dynamic_pressure", "hPa", "dynamic pressure from LAMS"},
+}};
+
+constexpr const QuantityFacts& facts_of(Quantity quantity) { return quantity_facts[index(quantity)]; }
+
+/// The quantity called `name`, or `Quantity::count` where there is none.
+constexpr Quantity quantity_named(std::string_view name) {
+  for (std::size_t i = 0; i < quantity_count; ++i) {
+    if (quantity_facts[i].name == name) return static_cast<Quantity>(i);
+  }
+  return Quantity::count;
+}
+
+constexpr bool is_role(Quantity quantity) { return index(quantity) < role_count; }
+
+}  // namespace pcor
