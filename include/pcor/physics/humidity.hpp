@@ -28,7 +28,7 @@ S vapor_pressure_over_water(const S& temperature) {
 ///
 ///     ln(e/Pa) = 9.550426 - 5723.265/T + 3.53068 ln T - 0.00728332 T
 ///
-/// Domain: 110 K to 273.16 K, accuracy 0.025 % as stated by the source; T <= 0 gives NaN.
+/// Domain: 110 K to 273.16 K, accuracy 0.025 % as stated by the source; zero at 0 K, T < 0 gives NaN.
 /// Source: Murphy and Koop (2005), eq. 7.
 template <class S>
 S vapor_pressure_over_ice(const S& temperature) {

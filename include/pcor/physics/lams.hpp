@@ -11,8 +11,8 @@ namespace pcor {
 ///
 /// `elevation` theta_1 above and `azimuth` theta_2 to starboard of the longitudinal axis, angle of attack
 /// `attack` alpha, `sideslip` beta positive for wind from starboard; all in deg. Accuracy against the product
-/// of the unit vectors: 7.5e-6 with all angles 3 deg, 6e-5 with all 5 deg. Source: memo, "Effect of LAMS
-/// orientation".
+/// of the unit vectors: 7.5e-6 with all angles 3 deg, 6e-5 with all 5 deg, twice that where their signs are
+/// unlike. Source: memo, "Effect of LAMS orientation".
 template <class S>
 S beam_cosine(const S& elevation, const S& azimuth, const S& attack, const S& sideslip) {
   using std::cos;
@@ -102,10 +102,10 @@ LamsSolution<S> lams_iterated(const S& static_pressure, const S& dynamic_pressur
 }
 
 /// Approach 3 of the memo: with an ambient `temperature` (K) measured without any pressure, such as a
-/// radiometer's.
+/// radiometer's. Passes and accuracy as of approach 1.
 template <class S>
 LamsSolution<S> lams_with_temperature(const S& static_pressure, const S& dynamic_pressure, const S& airspeed,
-                                      const S& temperature, const S& vapor_pressure, int passes = 3) {
+                                      const S& temperature, const S& vapor_pressure, int passes = 4) {
   LamsSolution<S> solution;
   solution.temperature = temperature;
   MoistAir<S> air = moist_air(vapor_pressure / static_pressure);

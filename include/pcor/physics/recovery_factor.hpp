@@ -25,9 +25,10 @@ struct RecoveryFactor {
   S operator()(const S& mach) const {
     if (is_constant()) return S(coefficients[0]);
     const S logarithm = decimal_logarithm(mach);
-    return S(coefficients[0]) +
-           logarithm *
-               (S(coefficients[1]) + logarithm * (S(coefficients[2]) + logarithm * S(coefficients[3])));
+    const S factor =
+        S(coefficients[0]) +
+        logarithm * (S(coefficients[1]) + logarithm * (S(coefficients[2]) + logarithm * S(coefficients[3])));
+    return select(mach > S(0.0), factor, missing<S>());
   }
 };
 

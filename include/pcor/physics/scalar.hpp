@@ -46,6 +46,18 @@ constexpr S missing() {
   return S(std::numeric_limits<double>::quiet_NaN());
 }
 
+/// True where the value is neither infinite nor missing.
+template <class S>
+constexpr auto is_finite(const S& value) {
+  return !is_missing(value - value);
+}
+
+/// The value where it is finite, else not a number.
+template <class S>
+constexpr S finite_or_missing(const S& value) {
+  return select(is_finite(value), value, missing<S>());
+}
+
 /// `base` to the `exponent`, for a base above zero. A negative base gives NaN.
 template <class S>
 S power(const S& base, const S& exponent) {

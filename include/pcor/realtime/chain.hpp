@@ -122,11 +122,15 @@ class Chain {
     return select(flowing, defect, missing<R>());
   }
 
-  /// Corrected pressures: p = p_port + delta-p, q = q_port - delta-p (memo eq. 1-3). Their sum stays.
-  template <class S>
-  void correct(State<S>& state, const S& defect) const {
+  /// Corrected pressures: p = p_port + delta-p, q = q_port - delta-p (memo eq. 1-3). Their sum stays. A
+  /// negative q is impossible, as where a law is carried on to the ground: NaN.
+  template <class S, class Flags>
+  void correct(State<S>& state, const S& defect, Flags& flags) const {
+    const S q = state[Quantity::port_dynamic_pressure] - defect;
+    const auto negative = q < S(0.0);
+    flags.set(negative, Quality::impossible_dynamic_pressure);
     state[Quantity::corrected_static_pressure] = state[Quantity::port_static_pressure] + defect;
-    state[Quantity::corrected_dynamic_pressure] = state[Quantity::port_dynamic_pressure] - defect;
+    state[Quantity::corrected_dynamic_pressure] = select(negative, missing<S>(), q);
   }
 
   /// Humidity, Mach number, ambient temperature and airspeed from the corrected pressures. They depend on
@@ -137,6 +141,11 @@ class Chain {
     const S p = state[Quantity::corrected_static_pressure];
     const S delta = sum<S>(Where::recovery, state, parameters);
     const S thermometer = recovery_temperature_of(state, parameters);
+    if (has_temperature()) {
+      const bool from_recovery = recorded(Quantity::recovery_temperature);
+      flags.set(is_missing(from_recovery ? thermometer : state[Quantity::ambient_temperature]),
+                Quality::temperature_missing);
+    }
     S humidity = recorded_humidity(state, parameters, p, flags);
     MoistAir<S> constants = solve_air(state, humidity, thermometer, delta);
     if (moist_) {
@@ -151,8 +160,6 @@ class Chain {
     state[Quantity::humidity] = humidity;
     state[Quantity::corrected_airspeed] =
         true_airspeed(state[Quantity::corrected_mach], state[Quantity::ambient_temperature], constants);
-    flags.set(is_missing(state[Quantity::ambient_temperature]), Quality::temperature_missing);
-    flags.set(state[Quantity::corrected_dynamic_pressure] < S(0.0), Quality::impossible_dynamic_pressure);
   }
 
   /// Delta-p that LAMS asks for at this sample, hPa, by the approach of the model. NaN where the laser or

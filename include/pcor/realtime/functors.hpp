@@ -94,7 +94,7 @@ class CorrectedPressures final : public Functor {
       defect = lams;
       flags.set(Quality::corrected_with_lams);
     }
-    chain_->correct(state, defect);
+    chain_->correct(state, defect, flags);
   }
 
  private:

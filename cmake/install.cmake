@@ -1,0 +1,34 @@
+# What `cmake --install` puts in place. Two export sets, so that a program on the aircraft, which needs
+# pcor::realtime and the standard library alone, never has to have netCDF to find the package.
+include(CMakePackageConfigHelpers)
+set(pcor_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/pcor)
+
+install(TARGETS pcor_realtime EXPORT pcor-realtime)
+install(EXPORT pcor-realtime NAMESPACE pcor:: DESTINATION ${pcor_config_dir})
+set(pcor_headers physics effects realtime)
+
+if(PCOR_OFFLINE)
+  install(TARGETS pcor_offline EXPORT pcor-offline ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT pcor-offline NAMESPACE pcor:: DESTINATION ${pcor_config_dir})
+  install(FILES ${PROJECT_SOURCE_DIR}/cmake/offline_dependencies.cmake DESTINATION ${pcor_config_dir})
+  list(APPEND pcor_headers offline)
+endif()
+
+if(TARGET pcor_tool)
+  install(TARGETS pcor_tool RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+
+foreach(folder IN LISTS pcor_headers)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/pcor/${folder}
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pcor FILES_MATCHING PATTERN "*.hpp")
+endforeach()
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/models DESTINATION ${CMAKE_INSTALL_DATADIR}/pcor)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/pcorConfig.cmake.in ${PROJECT_BINARY_DIR}/pcorConfig.cmake
+  INSTALL_DESTINATION ${pcor_config_dir}
+  PATH_VARS CMAKE_INSTALL_DATADIR)
+# Before 1.0 a minor version may break its users, so 0.2 does not serve who asked for 0.1.
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/pcorConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/pcorConfig.cmake ${PROJECT_BINARY_DIR}/pcorConfigVersion.cmake
+        DESTINATION ${pcor_config_dir})

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "pcor/offline/flight.hpp"
+#include "pcor/offline/model_file.hpp"
+#include "pcor/realtime/functors.hpp"
+#include "pcor/realtime/quality.hpp"
+
+namespace pcor {
+
+/// How a flight is processed.
+struct ProcessOptions {
+  CorrectWith correct_with = CorrectWith::model;
+  bool copy_all = false;  ///< copy every variable of the input, not only coordinates and what was used
+  std::string suffix{};   ///< added to the name of every derived variable
+  TimeStamp time_stamp = TimeStamp::begin;
+  std::string history{};  ///< what the output says of its making, e.g. the command line
+  std::function<void(std::size_t done, std::size_t total)> progress{};  ///< told after every block of records
+};
+
+/// What was done to a flight.
+struct ProcessSummary {
+  std::string aircraft;
+  std::string project;
+  std::string flight;
+  std::size_t records = 0;
+  int rate = 1;  ///< samples in a record
+  std::size_t samples = 0;
+  std::size_t corrected = 0;  ///< samples in which both pressures could be corrected
+  std::size_t gaps = 0;
+  double first_time = 0.0;  ///< seconds since 1970 UTC
+  double last_time = 0.0;
+  double mean_defect = 0.0;      ///< of the delta-p applied, hPa; NaN where no sample was corrected
+  double least_defect = 0.0;     ///< hPa
+  double greatest_defect = 0.0;  ///< hPa
+  std::array<std::size_t, quality_facts.size()> flagged{};  ///< samples with each quality bit
+  std::vector<std::string> outputs;                         ///< names of the derived variables, in order
+  std::vector<std::string> notes;                           ///< what a user should know, a sentence each
+};
+
+/// Runs every sample of the flight `input` through the real-time loop of `model` and writes the derived
+/// variables to `output`: delta-p (`PCOR`, `PCOR_LAMS`), corrected pressures (`PSXC`, `QCXC`), `MACHX`,
+/// `ATX`, `TASX`, `ATLAMS`, `QCLAMS` and the quality bits `PCORFLAG`, under the names of the model's
+/// `[output]` table, with the coordinates and inputs they came from. Pressures in hPa, temperatures in degC,
+/// speeds in m/s. Without a temperature there is no ATX and TASX; without LAMS, none of its variables.
+///
+/// The loop runs at the higher rate of the two pressures; other inputs are brought to it
+/// (`Flight::read_at_rate`). Missing or impossible input gives missing output and a quality bit. Memory does
+/// not depend on the length of the flight.
+///
+/// @throws Error, and leaves `output` as it was, if the flight or a variable that the model needs cannot be
+/// read, a unit is unknown, the model cannot be used, a name is taken, or the output cannot be written.
+ProcessSummary process_flight(const std::filesystem::path& input, const ModelFile& model,
+                              const std::filesystem::path& output, const ProcessOptions& options = {});
+
+}  // namespace pcor

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+
+namespace pcor {
+
+/// Whose unit is being read, for the messages. `file` and `role` may be empty.
+struct UnitOwner {
+  std::string variable;  ///< the name in the file, e.g. "PSFD"
+  std::string file;      ///< where it is
+  std::string role;      ///< what the model file calls it, e.g. "static_pressure"
+};
+
+/// A linear conversion between two units: `value * scale + offset`.
+class UnitConversion {
+ public:
+  /// The conversion that changes nothing.
+  UnitConversion() = default;
+
+  UnitConversion(double scale, double offset) : scale_(scale), offset_(offset) {}
+
+  /// From the unit `from`, as a file spells it, to the unit `to`, e.g. ("mbar", "hPa"). NaN stays NaN.
+  ///
+  /// @throws Error if `from` is empty or not known, if it measures something else than `to`, or if the two
+  /// are not related by a straight line (dBZ). The message says how to state the unit in the model file.
+  static UnitConversion between(const std::string& from, const std::string& to, const UnitOwner& owner);
+
+  double scale() const { return scale_; }
+  double offset() const { return offset_; }
+  double operator()(double value) const { return value * scale_ + offset_; }
+
+ private:
+  double scale_ = 1;
+  double offset_ = 0;
+};
+
+/// A unit as real flight files spell it in the spelling of UDUNITS and CF: "C" is "degC", "M/s" is "m/s",
+/// "none" is "1". The spelling is looked up exactly, case and all; one that needs no change is returned as it
+/// is.
+std::string standard_unit(const std::string& unit);
+
+/// Whether the unit is known, after `standard_unit`. An empty unit is not.
+bool is_known_unit(const std::string& unit);
+
+}  // namespace pcor

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+namespace pcor {
+
+/// A moment, seconds since 1970-01-01 00:00:00 UTC, in words; by default "2004-02-18 14:22:00".
+/// Fractions of a second are cut off. `pattern` is that of strftime.
+std::string utc_text(double seconds, const char* pattern = "%Y-%m-%d %H:%M:%S");
+
+/// The midnight (UTC) at which the day of `seconds` begins, seconds since 1970-01-01 00:00:00 UTC.
+double midnight_before(double seconds);
+
+}  // namespace pcor

@@ -1,0 +1,341 @@
+#include "pcor/offline/process.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "pcor/offline/error.hpp"
+#include "pcor/offline/flight_writer.hpp"
+#include "pcor/realtime/loop.hpp"
+
+namespace pcor {
+namespace {
+
+/// A variable of the file that the loop reads.
+struct Input {
+  std::string variable;
+  Quantity quantity = Quantity::count;
+  UnitConversion conversion;
+  std::vector<double> values;  // of one block
+};
+
+/// A derived variable: where it is in the loop's state, and what the file says of it.
+struct Output {
+  OutputVariable variable;
+  Quantity quantity = Quantity::count;
+  double offset = 0.0;  // added to go from the library's unit to the file's
+  std::size_t number = 0;
+  std::vector<double> values;
+};
+
+constexpr double kelvin_to_celsius = -constants::ice_point;
+
+/// One flight on its way through the loop.
+class Processing {
+ public:
+  Processing(const std::filesystem::path& input, const ModelFile& file, const ProcessOptions& options)
+      : flight_(input, options.time_stamp), file_(file), options_(options) {}
+
+  ProcessSummary run(const std::filesystem::path& output);
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(flight_.path().string() + ": " + what);
+  }
+
+  std::string variable_of(Quantity role) const {
+    const auto found = file_.variables.find(role);
+    return found == file_.variables.end() ? std::string() : found->second;
+  }
+
+  std::string name_of(const std::string& standard) const {
+    return file_.output_name(standard) + options_.suffix;
+  }
+
+  void choose_roles();
+  void choose_inputs();
+  void choose_rate();
+  void choose_outputs();
+  void define(FlightWriter& writer);
+  void copy_inputs(FlightWriter& writer, const FileDescription& description);
+  FileDescription describe() const;
+  void process_block(RecordBlock block, std::vector<double>& times, std::vector<double>& flags);
+  void note_sample(std::size_t place);
+
+  void add_output(const std::string& standard, Quantity quantity, const std::string& units,
+                  const std::string& long_name, const std::string& standard_name, const std::string& category,
+                  std::vector<std::string> dependencies, double offset = 0.0);
+
+  Flight flight_;
+  const ModelFile& file_;
+  const ProcessOptions& options_;
+  std::vector<Quantity> roles_;
+  std::optional<Chain> chain_;
+  std::optional<Loop> loop_;
+  std::vector<Input> inputs_;
+  std::vector<Output> outputs_;
+  std::size_t flag_number_ = 0;
+  ProcessSummary summary_;
+};
+
+/// The roles that the flight can serve. LAMS may be off: its variable may be absent.
+void Processing::choose_roles() {
+  for (const auto& [role, variable] : file_.variables) {
+    if (role == Quantity::lams_airspeed && !flight_.has(variable)) {
+      summary_.notes.push_back(
+          fmt::format("{} is not in this file: the flight is processed without LAMS", variable));
+      continue;
+    }
+    roles_.push_back(role);
+  }
+  std::string why;
+  chain_ = Chain::build(file_.model, roles_, &why);
+  if (!chain_) throw Error(fmt::format("model '{}': {}", file_.model.name, why));
+}
+
+void Processing::choose_inputs() {
+  const auto always = {Quantity::recovery_temperature, Quantity::ambient_temperature,
+                       Quantity::vapor_pressure, Quantity::dew_point, Quantity::lams_airspeed};
+  for (const Quantity role : roles_) {
+    if (!chain_->needs(role) && std::find(always.begin(), always.end(), role) == always.end()) continue;
+    const QuantityFacts& facts = facts_of(role);
+    const auto stated = file_.units.find(role);
+    const std::string variable = file_.variables.at(role);
+    const UnitConversion conversion =
+        flight_.conversion(variable, std::string(facts.unit), std::string(facts.name),
+                           stated == file_.units.end() ? std::string() : stated->second);
+    inputs_.push_back({variable, role, conversion, {}});
+  }
+  // Formulas take further variables as the file has them.
+  const std::vector<std::string>& extras = chain_->extra_names();
+  for (std::size_t i = 0; i < extras.size(); ++i) {
+    flight_.variable(extras[i]);
+    inputs_.push_back({extras[i], extra_quantity(i), UnitConversion(), {}});
+  }
+  for (const Input& input : inputs_) flight_.require_values(input.variable);
+}
+
+void Processing::choose_rate() {
+  for (const Quantity pressure : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
+    summary_.rate = std::max(summary_.rate, flight_.variable(variable_of(pressure)).rate);
+  }
+  const double samples_per_second = summary_.rate / flight_.time().step;
+  std::string why;
+  loop_ = Loop::build(file_.model, roles_, samples_per_second, &why, options_.correct_with);
+  if (!loop_) throw Error(fmt::format("model '{}': {}", file_.model.name, why));
+}
+
+void Processing::add_output(const std::string& standard, Quantity quantity, const std::string& units,
+                            const std::string& long_name, const std::string& standard_name,
+                            const std::string& category, std::vector<std::string> dependencies,
+                            double offset) {
+  Output output;
+  output.variable.name = name_of(standard);
+  output.variable.rate = summary_.rate;
+  output.variable.units = units;
+  output.variable.long_name = long_name;
+  output.variable.standard_name = standard_name;
+  output.variable.category = category;
+  output.variable.dependencies = std::move(dependencies);
+  output.variable.ancillary_variables = {name_of("PCORFLAG")};
+  output.quantity = quantity;
+  output.offset = offset;
+  outputs_.push_back(std::move(output));
+}
+
+void Processing::choose_outputs() {
+  const std::string p = variable_of(Quantity::static_pressure);
+  const std::string q = variable_of(Quantity::dynamic_pressure);
+  const std::string defect = name_of("PCOR");
+  std::vector<std::string> law{p, q};
+  for (const Input& input : inputs_) {
+    if (chain_->needs(input.quantity) && input.variable != p && input.variable != q)
+      law.push_back(input.variable);
+  }
+  std::vector<std::string> corrections{defect};
+  if (options_.correct_with == CorrectWith::lams) corrections.push_back(name_of("PCOR_LAMS"));
+  const auto with_corrections = [&corrections](const std::string& measured) {
+    std::vector<std::string> all{measured};
+    all.insert(all.end(), corrections.begin(), corrections.end());
+    return all;
+  };
+  const bool has_recovery = chain_->recorded(Quantity::recovery_temperature);
+  const std::string thermometer =
+      variable_of(has_recovery ? Quantity::recovery_temperature : Quantity::ambient_temperature);
+  const std::string temperature = has_recovery ? name_of("ATX") : thermometer;
+  const std::string beam = variable_of(Quantity::lams_airspeed);
+
+  add_output("PCOR", Quantity::static_defect, "hPa", "Static defect (delta-p) of the model", "",
+             "Aircraft State", law);
+  if (chain_->has_lams()) {
+    add_output("PCOR_LAMS", Quantity::lams_static_defect, "hPa", "Static defect (delta-p) from LAMS", "",
+               "Aircraft State", {p, q, beam, thermometer});
+  }
+  add_output("PSXC", Quantity::corrected_static_pressure, "hPa", "Corrected Static Pressure", "air_pressure",
+             "Atmos. State", with_corrections(p));
+  add_output("QCXC", Quantity::corrected_dynamic_pressure, "hPa", "Corrected Dynamic Pressure", "",
+             "Aircraft State", with_corrections(q));
+  add_output("MACHX", Quantity::corrected_mach, "1", "Aircraft Mach Number", "", "Aircraft State",
+             {name_of("PSXC"), name_of("QCXC")});
+  if (has_recovery) {
+    add_output("ATX", Quantity::ambient_temperature, "degC", "Ambient Temperature", "air_temperature",
+               "Atmos. State", {thermometer, name_of("MACHX")}, kelvin_to_celsius);
+  }
+  if (chain_->has_temperature()) {
+    add_output("TASX", Quantity::corrected_airspeed, "m/s", "Aircraft True Airspeed",
+               "platform_speed_wrt_air", "Aircraft State", {name_of("MACHX"), temperature});
+  }
+  if (chain_->has_lams()) {
+    add_output("ATLAMS", Quantity::lams_temperature, "degC", "Ambient Temperature from LAMS",
+               "air_temperature", "Atmos. State", {beam, name_of("MACHX")}, kelvin_to_celsius);
+    add_output("QCLAMS", Quantity::lams_dynamic_pressure, "hPa", "Dynamic Pressure from LAMS", "",
+               "Aircraft State", {beam, name_of("PSXC"), temperature});
+  }
+}
+
+FileDescription Processing::describe() const {
+  FileDescription description;
+  description.history = options_.history;
+  const auto first_of = [this](std::initializer_list<std::string> names) {
+    for (const std::string& name : names) {
+      if (!name.empty() && flight_.has(name) && flight_.variable(name).is_series) return name;
+    }
+    return std::string();
+  };
+  description.latitude = first_of(
+      {flight_.attribute("latitude_coordinate"), variable_of(Quantity::latitude), "LATC", "GGLAT", "LAT"});
+  description.longitude = first_of({flight_.attribute("longitude_coordinate"), "LONC", "GGLON", "LON"});
+  description.altitude = first_of({flight_.attribute("zaxis_coordinate"), variable_of(Quantity::altitude),
+                                   "ALTX", "GGALTC", "GGALT", "ALT"});
+  description.attributes = {{"pcor_model", file_.model.name}};
+  return description;
+}
+
+void Processing::copy_inputs(FlightWriter& writer, const FileDescription& description) {
+  const auto copy = [&writer](const std::string& name) {
+    if (!name.empty() && !writer.has(name)) writer.copy(name);
+  };
+  if (options_.copy_all) {
+    for (const std::string& name : flight_.variables()) copy(name);
+    return;
+  }
+  for (const std::string& name : {description.latitude, description.longitude, description.altitude})
+    copy(name);
+  for (const Input& input : inputs_) copy(input.variable);
+}
+
+void Processing::define(FlightWriter& writer) {
+  OutputVariable flags;
+  flags.name = name_of("PCORFLAG");
+  flags.rate = summary_.rate;
+  flags.long_name = "Quality bits of the pressure correction";
+  flags.standard_name = "status_flag";
+  flags.category = "Housekeeping";
+  for (const QualityFacts& facts : quality_facts) {
+    flags.flags.push_back({static_cast<int>(facts.bit), std::string(facts.name)});
+  }
+  for (const Output& output : outputs_) flags.dependencies.push_back(output.variable.name);
+
+  const auto define_one = [this, &writer](const OutputVariable& variable) {
+    if (writer.has(variable.name)) {
+      fail(fmt::format(
+          "it has a variable {} already; give --suffix to name the derived variables apart from the "
+          "input's, e.g. --suffix _NEW",
+          variable.name));
+    }
+    summary_.outputs.push_back(variable.name);
+    return writer.define(variable);
+  };
+  for (Output& output : outputs_) output.number = define_one(output.variable);
+  flag_number_ = define_one(flags);
+}
+
+void Processing::note_sample(std::size_t place) {
+  const State<double>& state = loop_->state();
+  const double defect = state[Quantity::corrected_static_pressure] - state[Quantity::port_static_pressure];
+  if (!is_missing(defect) && !is_missing(state[Quantity::corrected_dynamic_pressure])) {
+    ++summary_.corrected;
+    summary_.mean_defect += defect;  // the sum, until the end
+    summary_.least_defect = std::min(summary_.least_defect, defect);
+    summary_.greatest_defect = std::max(summary_.greatest_defect, defect);
+  }
+  const QualityFlags quality = loop_->quality();
+  if (quality.bits() != 0) {
+    for (std::size_t i = 0; i < quality_facts.size(); ++i) {
+      if (quality.has(quality_facts[i].bit)) ++summary_.flagged[i];
+    }
+  }
+  for (Output& output : outputs_) output.values[place] = state[output.quantity] + output.offset;
+}
+
+void Processing::process_block(RecordBlock block, std::vector<double>& times, std::vector<double>& flags) {
+  const std::size_t samples = block.count * static_cast<std::size_t>(summary_.rate);
+  for (Input& input : inputs_) {
+    input.values.resize(samples);
+    flight_.read_at_rate(summary_.rate, input.variable, block, input.conversion, input.values.data());
+  }
+  for (Output& output : outputs_) output.values.resize(samples);
+  times.resize(samples);
+  flags.resize(samples);
+  flight_.read_sample_times(block, summary_.rate, times.data());
+  for (std::size_t i = 0; i < samples; ++i) {
+    State<double>& state = loop_->state();
+    for (const Input& input : inputs_) state[input.quantity] = input.values[i];
+    loop_->run(times[i] - summary_.first_time);
+    flags[i] = static_cast<double>(loop_->quality().bits());
+    note_sample(i);
+  }
+}
+
+ProcessSummary Processing::run(const std::filesystem::path& output) {
+  summary_.aircraft = flight_.aircraft();
+  summary_.project = flight_.project();
+  summary_.flight = flight_.flight_number();
+  summary_.records = flight_.records();
+  summary_.gaps = flight_.time().gap_count;
+  summary_.first_time = flight_.time().first;
+  summary_.last_time = flight_.time().last;
+  summary_.least_defect = std::numeric_limits<double>::infinity();
+  summary_.greatest_defect = -std::numeric_limits<double>::infinity();
+
+  choose_roles();
+  choose_inputs();
+  choose_rate();
+  choose_outputs();
+  const FileDescription description = describe();
+  FlightWriter writer(output, flight_, description);
+  copy_inputs(writer, description);
+  define(writer);
+
+  std::vector<double> times;
+  std::vector<double> flags;
+  for (const RecordBlock block : blocks_of(flight_.records())) {
+    process_block(block, times, flags);
+    for (const Output& derived : outputs_) writer.write(derived.number, block, derived.values.data());
+    writer.write(flag_number_, block, flags.data());
+    if (options_.progress) options_.progress(block.first + block.count, flight_.records());
+  }
+  writer.finish();
+
+  summary_.samples = summary_.records * static_cast<std::size_t>(summary_.rate);
+  if (summary_.corrected > 0) {
+    summary_.mean_defect /= static_cast<double>(summary_.corrected);
+  } else {
+    summary_.mean_defect = summary_.least_defect = summary_.greatest_defect = missing<double>();
+    summary_.notes.push_back("no sample could be corrected: see the quality bits");
+  }
+  return summary_;
+}
+
+}  // namespace
+
+ProcessSummary process_flight(const std::filesystem::path& input, const ModelFile& model,
+                              const std::filesystem::path& output, const ProcessOptions& options) {
+  return Processing(input, model, options).run(output);
+}
+
+}  // namespace pcor

@@ -1,0 +1,124 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "command.hpp"
+#include "pcor/effects/catalogue.hpp"
+#include "pcor/offline/error.hpp"
+#include "pcor/offline/suggest.hpp"
+
+namespace pcor::tool {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::string id;
+};
+
+const EffectFacts& find(const std::string& id) {
+  const std::size_t place = effect_named(id);
+  if (place < catalogue_size) return effect_facts[place];
+  std::vector<std::string> ids;
+  for (const EffectFacts& facts : effect_facts) ids.emplace_back(facts.id);
+  const std::string hint = did_you_mean(id, ids);
+  throw Error(fmt::format("there is no effect '{}'{}{}; 'pcor effects' lists them all", id,
+                          hint.empty() ? "" : ": ", hint));
+}
+
+std::string names_of_needs(const EffectFacts& facts) {
+  std::string names;
+  for (std::size_t i = 0; i < facts.need_count(); ++i) {
+    if (i > 0) names += ", ";
+    names += facts_of(facts.needs[i]).name;
+  }
+  return names.empty() ? "nothing" : names;
+}
+
+nlohmann::ordered_json as_json(const EffectFacts& facts) {
+  nlohmann::ordered_json effect;
+  effect["id"] = facts.id;
+  effect["title"] = facts.title;
+  effect["where"] = facts_of(facts.where).name;
+  effect["unit"] = facts_of(facts.where).unit;
+  effect["formula"] = facts.formula;
+  effect["parameters"] = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
+    const ParameterFacts& parameter = facts.parameters[i];
+    effect["parameters"].push_back({{"name", parameter.name},
+                                    {"unit", parameter.unit},
+                                    {"neutral", parameter.neutral},
+                                    {"bounds", {parameter.lower, parameter.upper}},
+                                    {"typical", parameter.typical}});
+  }
+  effect["needs"] = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < facts.need_count(); ++i)
+    effect["needs"].push_back(facts_of(facts.needs[i]).name);
+  effect["size"] = facts.size;
+  effect["look_alikes"] = facts.look_alikes;
+  effect["manoeuvre"] = facts.manoeuvre;
+  effect["source"] = facts.source;
+  return effect;
+}
+
+void print_one(const EffectFacts& facts) {
+  const WhereFacts& where = facts_of(facts.where);
+  fmt::print("{}: {}\n\n", facts.id, facts.title);
+  fmt::print("  formula      {}  [{}], added to the {}\n", facts.formula, where.unit, where.adds_to);
+  for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
+    const ParameterFacts& parameter = facts.parameters[i];
+    fmt::print("  parameter    {}  [{}], neutral {}, from {} to {}, typically {}\n", parameter.name,
+               parameter.unit, parameter.neutral, parameter.lower, parameter.upper, parameter.typical);
+  }
+  fmt::print("  needs        {}\n", names_of_needs(facts));
+  fmt::print("  size         {}\n", facts.size);
+  fmt::print("  look-alikes  {}\n", facts.look_alikes);
+  fmt::print("  separated by {}\n", facts.manoeuvre);
+  fmt::print("  source       {}\n", facts.source);
+  fmt::print("  example      ");
+  for (const auto& input : facts.example.inputs) {
+    if (input.quantity == Quantity::count) break;
+    fmt::print("{} = {}, ", facts_of(input.quantity).name, input.value);
+  }
+  for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
+    fmt::print("{} = {}", facts.parameters[i].name, facts.example.parameters[i]);
+  }
+  fmt::print(" gives {} {}\n\nIn a model file:\n\n", facts.example.value, where.unit);
+  fmt::print("  [[effect]]\n  id = \"{}\"\n  parameters = {{ {} = {} }}\n", facts.id,
+             facts.parameters[0].name, facts.parameters[0].typical);
+}
+
+void print_all() {
+  fmt::print("{:<18} {:<15} {:<44} {}\n", "effect", "where", "formula", "what");
+  for (const EffectFacts& facts : effect_facts) {
+    fmt::print("{:<18} {:<15} {:<44} {}\n", facts.id, facts_of(facts.where).name, facts.formula, facts.title);
+  }
+  fmt::print("\nTo read more of one: pcor effects {}\n", effect_facts.front().id);
+}
+
+void run(const Options& options) {
+  if (!options.id.empty()) {
+    const EffectFacts& facts = find(options.id);
+    write_json(as_json(facts), options.common);
+    if (wants_text(options.common)) print_one(facts);
+    return;
+  }
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const EffectFacts& facts : effect_facts) all.push_back(as_json(facts));
+  write_json({{"effects", all}}, options.common);
+  if (wants_text(options.common)) print_all();
+}
+
+}  // namespace
+
+std::function<void()> add_effects(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      program.add_subcommand("effects", "Print the catalogue of effects, or all that is known of one");
+  command->add_option("id", options->id, "an effect")->type_name("ID");
+  add_common_options(*command, options->common);
+  return [options] { run(*options); };
+}
+
+}  // namespace pcor::tool

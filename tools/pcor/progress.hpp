@@ -1,0 +1,30 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+namespace pcor::tool {
+
+/// A progress bar on standard error. It shows on a terminal only, after half a second of work, so that logs
+/// and short runs stay clean.
+class Progress {
+ public:
+  Progress(std::string task, bool wanted);
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  ~Progress();
+
+  /// `done` of `total` parts are done.
+  void show(std::size_t done, std::size_t total);
+
+ private:
+  void erase();
+
+  std::string task_;
+  bool wanted_;
+  bool shown_ = false;
+  std::chrono::steady_clock::time_point last_;
+};
+
+}  // namespace pcor::tool
