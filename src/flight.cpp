@@ -28,7 +28,7 @@ struct Variable {
   bool rate_dimension = false;         // (Time, spsN), also with N = 1
   std::vector<double> missing_values;  // as numbers of the stored type
   UnitConversion unpacking;            // scale_factor and add_offset
-  bool cache_is_set = false;
+  bool cache_is_limited = false;
 };
 
 std::optional<int> rate_of_dimension(const NetcdfFile& file, int dimension) {
@@ -219,24 +219,11 @@ struct Flight::Implementation {
                               block.first, block.first + block.count, records));
   }
 
-  // Keeps HDF5 from holding on to more of each variable than one block needs.
-  void limit_cache(Variable& variable) {
-    if (variable.cache_is_set) return;
-    variable.cache_is_set = true;
-    if (kind != FileKind::netcdf4 && kind != FileKind::netcdf4_classic) return;
-    int storage = NC_CONTIGUOUS;
-    std::size_t chunk[2] = {1, 1};
-    if (nc_inq_var_chunking(file.id(), variable.id, &storage, chunk) != NC_NOERR || storage != NC_CHUNKED)
-      return;
-    constexpr std::size_t least = 1 << 18, slots = 5003;
-    nc_set_var_chunk_cache(file.id(), variable.id, std::max(least, 2 * chunk[0] * chunk[1] * sizeof(double)),
-                           slots, 1);
-  }
-
   void read_stored(Variable& variable, RecordBlock block, double* out) {
     check_block(variable.info.name, block);
     if (block.count == 0) return;
-    limit_cache(variable);
+    if (!variable.cache_is_limited) file.limit_chunk_cache(variable.id);
+    variable.cache_is_limited = true;
     const std::size_t start[] = {block.first, 0};
     const std::size_t count[] = {block.count, static_cast<std::size_t>(variable.info.rate)};
     file.check(nc_get_vara_double(file.id(), variable.id, start, count, out),

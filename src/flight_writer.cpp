@@ -8,20 +8,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <ctime>
 #include <limits>
 #include <map>
 #include <optional>
 
-#include "netcdf_file.hpp"
 #include <pcor/offline/replacement_file.hpp>
+#include "netcdf_file.hpp"
 
 namespace pcor {
 namespace {
 
 constexpr float fill = -32767;
 constexpr const char* iso_8601 = "%Y-%m-%dT%H:%M:%SZ";
-constexpr std::size_t copied_bytes_at_once = classic_buffer_bytes;
+constexpr std::size_t copied_bytes_at_once = std::size_t{4} << 20;
 
 int creation_mode(FileKind kind) {
   switch (kind) {
@@ -321,6 +322,7 @@ struct FlightWriter::Implementation {
     Copied entry;
     entry.from = *source->find_variable(name);
     entry.type = source->type_of(entry.from);
+    source->limit_chunk_cache(entry.from);
     if (entry.type > NC_STRING)
       throw Error(shown.string() + ": " + name +
                   " has a type of its own making, which cannot be copied; leave it out");
@@ -415,39 +417,92 @@ struct FlightWriter::Implementation {
     variable.records += block.count;
   }
 
-  void copy_block(const Copied& variable, RecordBlock block, std::vector<char>& buffer) const {
-    std::vector<std::size_t> start(variable.shape.size(), 0), count = variable.shape;
-    if (variable.over_time) {
+  // Where in a copied variable the records of a block are.
+  struct Slab {
+    std::vector<std::size_t> start, count;
+
+    Slab(const Copied& variable, RecordBlock block) : start(variable.shape.size(), 0), count(variable.shape) {
+      if (!variable.over_time) return;
       start.insert(start.begin(), block.first);
       count.insert(count.begin(), block.count);
     }
-    const std::size_t total = elements(count);
-    if (total == 0) return;
-    buffer.resize(total * element_bytes(variable.type));
-    source->check(nc_get_vara(source->id(), variable.from, start.data(), count.data(), buffer.data()),
+  };
+
+  std::size_t record_bytes(const Copied& variable) const {
+    return elements(variable.shape) * element_bytes(variable.type);
+  }
+
+  void read_copied(const Copied& variable, RecordBlock block, char* buffer) const {
+    const Slab slab(variable, block);
+    source->check(nc_get_vara(source->id(), variable.from, slab.start.data(), slab.count.data(), buffer),
                   "cannot read " + source->variable_name(variable.from));
-    const int status = nc_put_vara(id(), variable.to, start.data(), count.data(), buffer.data());
+  }
+
+  void write_copied(const Copied& variable, RecordBlock block, char* buffer) const {
+    const Slab slab(variable, block);
+    const int status = nc_put_vara(id(), variable.to, slab.start.data(), slab.count.data(), buffer);
     if (variable.type == NC_STRING) {
-      std::vector<char*> strings(total);
-      std::copy_n(buffer.data(), total * sizeof(char*), reinterpret_cast<char*>(strings.data()));
-      nc_free_string(total, strings.data());
+      std::vector<char*> strings(elements(slab.count));
+      std::memcpy(strings.data(), buffer, strings.size() * sizeof(char*));
+      nc_free_string(strings.size(), strings.data());
     }
     check(status);
   }
 
+  // A classic file with an unlimited Time has the records one after the other.
+  bool source_has_records() const {
+    int unlimited = -1;
+    check(nc_inq_unlimdim(source->id(), &unlimited));
+    const bool hdf5 = input->kind() == FileKind::netcdf4 || input->kind() == FileKind::netcdf4_classic;
+    return !hdf5 && unlimited == source_time_dimension;
+  }
+
   void copy_data() {
-    std::size_t record_bytes = 1;
-    for (const Copied& variable : copied)
-      if (variable.over_time) record_bytes += elements(variable.shape) * element_bytes(variable.type);
+    std::vector<const Copied*> series;
     std::vector<char> buffer;
-    for (const Copied& variable : copied)
-      if (!variable.over_time) copy_block(variable, {}, buffer);
-    const std::size_t size =
-        is_hdf5() ? records_per_block
-                  : std::clamp<std::size_t>(copied_bytes_at_once / record_bytes, 1, records_per_block);
-    for (const RecordBlock block : blocks_of(input->records(), size))
-      for (const Copied& variable : copied)
-        if (variable.over_time) copy_block(variable, block, buffer);
+    for (const Copied& variable : copied) {
+      if (record_bytes(variable) == 0) continue;
+      if (variable.over_time) {
+        series.push_back(&variable);
+        continue;
+      }
+      buffer.resize(record_bytes(variable));
+      read_copied(variable, {}, buffer.data());
+      write_copied(variable, {}, buffer.data());
+    }
+    if (source_has_records() || !is_hdf5()) return copy_records(series);
+    for (const Copied* variable : series)
+      for (const RecordBlock block : blocks_of(input->records())) {
+        buffer.resize(block.count * record_bytes(*variable));
+        read_copied(*variable, block, buffer.data());
+        write_copied(*variable, block, buffer.data());
+      }
+  }
+
+  // All variables together, block by block, and within a block by as many records as the library keeps in
+  // memory.
+  void copy_records(const std::vector<const Copied*>& series) {
+    std::size_t bytes = 1;
+    for (const Copied* variable : series) bytes += record_bytes(*variable);
+    const std::size_t at_once = std::clamp<std::size_t>(copied_bytes_at_once / bytes, 1, records_per_block);
+    const std::size_t in_buffer = std::clamp<std::size_t>(classic_buffer_bytes * 3 / 4 / bytes, 1, at_once);
+    std::vector<std::vector<char>> buffers(series.size());
+    for (const RecordBlock block : blocks_of(input->records(), at_once)) {
+      for (std::size_t i = 0; i < series.size(); ++i)
+        buffers[i].resize(block.count * record_bytes(*series[i]));
+      const auto each = [&](bool by_records, auto&& move) {
+        for (const RecordBlock part : blocks_of(block.count, by_records ? in_buffer : block.count))
+          for (std::size_t i = 0; i < series.size(); ++i)
+            move(*series[i], RecordBlock{block.first + part.first, part.count},
+                 buffers[i].data() + part.first * record_bytes(*series[i]));
+      };
+      each(source_has_records(), [this](const Copied& variable, RecordBlock part, char* values) {
+        read_copied(variable, part, values);
+      });
+      each(!is_hdf5(), [this](const Copied& variable, RecordBlock part, char* values) {
+        write_copied(variable, part, values);
+      });
+    }
   }
 
   // The end

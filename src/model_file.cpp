@@ -10,12 +10,15 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 #include <functional>
 #include <initializer_list>
 #include <iterator>
-#include <set>
+#include <limits>
+#include <locale>
 #include <sstream>
 #include <system_error>
 
@@ -27,8 +30,6 @@
 #include <pcor/physics/lams.hpp>
 #include <pcor/physics/recovery_factor.hpp>
 #include <pcor/realtime/formula.hpp>
-
-#include <pcor/offline/replacement_file.hpp>
 
 namespace pcor {
 namespace {
@@ -112,10 +113,10 @@ bool is_date(std::string_view text) {
   const int month = std::stoi(std::string(text.substr(5, 2)));
   const int day = std::stoi(std::string(text.substr(8, 2)));
   if (month < 1 || month > 12) return false;
+  constexpr std::array<int, 12> days{31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
   const bool leap = (year % 4 == 0 && year % 100 != 0) || year % 400 == 0;
-  const int days =
-      month == 2 ? (leap ? 29 : 28) : (month == 4 || month == 6 || month == 9 || month == 11 ? 30 : 31);
-  return day >= 1 && day <= days;
+  const int last = month == 2 && leap ? 29 : days[static_cast<std::size_t>(month - 1)];
+  return day >= 1 && day <= last;
 }
 
 // A key of a table with its value.
@@ -347,7 +348,8 @@ class Reader {
 
   void read_variables(const Entry& section_entry) {
     for (const Entry& entry : entries_of(section(section_entry), "[variables]")) {
-      file_.variables[role(entry)] = variable_name(entry);
+      const Quantity quantity = role(entry);
+      file_.variables[quantity] = variable_name(entry);
     }
   }
 
@@ -917,8 +919,8 @@ class Writer {
   }
 
   static std::string list(const std::vector<std::string>& items) {
-    const std::string line = fmt::format("[{}]", fmt::join(items, ", "));
-    if (line.size() <= longest_list) return line;
+    std::string one_row = fmt::format("[{}]", fmt::join(items, ", "));
+    if (one_row.size() <= longest_list) return one_row;
     return fmt::format("[\n  {},\n]", fmt::join(items, ",\n  "));
   }
 
@@ -984,6 +986,7 @@ class Writer {
     if (std::all_of(coefficients.begin() + 1, coefficients.end(), is_zero))
       return number(coefficients[0], what);
     std::vector<std::string> numbers;
+    numbers.reserve(coefficients.size());
     for (const double coefficient : coefficients) numbers.push_back(number(coefficient, what));
     return list(numbers);
   }
@@ -1080,11 +1083,13 @@ class Writer {
     if (covariance.parameters.empty() && covariance.matrix.empty()) return;
     heading("[covariance]");
     std::vector<std::string> names;
+    names.reserve(covariance.parameters.size());
     for (const std::string& name : covariance.parameters) names.push_back(text(name));
     line("parameters", list(names));
     std::string rows;
     for (const std::vector<double>& row : covariance.matrix) {
       std::vector<std::string> numbers;
+      numbers.reserve(row.size());
       for (const double value : row) numbers.push_back(number(value, "the covariance"));
       rows += fmt::format("  [{}],\n", fmt::join(numbers, ", "));
     }

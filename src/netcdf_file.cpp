@@ -4,6 +4,7 @@
 #include <netcdf.h>
 #include <pcor/offline/error.hpp>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -97,6 +98,18 @@ void NetcdfFile::check(int status, const std::string& doing) const {
 }
 
 void NetcdfFile::close() { check(nc_close(std::exchange(id_, closed)), "cannot be closed"); }
+
+void NetcdfFile::limit_chunk_cache(int variable) const {
+  int storage = NC_CONTIGUOUS;
+  std::vector<std::size_t> chunk(dimensions_of(variable).size());
+  if (chunk.empty() || nc_inq_var_chunking(id_, variable, &storage, chunk.data()) != NC_NOERR) return;
+  if (storage != NC_CHUNKED) return;
+  std::size_t bytes = 0;
+  check(nc_inq_type(id_, type_of(variable), nullptr, &bytes), "cannot read a variable's type");
+  for (const std::size_t length : chunk) bytes *= length;
+  constexpr std::size_t least = 1 << 18, slots = 5003;
+  nc_set_var_chunk_cache(id_, variable, std::max(least, 2 * bytes), slots, 1);
+}
 
 std::optional<int> NetcdfFile::find_variable(const std::string& name) const {
   int variable = 0;

@@ -30,6 +30,10 @@ class NetcdfFile {
   /// Closes for good; errors that the library kept until now are thrown.
   void close();
 
+  /// Keeps HDF5 from holding more of a variable in memory than a block of records needs; to be called before
+  /// its first value is read.
+  void limit_chunk_cache(int variable) const;
+
   std::optional<int> find_variable(const std::string& name) const;
   std::string variable_name(int variable) const;
   std::vector<int> dimensions_of(int variable) const;
@@ -56,8 +60,10 @@ class NetcdfFile {
 /// What a netCDF status means in words.
 std::string netcdf_reason(int status);
 
-/// How much of a classic file the library keeps in memory, bytes. Records lie one after the other with all
-/// their variables, so variable after variable is quick only while a block of records stays in memory.
-constexpr std::size_t classic_buffer_bytes = std::size_t{4} << 20;
+/// How much of a classic file the library keeps in memory, bytes. Its records lie one after the other, each
+/// with all the variables, and the library moves whole buffers: a large one is slow where few bytes of each
+/// record are wanted, and a walk through a block of records, variable after variable, is slow where the block
+/// is larger.
+constexpr std::size_t classic_buffer_bytes = std::size_t{32} << 10;
 
 }  // namespace pcor

@@ -40,9 +40,9 @@ S static_defect_from_pressure_ratio(const S& static_pressure, const S& dynamic_p
 /// What LAMS says of a sample.
 template <class S>
 struct LamsSolution {
-  S static_defect;  ///< delta-p, hPa
-  S temperature;    ///< ambient temperature that goes with it, K
-  S mach;           ///< Mach number, 1
+  S static_defect = missing<S>();  ///< delta-p, hPa
+  S temperature = missing<S>();    ///< ambient temperature that goes with it, K
+  S mach = missing<S>();           ///< Mach number, 1
 };
 
 /// Approach 1 of the memo: airspeed, delta-p and temperature at once.

@@ -44,6 +44,9 @@ class Chain {
   /// `extra_quantity(i)` of a state.
   const std::vector<std::string>& extra_names() const { return extra_names_; }
 
+  /// The recorded quantities, those of formulas included.
+  const std::vector<Quantity>& inputs() const { return inputs_; }
+
   /// True where the quantity is recorded.
   bool recorded(Quantity quantity) const { return recorded_[index(quantity)]; }
 
@@ -59,14 +62,22 @@ class Chain {
   bool has_temperature() const {
     return recorded(Quantity::recovery_temperature) || recorded(Quantity::ambient_temperature);
   }
+
+  /// True where the ambient temperature is found from the recovery temperature; a recorded one stays as it
+  /// is.
+  bool derives_temperature() const {
+    return recorded(Quantity::recovery_temperature) && !recorded(Quantity::ambient_temperature);
+  }
   bool has_lams() const { return recorded(Quantity::lams_airspeed); }
   bool needs_rates() const {
     return needs(Quantity::static_pressure_rate) || needs(Quantity::dynamic_pressure_rate);
   }
 
-  /// The quantities that `measure` puts into a state.
+  /// The quantities in which the laws stand, and the pressures at the ports. A recorded value that is
+  /// infinite is missing from here on.
   template <class S, class P, class Flags>
   void measure(State<S>& state, const P* parameters, Flags& flags) const {
+    for (const Quantity input : inputs_) state[input] = finite_or_missing(state[input]);
     const S p = state[Quantity::static_pressure];
     const S q = state[Quantity::dynamic_pressure];
     flags.set(is_missing(p), Quality::static_pressure_missing);
@@ -91,6 +102,9 @@ class Chain {
     state[Quantity::port_dynamic_pressure] = q + sum<S>(Where::dynamic_transducer, state, parameters) - line +
                                              sum<S>(Where::total_line, state, parameters) +
                                              sum<S>(Where::pitot, state, parameters);
+    flags.set(!is_missing(p + q) &&
+                  is_missing(state[Quantity::port_static_pressure] + state[Quantity::port_dynamic_pressure]),
+              Quality::effect_input_missing);
   }
 
   /// Delta-p of the model, hPa: the sum of the effects at the static ports, under the policy. NaN where a
@@ -117,7 +131,7 @@ class Chain {
       const auto slow = q < S(policy_.taper_below);
       flags.set(slow, Quality::tapered);
       if (any(slow)) defect = select(slow, taper(defect, q), defect);
-      return select(p > S(0.0), defect, missing<R>());
+      return select(p > S(0.0) && !is_missing(q), defect, missing<R>());
     }
     return select(flowing, defect, missing<R>());
   }
@@ -142,13 +156,17 @@ class Chain {
     const S delta = sum<S>(Where::recovery, state, parameters);
     const S thermometer = recovery_temperature_of(state, parameters);
     if (has_temperature()) {
-      const bool from_recovery = recorded(Quantity::recovery_temperature);
-      flags.set(is_missing(from_recovery ? thermometer : state[Quantity::ambient_temperature]),
-                Quality::temperature_missing);
+      S& ambient = state[Quantity::ambient_temperature];
+      ambient = above_zero(ambient);
+      flags.set(is_missing(derives_temperature() ? thermometer : ambient), Quality::temperature_missing);
+      flags.set(is_missing(delta), Quality::effect_input_missing);
     }
+    flags.set(p <= S(0.0), Quality::impossible_static_pressure);
     S humidity = recorded_humidity(state, parameters, p, flags);
     MoistAir<S> constants = solve_air(state, humidity, thermometer, delta);
-    if (moist_) {
+    // Most air is far from saturation; only where it may not be is saturation itself computed.
+    if (moist_ &&
+        any(humidity * p > vapor_pressure_below_saturation(state[Quantity::ambient_temperature]))) {
       const S saturation = vapor_pressure_over_water(state[Quantity::ambient_temperature]) / p;
       const auto above = humidity > saturation;
       flags.set(above, Quality::humidity_limited);
@@ -185,8 +203,8 @@ class Chain {
         solution = lams_with_temperature(p, q, v, state[Quantity::ambient_temperature], e);
         break;
     }
-    const auto valid = p > S(0.0) && q > S(0.0) && v > S(0.0);
-    const S defect = select(valid, solution.static_defect, missing<S>());
+    const auto valid = p > S(0.0) && q > S(0.0) && v > S(0.0) && p + solution.static_defect > S(0.0);
+    const S defect = select(valid, finite_or_missing(solution.static_defect), missing<S>());
     flags.set(is_missing(defect), Quality::lams_missing);
     return defect;
   }
@@ -250,7 +268,7 @@ class Chain {
     for (std::size_t i = begin_of(where); i < begin_of(where, 1); ++i) {
       total = total + value(terms_[i], state, parameters + terms_[i].first_parameter);
     }
-    return total;
+    return finite_or_missing(total);
   }
 
   template <class S, class P>
@@ -297,7 +315,13 @@ class Chain {
 
   template <class S, class P>
   S recovery_temperature_of(const State<S>& state, const P* parameters) const {
-    return state[Quantity::recovery_temperature] + sum<S>(Where::temperature, state, parameters);
+    return above_zero(state[Quantity::recovery_temperature] + sum<S>(Where::temperature, state, parameters));
+  }
+
+  // No temperature is zero kelvin or below.
+  template <class S>
+  static S above_zero(const S& temperature) {
+    return select(temperature > S(0.0), temperature, missing<S>());
   }
 
   // e/p at static pressure p, zero or above; zero where dry constants are asked for or nothing is recorded.
@@ -321,7 +345,7 @@ class Chain {
     const S mach = mach_number(state[Quantity::corrected_static_pressure],
                                state[Quantity::corrected_dynamic_pressure], constants);
     state[Quantity::corrected_mach] = mach;
-    if (recorded(Quantity::recovery_temperature)) {
+    if (derives_temperature()) {
       state[Quantity::ambient_temperature] =
           ambient_temperature(thermometer, mach, recovery_(mach) + delta, constants);
     }
@@ -334,6 +358,7 @@ class Chain {
   std::vector<double> parameters_;
   std::vector<std::string> extra_names_;
   std::vector<Range> domain_;
+  std::vector<Quantity> inputs_;
   std::bitset<state_capacity> recorded_;
   std::bitset<state_capacity> needed_;
   LamsMounting lams_;
@@ -370,6 +395,9 @@ class Chain::Builder {
     }
     if (chain_.has_lams() && !require_lams()) return false;
     sort_terms();
+    for (std::size_t i = 0; i < state_capacity; ++i) {
+      if (chain_.recorded_[i]) chain_.inputs_.push_back(static_cast<Quantity>(i));
+    }
     return true;
   }
 
@@ -416,8 +444,7 @@ class Chain::Builder {
     BoundFormula bound{std::move(*formula), {}};
     for (const std::string& name : bound.formula.variables()) {
       Quantity quantity = quantity_named(name);
-      if (quantity == Quantity::count) quantity = extra(name);
-      if (quantity == Quantity::count) {
+      if (quantity == Quantity::count && !find_extra(name, quantity)) {
         return fail("the formulas of the model use more than " + std::to_string(extra_capacity) +
                     " further variables");
       }
@@ -438,17 +465,18 @@ class Chain::Builder {
     chain_.terms_.push_back(term);
   }
 
-  // The place of a further variable; a new one where the name is new and there is room.
-  Quantity extra(const std::string& name) {
+  // Finds the place of a further variable; a new one where the name is new. False where there is no room.
+  bool find_extra(const std::string& name, Quantity& place) {
     std::vector<std::string>& names = chain_.extra_names_;
     const auto found = std::find(names.begin(), names.end(), name);
     const auto number = static_cast<std::size_t>(found - names.begin());
+    if (number == extra_capacity) return false;
+    place = extra_quantity(number);
     if (found == names.end()) {
-      if (number == extra_capacity) return Quantity::count;
       names.push_back(name);
-      chain_.recorded_.set(quantity_count + number);
+      chain_.recorded_.set(index(place));
     }
-    return extra_quantity(number);
+    return true;
   }
 
   bool add_range(const DomainRange& range) {

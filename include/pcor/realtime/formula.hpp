@@ -71,7 +71,7 @@ class Formula {
   ///
   /// `variables` and `parameters` hold one value for each name in variables() and in parameters(), in that
   /// order; either may be null when it has no names. Allocates nothing and throws nothing. Both branches of
-  /// an if are evaluated, so the time it takes does not depend on the sample.
+  /// an if are evaluated, so every sample costs the same operations.
   template <class X, class P>
   auto value(const X* variables, const P* parameters) const noexcept {
     using S = Promoted<X, P>;
@@ -164,8 +164,8 @@ class Formula {
     return result;
   }
 
-  /// One of two values by how a and b compare; neither `holds` nor `fails` means that a or b is NaN, as is a
-  /// + b.
+  /// One of two values by how a and b compare. Where the comparison neither holds nor fails one of them is
+  /// NaN, and so is their sum.
   template <class S, class Condition>
   static S choose(const Condition& holds, const Condition& fails, const S& a, const S& b, const S& yes,
                   const S& no) noexcept {
@@ -314,6 +314,7 @@ class Formula::Parser {
     if (!sum()) return false;
     if (peek() == ')') return fail(at_, "the ')' at " + column(at_) + " closes nothing");
     if (at_ != text_.size()) return unexpected("an operator");
+    if (!operands_.back().has_parameters) set_apart_variables(1);
     for (std::size_t i = 0; i < used_.size(); ++i) {
       if (!used_[i]) formula_.unused_parameters_.push_back(formula_.parameters_[i]);
     }

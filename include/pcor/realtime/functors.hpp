@@ -34,7 +34,10 @@ class MeasuredQuantities final : public Functor {
   }
 
   static std::vector<Quantity> inputs_of(const Chain& chain) {
-    std::vector<Quantity> inputs{Quantity::static_pressure, Quantity::dynamic_pressure};
+    std::vector<Quantity> inputs;
+    for (const Quantity input : chain.inputs()) {
+      if (chain.needs(input)) inputs.push_back(input);
+    }
     for (const Quantity rate : {Quantity::static_pressure_rate, Quantity::dynamic_pressure_rate}) {
       if (chain.derives(rate)) inputs.push_back(rate);
     }
@@ -58,11 +61,20 @@ class StaticDefect final : public Functor {
   std::shared_ptr<const Chain> chain_;
 };
 
+/// `inputs` and what is recorded of temperature and humidity.
+inline std::vector<Quantity> with_air_inputs(const Chain& chain, std::vector<Quantity> inputs) {
+  for (const Quantity input : {Quantity::recovery_temperature, Quantity::ambient_temperature,
+                               Quantity::vapor_pressure, Quantity::dew_point}) {
+    if (chain.recorded(input)) inputs.push_back(input);
+  }
+  return inputs;
+}
+
 /// Delta-p from LAMS, hPa: `Chain::lams_static_defect`.
 class LamsStaticDefect final : public Functor {
  public:
   explicit LamsStaticDefect(std::shared_ptr<const Chain> chain)
-      : Functor({Quantity::port_static_pressure, Quantity::attack, Quantity::lams_airspeed},
+      : Functor(with_air_inputs(*chain, {Quantity::port_static_pressure, Quantity::lams_airspeed}),
                 {Quantity::lams_static_defect}),
         chain_(std::move(chain)) {}
 
@@ -113,8 +125,7 @@ class CorrectedPressures final : public Functor {
 class AirState final : public Functor {
  public:
   explicit AirState(std::shared_ptr<const Chain> chain)
-      : Functor({Quantity::corrected_static_pressure, Quantity::corrected_dynamic_pressure},
-                outputs_of(*chain)),
+      : Functor(with_air_inputs(*chain, {Quantity::corrected_static_pressure}), outputs_of(*chain)),
         chain_(std::move(chain)) {}
 
   void compute(State<double>& state, QualityFlags& flags) noexcept override {
@@ -124,7 +135,7 @@ class AirState final : public Functor {
  private:
   static std::vector<Quantity> outputs_of(const Chain& chain) {
     std::vector<Quantity> outputs{Quantity::humidity, Quantity::corrected_mach, Quantity::corrected_airspeed};
-    if (chain.recorded(Quantity::recovery_temperature)) outputs.push_back(Quantity::ambient_temperature);
+    if (chain.derives_temperature()) outputs.push_back(Quantity::ambient_temperature);
     return outputs;
   }
 
@@ -135,8 +146,7 @@ class AirState final : public Functor {
 class LamsAir final : public Functor {
  public:
   explicit LamsAir(std::shared_ptr<const Chain> chain)
-      : Functor({Quantity::corrected_mach, Quantity::humidity, Quantity::corrected_static_pressure,
-                 Quantity::ambient_temperature, Quantity::attack, Quantity::lams_airspeed},
+      : Functor({Quantity::corrected_mach, Quantity::lams_airspeed},
                 {Quantity::lams_temperature, Quantity::lams_dynamic_pressure}),
         chain_(std::move(chain)) {}
 

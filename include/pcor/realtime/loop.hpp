@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -32,19 +35,23 @@ class Loop {
   static std::optional<Loop> build(const Model& model, const std::vector<Quantity>& recorded, double rate,
                                    std::string* error, CorrectWith with = CorrectWith::model);
 
-  /// Makes room for a variable that the library does not know, for functors of the user's own. Returns
-  /// `Quantity::count` where the room is used up.
-  Quantity add_variable(std::string name) {
-    if (extra_names_.size() == extra_capacity) return Quantity::count;
-    extra_names_.push_back(std::move(name));
-    return extra_quantity(extra_names_.size() - 1);
+  /// The place of the variable `name` for functors of the user's own: the one it has already, as a quantity
+  /// of the library or in a formula, else a new one. Nothing where the room is used up.
+  std::optional<Quantity> add_variable(const std::string& name) {
+    const Quantity quantity = quantity_named(name);
+    if (quantity != Quantity::count) return quantity;
+    const auto found = std::find(extra_names_.begin(), extra_names_.end(), name);
+    const auto number = static_cast<std::size_t>(found - extra_names_.begin());
+    if (number == extra_capacity) return std::nullopt;
+    if (found == extra_names_.end()) extra_names_.push_back(name);
+    return extra_quantity(number);
   }
 
-  /// Adds a functor. The order of adding does not matter.
+  /// Adds a functor. The order of adding does not matter; call `order` after the last.
   void add(std::unique_ptr<Functor> functor) { functors_.push_back(std::move(functor)); }
 
-  /// Puts the functors in order. Returns false where two write one quantity, or where they wait for each
-  /// other; `error` says which.
+  /// Puts the functors in order. Returns false, and changes nothing, where two write one quantity or where
+  /// they wait for each other; `error` says which.
   bool order(std::string* error);
 
   /// The values of this sample: set what is recorded, run, read what is derived.
@@ -91,47 +98,54 @@ class Loop {
 };
 
 inline bool Loop::order(std::string* error) {
-  const auto contains = [](const std::vector<Quantity>& list, Quantity quantity) {
-    return std::find(list.begin(), list.end(), quantity) != list.end();
-  };
-  std::vector<std::size_t> writer(state_capacity, functors_.size());
-  for (std::size_t f = 0; f < functors_.size(); ++f) {
-    for (const Quantity output : functors_[f]->outputs()) {
-      if (writer[index(output)] != functors_.size()) {
-        if (error != nullptr) *error = "two functors write '" + name_of(output) + "'";
-        return false;
-      }
-      writer[index(output)] = f;
-    }
-  }
-  std::vector<std::unique_ptr<Functor>> ordered;
-  std::vector<bool> written(state_capacity, true);
-  for (std::size_t q = 0; q < state_capacity; ++q) written[q] = writer[q] == functors_.size();
-  while (ordered.size() < writer.size()) {
-    bool advanced = false;
-    for (auto& functor : functors_) {
-      if (functor == nullptr) continue;
-      const bool ready = std::all_of(functor->inputs().begin(), functor->inputs().end(), [&](Quantity input) {
-        return written[index(input)] || contains(functor->outputs(), input);
-      });
-      if (!ready) continue;
-      for (const Quantity output : functor->outputs()) written[index(output)] = true;
-      ordered.push_back(std::move(functor));
-      advanced = true;
-    }
-    if (!advanced) break;
-  }
-  for (const auto& functor : functors_) {
-    if (functor == nullptr) continue;
-    for (const Quantity input : functor->inputs()) {
-      if (!written[index(input)] && error != nullptr) {
-        *error = "functors wait for each other: '" + name_of(input) + "' is needed for '" +
-                 name_of(functor->outputs().front()) + "' and the other way round";
-      }
-    }
+  const auto fail = [error](std::string why) {
+    if (error != nullptr) *error = std::move(why);
     return false;
+  };
+  // The functor that is still to write each quantity, if any.
+  std::array<const Functor*, state_capacity> writer{};
+  for (const auto& functor : functors_) {
+    for (const Quantity output : functor->outputs()) {
+      if (writer[index(output)] != nullptr) return fail("two functors write '" + name_of(output) + "'");
+      writer[index(output)] = functor.get();
+    }
   }
-  functors_ = std::move(ordered);
+  const auto awaited = [&writer](const Functor& functor) -> const Quantity* {
+    for (const Quantity& input : functor.inputs()) {
+      const Functor* const other = writer[index(input)];
+      if (other != nullptr && other != &functor) return &input;
+    }
+    return nullptr;
+  };
+  // Follows what is awaited until it is surely in a circle, then goes round once.
+  const auto cycle_from = [&](std::size_t start) {
+    const auto next = [&](const Quantity* quantity) { return awaited(*writer[index(*quantity)]); };
+    const Quantity* quantity = awaited(*functors_[start]);
+    for (std::size_t i = 0; i < functors_.size(); ++i) quantity = next(quantity);
+    const Quantity first = *quantity;
+    std::string circle = "'" + name_of(first) + "'";
+    do {
+      quantity = next(quantity);
+      circle += " needs '" + name_of(*quantity) + "'";
+      if (*quantity != first) circle += ", which";
+    } while (*quantity != first);
+    return circle;
+  };
+  std::vector<std::size_t> waiting(functors_.size());
+  std::iota(waiting.begin(), waiting.end(), std::size_t{0});
+  std::vector<std::size_t> ordered;
+  while (!waiting.empty()) {
+    const auto ready = std::find_if(waiting.begin(), waiting.end(), [&](std::size_t number) {
+      return awaited(*functors_[number]) == nullptr;
+    });
+    if (ready == waiting.end()) return fail("functors wait for each other: " + cycle_from(waiting.front()));
+    for (const Quantity output : functors_[*ready]->outputs()) writer[index(output)] = nullptr;
+    ordered.push_back(*ready);
+    waiting.erase(ready);
+  }
+  std::vector<std::unique_ptr<Functor>> functors;
+  for (const std::size_t number : ordered) functors.push_back(std::move(functors_[number]));
+  functors_ = std::move(functors);
   return true;
 }
 

@@ -6,8 +6,9 @@ namespace pcor {
 
 /// Rate of change of a quantity from this sample and the one before it, per second.
 ///
-/// Real time knows no later sample, so the rate is that of half a step ago. NaN, with the bit `after_gap`,
-/// on the first sample after a start or a gap; NaN where either value is missing.
+/// Real time knows no later sample, so the rate is that of half a step ago. NaN where this value is missing
+/// or infinite; NaN with the bit `after_gap` where there is none before it: at a start, after a gap, and
+/// after a value that was missing or infinite.
 class RateOfChange final : public Functor {
  public:
   RateOfChange(Quantity quantity, Quantity rate)
@@ -17,12 +18,12 @@ class RateOfChange final : public Functor {
 
   void compute(State<double>& state, QualityFlags& flags) noexcept override {
     const double time = state[Quantity::time];
-    const double value = state[quantity_];
+    const double value = finite_or_missing(state[quantity_]);
     flags.set(!started_, Quality::after_gap);
     state[rate_] = started_ ? (value - previous_value_) / (time - previous_time_) : missing<double>();
     previous_time_ = time;
     previous_value_ = value;
-    started_ = true;
+    started_ = !is_missing(value);
   }
 
  private:

@@ -1,0 +1,205 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pcor/physics/constants.hpp"
+#include "pcor/realtime/loop.hpp"
+
+namespace pcor {
+
+/// One pressure system in a host like NCAR nimbus: a table of derived variables, each with one output and a
+/// callback `void compute(Entry*)` that has no context pointer and runs at a low and at a high rate.
+///
+/// One entry is the leader, say PCOR. Its dependency line lists all inputs, in the order that `install` was
+/// told; its callback `compute` runs the loop of the current rate and puts delta-p (hPa). Every other entry
+/// (PSXC, QCXC, MACHX, ATX, TASX, PCORFLAG ...) lists the leader in its dependency line, so that the host
+/// runs it later; its callback `fetch` puts one more result of that same run.
+///
+///     using Fuselage = pcor::NimbusSystem<Host, struct FuselageTag>;
+///     pcor::read_defaults(model, "PCOR", find);                        // optional overrides, by name
+///     Fuselage::install(model, {"static_pressure", "dynamic_pressure", "recovery_temperature"}, 1, 25,
+///     &error);
+///     {"PCOR", {"PSFD", "QCF", "RTF1"}, Fuselage::compute},
+///     {"PSXC", {"PCOR"}, Fuselage::fetch<Quantity::corrected_static_pressure>},
+///     {"ATX",  {"PCOR"}, Fuselage::fetch<Quantity::ambient_temperature>},
+///     {"PCORFLAG", {"PCOR"}, Fuselage::fetch_quality},
+///
+/// `Host` is written by the aircraft program:
+///
+///     struct Host {
+///       using Entry = DERTBL;
+///       static double get(Entry*, std::size_t input);   // this sample's input; NaN where it is missing
+///       static void put(Entry*, double);                // this sample's output
+///       static bool high_rate();                        // which of the two rates is being computed
+///       static double time();                           // of this sample, s; it grows, midnight or not
+///     };
+///
+/// Units are those of the library but for temperatures: whatever it has in K travels in degC, both ways.
+/// Variables of formulas travel as they are.
+///
+/// `System` names the pressure system, and nothing more: it need not be defined. As the callbacks have no
+/// context, each system keeps its two loops in static members of this template, apart from every other
+/// system; low and high rate share no state, and each forgets earlier samples at gaps in its own time. A host
+/// calls the callbacks from one thread. They allocate nothing and throw nothing.
+template <class Host, class System>
+class NimbusSystem {
+ public:
+  using Entry = typename Host::Entry;
+
+  /// Sets `model` up for both rates (samples in a second), in place of what was installed before. `inputs`
+  /// are the names of roles, or of variables in the model's formulas, in the order of the leader's dependency
+  /// line. Returns false, and changes nothing, where the model cannot be used; `error` says why.
+  static bool install(const Model& model, const std::vector<std::string>& inputs, double low_rate,
+                      double high_rate, std::string* error, CorrectWith with = CorrectWith::model) {
+    const auto fail = [error](std::string why) {
+      if (error != nullptr) *error = std::move(why);
+      return false;
+    };
+    std::vector<Quantity> roles;
+    for (const std::string& name : inputs) {
+      if (std::count(inputs.begin(), inputs.end(), name) > 1) return fail("two inputs are '" + name + "'");
+      const Quantity quantity = quantity_named(name);
+      if (quantity != Quantity::count && is_role(quantity)) roles.push_back(quantity);
+    }
+    std::optional<Loop> low = Loop::build(model, roles, low_rate, error, with);
+    std::optional<Loop> high = Loop::build(model, roles, high_rate, error, with);
+    if (!low || !high) return false;
+    const std::vector<std::string>& extras = low->extra_names();
+    for (const std::string& extra : extras) {
+      if (std::count(inputs.begin(), inputs.end(), extra) == 0) {
+        return fail("a formula of the model needs the input '" + extra + "'");
+      }
+    }
+    std::vector<Input> places;
+    for (const std::string& name : inputs) {
+      Quantity quantity = quantity_named(name);
+      if (quantity == Quantity::count) {
+        const auto extra = std::find(extras.begin(), extras.end(), name);
+        if (extra == extras.end()) {
+          return fail("the input '" + name + "' is neither a role nor a variable of the model's formulas");
+        }
+        quantity = extra_quantity(static_cast<std::size_t>(extra - extras.begin()));
+      } else if (!is_role(quantity)) {
+        return fail("the input '" + name + "' is derived, not recorded");
+      }
+      places.push_back({quantity, zero_of(quantity)});
+    }
+    inputs_ = std::move(places);
+    low_ = std::move(low);
+    high_ = std::move(high);
+    return true;
+  }
+
+  /// The callback of the leader: runs the sample and puts delta-p of the model, hPa. NaN where nothing is
+  /// installed.
+  static void compute(Entry* entry) {
+    std::optional<Loop>& loop = current();
+    if (loop) {
+      for (std::size_t i = 0; i < inputs_.size(); ++i) {
+        loop->state()[inputs_[i].quantity] = Host::get(entry, i) + inputs_[i].zero;
+      }
+      loop->run(Host::time());
+    }
+    fetch<Quantity::static_defect>(entry);
+  }
+
+  /// The callback of an entry that is another result of the leader's run. NaN where the leader has not run
+  /// for this very sample, so that no value of an earlier one is passed off as this one's.
+  template <Quantity quantity>
+  static void fetch(Entry* entry) {
+    Host::put(entry, is_fresh() ? current()->state()[quantity] - zero_of(quantity) : missing<double>());
+  }
+
+  /// The callback of an entry that is the quality bits of the leader's run, as a number. NaN as of `fetch`.
+  static void fetch_quality(Entry* entry) {
+    Host::put(entry, is_fresh() ? static_cast<double>(current()->quality().bits()) : missing<double>());
+  }
+
+  /// Forgets all earlier samples of both rates, as at the start of a flight.
+  static void reset() {
+    for (std::optional<Loop>* loop : {&low_, &high_}) {
+      if (*loop) (*loop)->reset();
+    }
+  }
+
+ private:
+  struct Input {
+    Quantity quantity;
+    double zero;
+  };
+
+  // What the library calls the zero of the host's unit.
+  static constexpr double zero_of(Quantity quantity) {
+    return index(quantity) < quantity_count && facts_of(quantity).unit == "K" ? constants::ice_point : 0.0;
+  }
+
+  static std::optional<Loop>& current() { return Host::high_rate() ? high_ : low_; }
+
+  static bool is_fresh() {
+    const std::optional<Loop>& loop = current();
+    return loop && loop->state()[Quantity::time] == Host::time();
+  }
+
+  static inline std::vector<Input> inputs_;
+  static inline std::optional<Loop> low_;
+  static inline std::optional<Loop> high_;
+};
+
+/// The name in a defaults file of the coefficient number `number` of `effect`: `PCOR.static-alpha.a1`, where
+/// `prefix` is PCOR. The prefix keeps the systems of one aircraft apart.
+inline std::string default_key(const std::string& prefix, const ModelEffect& effect, std::size_t number) {
+  std::string name = std::to_string(number);
+  if (number < effect.parameter_names.size()) {
+    name = effect.parameter_names[number];
+  } else if (const std::size_t place = effect_named(effect.id);
+             place != catalogue_size && number < effect_facts[place].parameter_count()) {
+    name = effect_facts[place].parameters[number].name;
+  }
+  return prefix + "." + effect.id + "." + name;
+}
+
+/// The names of all coefficients of `model` in a defaults file.
+inline std::vector<std::string> default_keys(const Model& model, const std::string& prefix) {
+  std::vector<std::string> keys;
+  for (const ModelEffect& effect : model.effects) {
+    for (std::size_t i = 0; i < effect.parameters.size(); ++i) keys.push_back(default_key(prefix, effect, i));
+  }
+  return keys;
+}
+
+/// Replaces the coefficients of `model` that a defaults file names, and returns how many. `find(key)`, with a
+/// `const char*`, gives a pointer to the value (`const float*` or `const double*`), or null where the file
+/// does not have it. A `float` holds seven digits.
+template <class Find>
+std::size_t read_defaults(Model& model, const std::string& prefix, Find find) {
+  std::size_t replaced = 0;
+  for (ModelEffect& effect : model.effects) {
+    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+      const auto* const value = find(default_key(prefix, effect, i).c_str());
+      if (value == nullptr) continue;
+      effect.parameters[i] = static_cast<double>(*value);
+      ++replaced;
+    }
+  }
+  return replaced;
+}
+
+/// Those of the names `keys` of a defaults file that begin with `prefix` and a point and are no coefficient
+/// of `model`: overrides that nothing reads. A host reports them.
+inline std::vector<std::string> unread_defaults(const Model& model, const std::string& prefix,
+                                                const std::vector<std::string>& keys) {
+  const std::vector<std::string> known = default_keys(model, prefix);
+  std::vector<std::string> unread;
+  for (const std::string& key : keys) {
+    const bool is_ours = key.rfind(prefix + ".", 0) == 0;
+    if (is_ours && std::find(known.begin(), known.end(), key) == known.end()) unread.push_back(key);
+  }
+  return unread;
+}
+
+}  // namespace pcor

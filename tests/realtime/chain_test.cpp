@@ -1,0 +1,736 @@
+#include <gmock/gmock.h>
+#include <pcor/realtime/chain.hpp>
+#include <support/archetype.hpp>
+#include <support/atmosphere.hpp>
+
+#include <cmath>
+#include <map>
+#include <string>
+#include <thread>
+#include <vector>
+
+using pcor::Chain;
+using pcor::LamsApproach;
+using pcor::Model;
+using pcor::ModelEffect;
+using pcor::moist_air;
+using pcor::Quality;
+using pcor::QualityFlags;
+using pcor::Quantity;
+using pcor::State;
+using pcor::Where;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+namespace {
+
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+
+using Recorded = std::map<Quantity, double>;
+
+std::vector<Quantity> roles(const Recorded& recorded) {
+  std::vector<Quantity> result;
+  for (const auto& [quantity, value] : recorded) result.push_back(quantity);
+  return result;
+}
+
+Chain build(const Model& model, const Recorded& recorded) {
+  std::string error;
+  auto chain = Chain::build(model, roles(recorded), &error);
+  if (!chain) throw std::runtime_error(error);
+  return *chain;
+}
+
+std::string error_of(const Model& model, const Recorded& recorded) {
+  std::string error;
+  return Chain::build(model, roles(recorded), &error) ? "no error" : error;
+}
+
+struct Sample {
+  State<double> state;
+  QualityFlags flags;
+
+  double operator[](Quantity quantity) const { return state[quantity]; }
+  bool has(Quality bit) const { return flags.has(bit); }
+};
+
+// One sample through all stages.
+Sample fly(const Chain& chain, const Recorded& recorded) {
+  Sample sample;
+  auto& [state, flags] = sample;
+  for (const auto& [quantity, value] : recorded) state[quantity] = value;
+  const double* parameters = chain.parameters().data();
+  chain.measure(state, parameters, flags);
+  state[Quantity::static_defect] = chain.static_defect(state, parameters, flags);
+  if (chain.has_lams())
+    state[Quantity::lams_static_defect] = chain.lams_static_defect(state, parameters, flags);
+  chain.correct(state, state[Quantity::static_defect], flags);
+  chain.air(state, parameters, flags);
+  if (chain.has_lams()) chain.lams_air(state, parameters);
+  return sample;
+}
+
+Sample fly(const Model& model, const Recorded& recorded) { return fly(build(model, recorded), recorded); }
+
+Recorded with(Recorded recorded, Quantity quantity, double value) {
+  recorded[quantity] = value;
+  return recorded;
+}
+
+Recorded without(Recorded recorded, Quantity quantity) {
+  recorded.erase(quantity);
+  return recorded;
+}
+
+ModelEffect catalogued(std::string id, std::vector<double> parameters) {
+  ModelEffect effect;
+  effect.id = std::move(id);
+  effect.parameters = std::move(parameters);
+  return effect;
+}
+
+ModelEffect written(Where where, std::string formula, std::vector<std::string> names = {},
+                    std::vector<double> values = {}) {
+  ModelEffect effect;
+  effect.id = "of-the-user";
+  effect.where = where;
+  effect.formula = std::move(formula);
+  effect.parameter_names = std::move(names);
+  effect.parameters = std::move(values);
+  return effect;
+}
+
+Model with(Model model, ModelEffect effect) {
+  model.effects.push_back(std::move(effect));
+  return model;
+}
+
+// The air over the C-130, and what its sensors record of it: delta-p is 0.5 % of the measured static
+// pressure.
+struct Truth {
+  double p = 700, v = 120, T = 270, e = 3, alpha = 2.5, beta = -1, elevation = 1.5, azimuth = -0.8;
+  double recovery = 0.975;
+
+  pcor::MoistAir<double> air() const { return moist_air(e / p); }
+  double mach() const { return v / std::sqrt(air().heat_capacity_ratio * air().gas_constant * T); }
+  double total() const {
+    return p * std::pow(1 + v * v / (2 * air().specific_heat_pressure * T),
+                        air().specific_heat_pressure / air().gas_constant);
+  }
+  double defect() const { return p - p / 1.005; }
+
+  Model model() const {
+    Model result;
+    result.effects = {catalogued("static-constant", {0.005})};
+    result.lams.elevation = elevation;
+    result.lams.azimuth = azimuth;
+    result.recovery = {{recovery, 0, 0, 0}};
+    return result;
+  }
+  Recorded recorded() const {
+    return {{Quantity::static_pressure, p / 1.005},
+            {Quantity::dynamic_pressure, total() - p / 1.005},
+            {Quantity::recovery_temperature, T + recovery * v * v / (2 * air().specific_heat_pressure)},
+            {Quantity::vapor_pressure, e},
+            {Quantity::attack, alpha},
+            {Quantity::sideslip, beta},
+            {Quantity::lams_airspeed, v * pcor::beam_cosine(elevation, azimuth, alpha, beta)}};
+  }
+};
+
+const Truth truth;
+
+}  // namespace
+
+TEST(Chain, FindsTheAirThatWasMeasured) {
+  // Two roundings of a pressure, 1e-13 of 700 hPa, are 1e-11 K and m/s; LAMS is exact to 1e-9 hPa.
+  const Sample sample = fly(truth.model(), truth.recorded());
+  EXPECT_EQ(sample.flags.bits(), 0U);
+  EXPECT_NEAR(sample[Quantity::static_defect], truth.defect(), 1e-11);
+  EXPECT_NEAR(sample[Quantity::corrected_static_pressure], truth.p, 1e-11);
+  EXPECT_NEAR(sample[Quantity::corrected_dynamic_pressure], truth.total() - truth.p, 1e-11);
+  EXPECT_NEAR(sample[Quantity::humidity], truth.e / truth.p, 1e-14);
+  EXPECT_NEAR(sample[Quantity::corrected_mach], truth.mach(), 1e-12);
+  EXPECT_NEAR(sample[Quantity::ambient_temperature], truth.T, 1e-10);
+  EXPECT_NEAR(sample[Quantity::corrected_airspeed], truth.v, 1e-10);
+  EXPECT_NEAR(sample[Quantity::lams_static_defect], truth.defect(), 1e-9);
+  EXPECT_NEAR(sample[Quantity::lams_temperature], truth.T, 1e-9);
+  EXPECT_NEAR(sample[Quantity::lams_dynamic_pressure], truth.total() - truth.p, 1e-9);
+}
+
+TEST(Chain, LeavesTheTotalPressure) {
+  for (const double a0 : {-0.01, 0.0, 0.005, 0.02}) {
+    Model model = truth.model();
+    model.effects = {catalogued("static-constant", {a0})};
+    const Sample s = fly(model, truth.recorded());
+    EXPECT_NEAR(
+        (s[Quantity::corrected_static_pressure] + s[Quantity::corrected_dynamic_pressure]) / truth.total(),
+        1.0, 1e-12)
+        << a0;
+  }
+}
+
+TEST(Chain, Equation18OfTheMemo) {
+  // 700 hPa, q 67.6 hPa, ADIFR/QCR -0.318: 0.24 hPa in the requirements' table.
+  Model model;
+  model.effects = {catalogued("static-constant", {.004127875}), catalogued("static-alpha", {.021279816}),
+                   catalogued("static-qp", {.030849643})};
+  const Sample s = fly(model, {{Quantity::static_pressure, 700},
+                               {Quantity::dynamic_pressure, 67.6},
+                               {Quantity::attack_differential_pressure, -0.318 * 67},
+                               {Quantity::radome_dynamic_pressure, 67}});
+  EXPECT_NEAR(s[Quantity::static_defect], 0.24, 0.006);
+  EXPECT_NEAR(s[Quantity::attack_ratio], -0.318, 1e-15);
+  EXPECT_NEAR(s[Quantity::dynamic_ratio], 67.6 / 700, 1e-15);
+}
+
+TEST(Chain, DerivesTheMachNumberOfTheMeasuredPairInDryAir) {
+  Model model;
+  model.effects = {catalogued("static-mach", {0.01})};
+  const Recorded recorded{{Quantity::static_pressure, 700}, {Quantity::dynamic_pressure, 67.6}};
+  const double mach = std::sqrt(5 * (std::pow(1 + 67.6 / 700, 2.0 / 7.0) - 1));
+  EXPECT_NEAR(fly(model, recorded)[Quantity::static_defect], 0.01 * mach * 700, 1e-12);
+  // An independent Mach number is taken as it is.
+  EXPECT_NEAR(fly(model, with(recorded, Quantity::mach, 0.4))[Quantity::static_defect], 2.8, 1e-12);
+}
+
+TEST(Chain, AddsEffectsWhateverTheirOrderInTheModel) {
+  Model model = truth.model();
+  model.effects = {catalogued("static-constant", {0.005}), catalogued("lams-elevation", {0.3}),
+                   catalogued("static-qp", {0.02}), catalogued("recovery-factor", {0.01})};
+  const Chain chain = build(model, truth.recorded());
+  EXPECT_THAT(chain.parameters(), ElementsAre(0.005, 0.3, 0.02, 0.01));
+  const Sample s = fly(chain, truth.recorded());
+  EXPECT_NEAR(s[Quantity::static_defect],
+              0.005 * s[Quantity::static_pressure] + 0.02 * s[Quantity::dynamic_pressure], 1e-12);
+  std::swap(model.effects[0], model.effects[3]);
+  EXPECT_NEAR(fly(model, truth.recorded())[Quantity::lams_static_defect], s[Quantity::lams_static_defect],
+              1e-12);
+}
+
+TEST(Chain, WithoutEffectsCorrectsNothing) {
+  Model model;
+  const Sample s = fly(model, {{Quantity::static_pressure, 700}, {Quantity::dynamic_pressure, 67}});
+  EXPECT_EQ(s[Quantity::static_defect], 0.0);
+  EXPECT_EQ(s[Quantity::corrected_static_pressure], 700.0);
+}
+
+TEST(Policy, TaperIsContinuousAtItsEndAndZeroWithoutAirflow) {
+  Model model = truth.model();
+  model.policy.taper_below = 40;
+  const auto defect = [&model](double q) {
+    return fly(model, with(truth.recorded(), Quantity::dynamic_pressure, q))[Quantity::static_defect];
+  };
+  const double whole = 0.005 * truth.recorded()[Quantity::static_pressure];
+  EXPECT_DOUBLE_EQ(defect(60), whole);
+  EXPECT_DOUBLE_EQ(defect(40), whole);
+  EXPECT_NEAR(defect(40 - 1e-9), whole, 1e-9);
+  EXPECT_NEAR(defect(20), whole / 8, 1e-12) << "the cube of nimbus";
+  EXPECT_EQ(defect(0), 0.0);
+  EXPECT_EQ(defect(-5), 0.0);
+  EXPECT_TRUE(std::isnan(defect(missing)));
+  model.policy.taper_power = 1;
+  EXPECT_NEAR(defect(20), whole / 2, 1e-12);
+}
+
+TEST(Policy, WithoutTaperThereIsNoDefectWithoutAirflow) {
+  for (const double q : {0.0, -5.0, missing}) {
+    const Sample s = fly(truth.model(), with(truth.recorded(), Quantity::dynamic_pressure, q));
+    EXPECT_TRUE(std::isnan(s[Quantity::static_defect])) << q;
+  }
+}
+
+TEST(Policy, MinimumRaisesDeltaP) {
+  Model model = truth.model();
+  model.policy.minimum = 1.113;
+  EXPECT_NEAR(fly(model, truth.recorded())[Quantity::static_defect], truth.defect(), 1e-11);
+  model.effects = {catalogued("static-constant", {0.001})};
+  EXPECT_EQ(fly(model, truth.recorded())[Quantity::static_defect], 1.113);
+}
+
+TEST(Policy, DomainFlagsEachEndAndChangesNothing) {
+  Model model = truth.model();
+  const double q = truth.recorded()[Quantity::dynamic_pressure];
+  for (const auto& [lower, upper, outside] :
+       {std::tuple{q - 1, q + 1, false}, {q + 1, q + 2, true}, {q - 2, q - 1, true}, {q, q, false}}) {
+    model.domain = {{"dynamic_pressure", lower, upper}};
+    const Sample s = fly(model, truth.recorded());
+    EXPECT_EQ(s.has(Quality::outside_domain), outside) << lower << ' ' << upper;
+    EXPECT_NEAR(s[Quantity::static_defect], truth.defect(), 1e-11);
+  }
+}
+
+TEST(Air, HumidityIsNotAboveSaturation) {
+  const Sample s = fly(truth.model(), with(truth.recorded(), Quantity::vapor_pressure, 8.0));
+  EXPECT_TRUE(s.has(Quality::humidity_limited));
+  const double saturation = pcor::vapor_pressure_over_water(s[Quantity::ambient_temperature]);
+  // The limit was taken at the temperature of the unlimited air: 0.02 K, 0.15 % of e.
+  EXPECT_NEAR(s[Quantity::humidity] * s[Quantity::corrected_static_pressure] / saturation, 1.0, 0.002);
+  EXPECT_NEAR(saturation, pcor::vapor_pressure_over_water(truth.T), 0.02);
+}
+
+TEST(Air, SupersaturationOverIceIsNotLimited) {
+  Truth cold;
+  cold.T = 240;
+  cold.e = 0.98 * pcor::vapor_pressure_over_water(cold.T);
+  ASSERT_GT(cold.e, pcor::vapor_pressure_over_ice(cold.T));
+  const Sample s = fly(cold.model(), cold.recorded());
+  EXPECT_FALSE(s.has(Quality::humidity_limited));
+  EXPECT_NEAR(s[Quantity::humidity] * cold.p, cold.e, 1e-12);
+}
+
+TEST(Air, NegativeHumidityIsDry) {
+  const Sample s = fly(truth.model(), with(truth.recorded(), Quantity::vapor_pressure, -0.1));
+  EXPECT_EQ(s[Quantity::humidity], 0.0);
+  EXPECT_TRUE(s.has(Quality::humidity_limited));
+}
+
+TEST(Air, WithoutHumidityIsDry) {
+  Truth dry;
+  dry.e = 0;
+  for (const Recorded& recorded : {with(dry.recorded(), Quantity::vapor_pressure, missing),
+                                   without(dry.recorded(), Quantity::vapor_pressure)}) {
+    const Sample s = fly(dry.model(), recorded);
+    EXPECT_EQ(s[Quantity::humidity], 0.0);
+    EXPECT_NEAR(s[Quantity::ambient_temperature], dry.T, 1e-10);
+    EXPECT_NEAR(s[Quantity::corrected_airspeed], dry.v, 1e-10);
+    EXPECT_TRUE(s.has(Quality::dry_air_assumed));
+  }
+}
+
+TEST(Air, OfAModelWithDryConstantsIgnoresTheVapour) {
+  Model model = truth.model();
+  model.moist = false;
+  const Sample s = fly(model, truth.recorded());
+  EXPECT_EQ(s[Quantity::humidity], 0.0);
+  EXPECT_EQ(s.flags.bits(), 0U);
+}
+
+TEST(Air, TakesTheVapourFromTheDewPoint) {
+  const double dew_point = 265;
+  const Recorded recorded =
+      with(without(truth.recorded(), Quantity::vapor_pressure), Quantity::dew_point, dew_point);
+  const Sample s = fly(truth.model(), recorded);
+  const double e = pcor::vapor_pressure_over_ice(dew_point) * pcor::enhancement_factor(dew_point, truth.p);
+  EXPECT_NEAR(s[Quantity::humidity] * truth.p, e, 1e-11);
+  EXPECT_NEAR(e, 3.06, 0.02) << "the ice saturation at -8 deg C and 0.3 %";
+}
+
+TEST(Air, TakesAnAmbientTemperatureAsItIs) {
+  Recorded recorded =
+      with(without(truth.recorded(), Quantity::recovery_temperature), Quantity::ambient_temperature, truth.T);
+  Model model = truth.model();
+  model.lams.approach = LamsApproach::with_temperature;
+  const Sample s = fly(model, recorded);
+  EXPECT_EQ(s.flags.bits(), 0U);
+  EXPECT_EQ(s[Quantity::ambient_temperature], truth.T);
+  EXPECT_NEAR(s[Quantity::corrected_airspeed], truth.v, 1e-10);
+  EXPECT_NEAR(s[Quantity::lams_static_defect], truth.defect(), 1e-9);
+}
+
+TEST(Air, WithoutThermometerHasAMachNumberStill) {
+  Recorded recorded = without(truth.recorded(), Quantity::lams_airspeed);
+  recorded = without(recorded, Quantity::recovery_temperature);
+  const Sample s = fly(truth.model(), recorded);
+  EXPECT_NEAR(s[Quantity::corrected_mach], truth.mach(), 1e-12);
+  EXPECT_TRUE(std::isnan(s[Quantity::corrected_airspeed]));
+}
+
+TEST(FlowAngles, ComeFromTheRadomeWhereTheyAreNotRecorded) {
+  Model model = truth.model();
+  model.attack_radome = {5.776, 15.031, 0.0};
+  model.sideslip_radome = {-0.5, 20.0, 0.0};
+  Recorded recorded = without(without(truth.recorded(), Quantity::attack), Quantity::sideslip);
+  recorded[Quantity::radome_dynamic_pressure] = 66;
+  recorded[Quantity::attack_differential_pressure] = 66 * (truth.alpha - 5.776) / 15.031;
+  recorded[Quantity::sideslip_differential_pressure] = 66 * (truth.beta + 0.5) / 20.0;
+  const Sample s = fly(model, recorded);
+  EXPECT_NEAR(s[Quantity::attack], truth.alpha, 1e-13);
+  EXPECT_NEAR(s[Quantity::sideslip], truth.beta, 1e-13);
+  EXPECT_NEAR(s[Quantity::lams_static_defect], truth.defect(), 1e-9);
+}
+
+TEST(FlowAngles, OfTheGvNeedTheMachNumber) {
+  Model model = truth.model();
+  model.attack_radome = {5.5156, 19.07, 2.08};
+  Recorded recorded = without(truth.recorded(), Quantity::attack);
+  recorded[Quantity::radome_dynamic_pressure] = 66;
+  recorded[Quantity::attack_differential_pressure] = -9.9;
+  const Sample s = fly(model, recorded);
+  EXPECT_NEAR(s[Quantity::attack], 5.5156 - 0.15 * (19.07 + 2.08 * s[Quantity::mach]), 1e-13);
+  EXPECT_NEAR(s[Quantity::mach], truth.mach(), 0.01);
+}
+
+TEST(FlowAngles, ARecordedAngleGoesBeforeTheRadome) {
+  Model model = truth.model();
+  model.attack_radome = {5.776, 15.031, 0.0};
+  EXPECT_EQ(fly(model, truth.recorded())[Quantity::attack], truth.alpha);
+}
+
+TEST(Lams, IsUsedWithoutSideslipWhereNoneIsKnown) {
+  Truth straight;
+  straight.beta = 0;
+  const Sample s = fly(straight.model(), without(straight.recorded(), Quantity::sideslip));
+  EXPECT_NEAR(s[Quantity::lams_static_defect], straight.defect(), 1e-9);
+}
+
+TEST(Lams, ApproachesAgree) {
+  Model model = truth.model();
+  model.recovery = {{0.988, 0.053, 0.090, 0.091}};
+  const double one = fly(model, truth.recorded())[Quantity::lams_static_defect];
+  model.lams.approach = LamsApproach::iterated;
+  EXPECT_NEAR(fly(model, truth.recorded())[Quantity::lams_static_defect], one, 1e-6);
+}
+
+TEST(Lams, WithItsOwnCorrectionReturnsItsAirspeedAndTheThermometersTemperature) {
+  Recorded warm = truth.recorded();
+  warm[Quantity::recovery_temperature] += 0.5;
+  const Chain chain = build(truth.model(), warm);
+  Sample s = fly(chain, warm);
+  chain.correct(s.state, s[Quantity::lams_static_defect], s.flags);
+  chain.air(s.state, chain.parameters().data(), s.flags);
+  chain.lams_air(s.state, chain.parameters().data());
+  EXPECT_NEAR(s[Quantity::corrected_airspeed], truth.v, 1e-9);
+  EXPECT_NEAR(s[Quantity::lams_temperature], s[Quantity::ambient_temperature], 5e-9);
+}
+
+// Effects before the static ports: each does what a change of what it acts on does.
+
+TEST(Upstream, LamsElevationTiltsTheBeam) {
+  const Model tilted = with(truth.model(), catalogued("lams-elevation", {0.5}));
+  Model mounted = truth.model();
+  mounted.lams.elevation += 0.5;
+  const double changed = fly(tilted, truth.recorded())[Quantity::lams_static_defect];
+  EXPECT_NEAR(changed, fly(mounted, truth.recorded())[Quantity::lams_static_defect], 1e-12);
+  // The derivative -gamma M^2 p tan(theta_1 + alpha), half a degree; 10 % for its curvature and dT/dv.
+  const double angle = 4.25 * pcor::constants::radians_per_degree;
+  EXPECT_NEAR(changed - truth.defect(),
+              -1.4 * truth.mach() * truth.mach() * truth.p * std::tan(angle) * 0.5 *
+                  pcor::constants::radians_per_degree,
+              0.01);
+}
+
+TEST(Upstream, RecoveryFactorHeatsTheThermometer) {
+  const Model wrong = with(truth.model(), catalogued("recovery-factor", {0.01}));
+  Model law = truth.model();
+  law.recovery.coefficients[0] += 0.01;
+  const Sample s = fly(wrong, truth.recorded()), expected = fly(law, truth.recorded());
+  EXPECT_NEAR(s[Quantity::lams_static_defect], expected[Quantity::lams_static_defect], 1e-12);
+  EXPECT_NEAR(s[Quantity::ambient_temperature], expected[Quantity::ambient_temperature], 1e-12);
+  EXPECT_EQ(s[Quantity::corrected_static_pressure], expected[Quantity::corrected_static_pressure]);
+  // 0.01 v^2/(2 c_p) = 0.0715 K at a fixed Mach number: less by 1 + a_r x, x = 0.0265. In the table of
+  // sensitivities -0.017 hPa at 700 hPa and 120 m/s.
+  EXPECT_NEAR(s[Quantity::ambient_temperature] - truth.T, -0.0697, 1e-4);
+  EXPECT_NEAR(s[Quantity::lams_static_defect] - truth.defect(), -0.017, 0.0006);
+}
+
+TEST(Upstream, StaticLagMovesBothPressuresAtThePorts) {
+  const Model lagging = with(truth.model(), catalogued("static-lag", {0.15}));
+  const Recorded climb = with(truth.recorded(), Quantity::static_pressure_rate, -1.2);
+  const Sample s = fly(lagging, climb), still = fly(truth.model(), climb);
+  for (const auto& [after, sign] : {std::pair{Quantity::port_static_pressure, -1.0},
+                                    {Quantity::port_dynamic_pressure, 1.0},
+                                    {Quantity::corrected_static_pressure, -1.0},
+                                    {Quantity::corrected_dynamic_pressure, 1.0}})
+    EXPECT_NEAR(s[after] - still[after], sign * 0.18, 1e-12) << facts_of(after).name;
+  // Delta-p of the model stands in recorded pressures; that of LAMS in those of the ports, so it loses all.
+  EXPECT_EQ(s[Quantity::static_defect], still[Quantity::static_defect]);
+  EXPECT_NEAR(s[Quantity::lams_static_defect] - still[Quantity::lams_static_defect], 0.18, 1e-9);
+  EXPECT_TRUE(build(lagging, truth.recorded()).needs_rates());
+  EXPECT_TRUE(build(lagging, truth.recorded()).derives(Quantity::static_pressure_rate));
+  EXPECT_FALSE(build(truth.model(), truth.recorded()).needs_rates());
+}
+
+TEST(Formula, ActsAtEveryPlace) {
+  const auto change = [](Where where, double amount, Quantity of) {
+    const Model model = with(truth.model(), written(where, "k", {"k"}, {amount}));
+    EXPECT_TRUE(build(model, truth.recorded()).acts(where));
+    return fly(model, truth.recorded())[of] - fly(truth.model(), truth.recorded())[of];
+  };
+  EXPECT_NEAR(change(Where::static_transducer, 0.3, Quantity::port_static_pressure), 0.3, 1e-12);
+  EXPECT_NEAR(change(Where::static_transducer, 0.3, Quantity::port_dynamic_pressure), 0.0, 1e-12);
+  EXPECT_NEAR(change(Where::dynamic_transducer, 0.3, Quantity::port_dynamic_pressure), 0.3, 1e-12);
+  EXPECT_NEAR(change(Where::dynamic_transducer, 0.3, Quantity::port_static_pressure), 0.0, 1e-12);
+  EXPECT_NEAR(change(Where::static_line, 0.3, Quantity::port_static_pressure), 0.3, 1e-12);
+  EXPECT_NEAR(change(Where::static_line, 0.3, Quantity::port_dynamic_pressure), -0.3, 1e-12);
+  EXPECT_NEAR(change(Where::total_line, 0.3, Quantity::port_dynamic_pressure), 0.3, 1e-12);
+  EXPECT_NEAR(change(Where::total_line, 0.3, Quantity::port_static_pressure), 0.0, 1e-12);
+  EXPECT_NEAR(change(Where::pitot, 0.3, Quantity::port_dynamic_pressure), 0.3, 1e-12);
+  EXPECT_NEAR(change(Where::pitot, 0.3, Quantity::port_static_pressure), 0.0, 1e-12);
+  EXPECT_NEAR(change(Where::attack, 0.3, Quantity::attack), 0.3, 1e-12);
+  EXPECT_NEAR(change(Where::sideslip, 0.3, Quantity::sideslip), 0.3, 1e-12);
+  EXPECT_NEAR(change(Where::static_defect, 0.3, Quantity::static_defect), 0.3, 1e-12);
+  EXPECT_NEAR(change(Where::humidity, 0.7, Quantity::humidity), 0.7 / truth.p, 1e-12);
+  // Warmer by 1 K at the thermometer is warmer by 1/(1 + a_r x) outside, x = 0.026.
+  EXPECT_NEAR(change(Where::temperature, 1.0, Quantity::ambient_temperature), 1 / (1 + 0.975 * 0.0265), 1e-3);
+  EXPECT_NEAR(change(Where::recovery, 0.01, Quantity::ambient_temperature), -0.0697, 1e-4);
+  // 1 m/s of the laser is -1.09 hPa at 700 hPa and 120 m/s, and so are d cos/cos of the two angles.
+  EXPECT_NEAR(change(Where::beam_speed, 0.1, Quantity::lams_static_defect), -0.109, 0.001);
+  EXPECT_NEAR(change(Where::beam_elevation, 0.5, Quantity::lams_static_defect),
+              change(Where::attack, 0.5, Quantity::lams_static_defect), 1e-12);
+  EXPECT_NEAR(change(Where::beam_azimuth, 0.5, Quantity::lams_static_defect),
+              change(Where::sideslip, -0.5, Quantity::lams_static_defect), 1e-12);
+}
+
+TEST(Formula, ReadsVariablesOfTheFileAndRoles) {
+  Model model = truth.model();
+  model.effects.push_back(written(Where::static_defect, "k * ENGTRQ / 100 + c * static_pressure * FLAP2",
+                                  {"k", "c"}, {2.0, 0.001}));
+  model.effects.push_back(written(Where::static_defect, "m * ENGTRQ", {"m"}, {0.5}));
+  const Recorded recorded = truth.recorded();
+  const Chain chain = build(model, recorded);
+  EXPECT_THAT(chain.extra_names(), ElementsAre("ENGTRQ", "FLAP2"));
+  Recorded more = recorded;
+  more[pcor::extra_quantity(0)] = 30;
+  more[pcor::extra_quantity(1)] = 1;
+  const double p = recorded.at(Quantity::static_pressure);
+  EXPECT_NEAR(fly(chain, more)[Quantity::static_defect], 0.005 * p + 2 * 0.3 + 0.001 * p + 15, 1e-12);
+  // Without one of them there is no delta-p.
+  const Sample s = fly(chain, recorded);
+  EXPECT_TRUE(std::isnan(s[Quantity::static_defect]));
+  EXPECT_TRUE(s.has(Quality::effect_input_missing));
+}
+
+// Quality bits: each is set by what it says, and only then.
+
+namespace {
+
+// The truth with everything that a bit can be about.
+Model full_model() {
+  Model model = truth.model();
+  model.attack_radome = {5.776, 15.031, 0.0};
+  model.effects.push_back(catalogued("static-alpha", {0.0}));
+  model.effects.push_back(catalogued("static-lag", {0.0}));
+  model.policy.taper_below = 40;
+  model.policy.minimum = 0.0;
+  model.domain = {{"dynamic_pressure", 20.0, 100.0}};
+  return model;
+}
+
+Recorded full_record() {
+  Recorded recorded = truth.recorded();
+  recorded[Quantity::radome_dynamic_pressure] = 66;
+  recorded[Quantity::attack_differential_pressure] = -20;
+  recorded[Quantity::static_pressure_rate] = 0.1;
+  return recorded;
+}
+
+}  // namespace
+
+TEST(QualityBits, NoneOfAGoodSample) { EXPECT_EQ(fly(full_model(), full_record()).flags.bits(), 0U); }
+
+TEST(QualityBits, EachIsSetByItsCauseAndTakesAwayWhatItSays) {
+  struct Case {
+    Quality bit;
+    Quantity changed;
+    double to;
+    std::vector<Quantity> gone;
+  };
+  const std::vector<Quantity> everything{Quantity::corrected_static_pressure,
+                                         Quantity::corrected_dynamic_pressure,
+                                         Quantity::corrected_mach,
+                                         Quantity::ambient_temperature,
+                                         Quantity::corrected_airspeed,
+                                         Quantity::lams_static_defect};
+  const std::vector<Quantity> speeds{Quantity::corrected_mach, Quantity::corrected_airspeed,
+                                     Quantity::lams_static_defect};
+  const std::vector<Quantity> corrected{Quantity::corrected_static_pressure, Quantity::corrected_airspeed};
+  for (const auto& [bit, changed, to, gone] : std::vector<Case>{
+           {Quality::static_pressure_missing, Quantity::static_pressure, missing, everything},
+           {Quality::dynamic_pressure_missing, Quantity::dynamic_pressure, missing, everything},
+           {Quality::impossible_static_pressure, Quantity::static_pressure, 0.0, everything},
+           {Quality::impossible_static_pressure, Quantity::static_pressure, -1.0, everything},
+           {Quality::impossible_dynamic_pressure,
+            Quantity::dynamic_pressure,
+            0.0,
+            {Quantity::lams_static_defect}},
+           {Quality::impossible_dynamic_pressure, Quantity::dynamic_pressure, -0.5, speeds},
+           {Quality::effect_input_missing, Quantity::attack_differential_pressure, missing, corrected},
+           {Quality::effect_input_missing, Quantity::static_pressure_rate, missing, everything},
+           {Quality::impossible_radome_pressure, Quantity::radome_dynamic_pressure, 0.0, corrected},
+           {Quality::impossible_radome_pressure, Quantity::radome_dynamic_pressure, -2.0, corrected},
+           {Quality::temperature_missing,
+            Quantity::recovery_temperature,
+            missing,
+            {Quantity::ambient_temperature, Quantity::corrected_airspeed, Quantity::lams_static_defect}},
+           {Quality::dry_air_assumed, Quantity::vapor_pressure, missing, {}},
+           {Quality::humidity_limited, Quantity::vapor_pressure, 9.0, {}},
+           {Quality::humidity_limited, Quantity::vapor_pressure, -0.1, {}},
+           {Quality::lams_missing, Quantity::lams_airspeed, missing, {Quantity::lams_static_defect}},
+           {Quality::lams_missing, Quantity::lams_airspeed, -1.0, {Quantity::lams_static_defect}},
+           {Quality::lams_missing, Quantity::attack, missing, {Quantity::lams_static_defect}},
+           {Quality::tapered, Quantity::dynamic_pressure, 30.0, {}},
+           {Quality::outside_domain, Quantity::dynamic_pressure, 10.0, {}},
+           {Quality::outside_domain, Quantity::dynamic_pressure, 130.0, {}}}) {
+    const Sample s = fly(full_model(), with(full_record(), changed, to));
+    SCOPED_TRACE(std::string(facts_of(changed).name) + " = " + std::to_string(to));
+    EXPECT_TRUE(s.has(bit));
+    for (const Quantity quantity : gone) EXPECT_TRUE(std::isnan(s[quantity])) << facts_of(quantity).name;
+  }
+  Model negative = full_model();
+  negative.effects[0].parameters = {-0.001};
+  EXPECT_TRUE(fly(negative, full_record()).has(Quality::minimum_applied));
+}
+
+TEST(QualityBits, NotSetByOtherCauses) {
+  const Quality never[] = {Quality::after_gap, Quality::corrected_with_lams};  // the loop's own
+  for (const double q : {missing, -1.0, 0.0, 10.0, 66.0, 200.0}) {
+    const Sample s = fly(full_model(), with(full_record(), Quantity::dynamic_pressure, q));
+    for (const Quality bit : never) EXPECT_FALSE(s.has(bit)) << q;
+    EXPECT_FALSE(s.has(Quality::static_pressure_missing)) << q;
+    EXPECT_FALSE(s.has(Quality::impossible_static_pressure)) << q;
+    EXPECT_FALSE(s.has(Quality::effect_input_missing)) << q;
+    EXPECT_FALSE(s.has(Quality::impossible_radome_pressure)) << q;
+    EXPECT_FALSE(s.has(Quality::temperature_missing)) << q;
+    EXPECT_FALSE(s.has(Quality::dry_air_assumed)) << q;
+  }
+  EXPECT_FALSE(fly(full_model(), with(full_record(), Quantity::static_pressure, missing))
+                   .has(Quality::effect_input_missing))
+      << "the pressure is at fault, not an input";
+}
+
+TEST(QualityBits, ADefectLargerThanTheDynamicPressureLeavesNone) {
+  Model model = truth.model();
+  model.effects = {catalogued("static-constant", {0.02})};
+  const Sample s = fly(model, with(truth.recorded(), Quantity::dynamic_pressure, 10.0));
+  EXPECT_TRUE(s.has(Quality::impossible_dynamic_pressure));
+  EXPECT_TRUE(std::isnan(s[Quantity::corrected_dynamic_pressure]));
+  EXPECT_TRUE(std::isnan(s[Quantity::corrected_airspeed]));
+}
+
+// What Chain::build refuses, and what it says.
+
+TEST(Build, WantsBothPressures) {
+  EXPECT_EQ(error_of({}, {{Quantity::dynamic_pressure, 0}}),
+            "the chain needs the role 'static_pressure': name its variable in the table [variables]");
+  EXPECT_EQ(error_of({}, {{Quantity::static_pressure, 0}}),
+            "the chain needs the role 'dynamic_pressure': name its variable in the table [variables]");
+}
+
+TEST(Build, WantsEffectsThatExist) {
+  EXPECT_EQ(error_of(with(truth.model(), catalogued("static-beauty", {1})), truth.recorded()),
+            "there is no effect 'static-beauty'");
+  EXPECT_EQ(error_of(with(truth.model(), catalogued("static-qp", {1, 2})), truth.recorded()),
+            "effect 'static-qp' has 1 parameters, not 2");
+}
+
+TEST(Build, WantsTheInputsOfEffects) {
+  EXPECT_EQ(
+      error_of(with(truth.model(), catalogued("static-alpha", {1})), truth.recorded()),
+      "effect 'static-alpha' needs the role 'attack_differential_pressure': name its variable in the table "
+      "[variables]");
+  const Recorded no_attack = without(without(truth.recorded(), Quantity::lams_airspeed), Quantity::attack);
+  EXPECT_EQ(
+      error_of(with(truth.model(), catalogued("static-attack", {1})), no_attack),
+      "effect 'static-attack' needs the role 'attack': name its variable in the table [variables], or give "
+      "[radome] attack = [offset, slope] to derive it from the radome pressures");
+  Model radome = with(truth.model(), catalogued("static-attack", {1}));
+  radome.attack_radome = {5.776, 15.031, 0.0};
+  EXPECT_THAT(error_of(radome, no_attack), HasSubstr("'attack_differential_pressure'"));
+}
+
+TEST(Build, WantsFormulasThatParse) {
+  EXPECT_THAT(
+      error_of(with(truth.model(), written(Where::static_defect, "k *", {"k"}, {1})), truth.recorded()),
+      AllOf(HasSubstr("formula of effect 'of-the-user': "), HasSubstr("column 4")));
+  EXPECT_EQ(
+      error_of(with(truth.model(), written(Where::static_defect, "k", {"k"}, {1, 2})), truth.recorded()),
+      "effect 'of-the-user' has 1 parameters, not 2");
+  EXPECT_EQ(error_of(with(truth.model(), written(Where::static_defect, "flaps")), truth.recorded()),
+            "the formula of effect 'of-the-user' needs the role 'flaps': name its variable in the table "
+            "[variables]");
+  EXPECT_EQ(error_of(with(truth.model(), written(Where::static_defect, "corrected_mach")), truth.recorded()),
+            "the formula of effect 'of-the-user' needs 'corrected_mach', which is known only after delta-p");
+}
+
+TEST(Build, WantsFormulasThatFit) {
+  const auto formula_of = [](int count, int first = 0) {
+    std::string text = "0";
+    for (int i = 0; i < count; ++i) text += " + V" + std::to_string(first + i);
+    return written(Where::static_defect, text);
+  };
+  EXPECT_EQ(error_of(with(truth.model(), formula_of(12)), truth.recorded()), "no error");
+  EXPECT_EQ(error_of(with(truth.model(), formula_of(13)), truth.recorded()),
+            "formula of effect 'of-the-user' uses more than 12 variables");
+  Model many = with(with(truth.model(), formula_of(12)), formula_of(12, 12));
+  EXPECT_EQ(error_of(many, truth.recorded()), "no error");
+  EXPECT_EQ(error_of(with(many, formula_of(1, 24)), truth.recorded()),
+            "the formulas of the model use more than 24 further variables");
+}
+
+TEST(Build, WantsADomainOfKnownQuantities) {
+  Model model = truth.model();
+  model.domain = {{"speed", 0, 1}};
+  EXPECT_EQ(error_of(model, truth.recorded()), "there is no quantity 'speed'");
+  model.domain = {{"flaps", 0, 1}};
+  EXPECT_EQ(error_of(model, truth.recorded()),
+            "the domain of the model needs the role 'flaps': name its variable in the table [variables]");
+  model.domain = {{"corrected_mach", 0, 1}};
+  EXPECT_THAT(error_of(model, truth.recorded()), HasSubstr("known only after delta-p"));
+}
+
+TEST(Build, WantsWhatLamsNeeds) {
+  EXPECT_THAT(error_of(truth.model(), without(truth.recorded(), Quantity::attack)),
+              HasSubstr("LAMS, for the angle between its beam and the wind, needs the role 'attack'"));
+  EXPECT_EQ(error_of(truth.model(), without(truth.recorded(), Quantity::recovery_temperature)),
+            "LAMS needs the role 'recovery_temperature': name its variable in the table [variables]");
+  Model model = truth.model();
+  model.lams.approach = LamsApproach::with_temperature;
+  EXPECT_EQ(error_of(model, truth.recorded()),
+            "LAMS needs the role 'ambient_temperature': name its variable in the table [variables]");
+  model = truth.model();
+  model.sideslip_radome = {0.0, 20.0, 0.0};
+  EXPECT_THAT(error_of(model, without(truth.recorded(), Quantity::sideslip)),
+              HasSubstr("LAMS needs the role 'sideslip_differential_pressure'"));
+}
+
+TEST(Build, ToleratesThatNobodyAsksWhy) { EXPECT_FALSE(Chain::build({}, {}, nullptr).has_value()); }
+
+TEST(Chain, IsSharedByThreads) {
+  // It holds nothing of a sample, so that loops of several rates and threads of a batch use one.
+  const Chain chain = build(full_model(), full_record());
+  const Sample alone = fly(chain, full_record());
+  std::vector<double> found(4);
+  std::vector<std::thread> threads;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    threads.emplace_back([&, i] {
+      for (int n = 0; n < 200; ++n)
+        fly(chain, with(full_record(), Quantity::static_pressure, 500.0 + n + static_cast<double>(i)));
+      found[i] = fly(chain, full_record())[Quantity::corrected_airspeed];
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const double airspeed : found) EXPECT_EQ(airspeed, alone[Quantity::corrected_airspeed]);
+}
+
+TEST(Chain, CompilesForAScalarThatIsNoDouble) {
+  using archetype::Formulas;
+  for (const LamsApproach approach : {LamsApproach::simultaneous, LamsApproach::iterated}) {
+    Model model = full_model();
+    model.lams.approach = approach;
+    model.recovery = {{0.988, 0.053, 0.090, 0.091}};
+    for (const Where where : {Where::static_transducer, Where::attack, Where::temperature, Where::pitot})
+      model.effects.push_back(
+          written(where, "k * if(attack > 0, sqrt(abs(attack)), tanh(attack))", {"k"}, {0.01}));
+    const Chain chain = build(model, full_record());
+    const Sample expected = fly(chain, full_record());
+
+    State<Formulas> state;
+    for (const auto& [quantity, value] : full_record()) state[quantity] = Formulas(value);
+    const std::vector<Formulas> parameters(chain.parameters().begin(), chain.parameters().end());
+    pcor::NoQualityFlags none;
+    chain.measure(state, parameters.data(), none);
+    state[Quantity::static_defect] = chain.static_defect(state, parameters.data(), none);
+    state[Quantity::lams_static_defect] = chain.lams_static_defect(state, parameters.data(), none);
+    chain.correct(state, state[Quantity::static_defect], none);
+    chain.air(state, parameters.data(), none);
+    chain.lams_air(state, parameters.data());
+    // A power by exp and log instead of pow: 1e-15 of a pressure ratio, amplified by p/q.
+    for (const Quantity quantity :
+         {Quantity::static_defect, Quantity::lams_static_defect, Quantity::corrected_static_pressure,
+          Quantity::humidity, Quantity::corrected_mach, Quantity::ambient_temperature,
+          Quantity::corrected_airspeed, Quantity::lams_temperature, Quantity::lams_dynamic_pressure})
+      EXPECT_NEAR(state[quantity].value(), expected[quantity], 1e-9) << facts_of(quantity).name;
+  }
+}

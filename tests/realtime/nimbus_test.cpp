@@ -1,0 +1,507 @@
+#include "pcor/realtime/nimbus.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <sstream>
+
+namespace {
+
+using pcor::Loop;
+using pcor::Model;
+using pcor::NimbusSystem;
+using pcor::Quality;
+using pcor::Quantity;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::IsNan;
+
+// A small stand-in for nimbus: its globals, its table, its two records of floats.
+
+enum FeedBackType { low_rate_feedback, high_rate_feedback };
+
+constexpr std::size_t high_rate = 25;
+
+FeedBackType FeedBack = low_rate_feedback;
+std::size_t SampleOffset = 0;
+double Second = 0.0;
+
+struct DERTBL {
+  std::string name;
+  std::vector<std::string> depends;
+  void (*compute)(DERTBL*);
+  std::vector<std::size_t> inputs{};  // places in the record
+  std::size_t output = 0;
+};
+
+// Of each variable, one value at the low rate and those of a second at the high rate.
+struct Values {
+  float low;
+  float high[high_rate];
+};
+std::vector<Values> record;
+
+float& sample(std::size_t place) {
+  return FeedBack == low_rate_feedback ? record[place].low : record[place].high[SampleOffset];
+}
+
+double sample_time() { return Second + static_cast<double>(SampleOffset) / static_cast<double>(high_rate); }
+
+struct Host {
+  using Entry = DERTBL;
+  static double get(Entry* entry, std::size_t input) {
+    return static_cast<double>(sample(entry->inputs.at(input)));
+  }
+  static void put(Entry* entry, double value) { sample(entry->output) = static_cast<float>(value); }
+  static bool high_rate() { return FeedBack == high_rate_feedback; }
+  static double time() { return sample_time(); }
+};
+
+class Table {
+ public:
+  Table(const std::vector<std::string>& raw, std::vector<DERTBL> derived) : derived_(std::move(derived)) {
+    record.clear();
+    for (const std::string& name : raw) add(name);
+    for (DERTBL& entry : derived_) entry.output = add(entry.name);
+    for (DERTBL& entry : derived_) {
+      for (const std::string& name : entry.depends) entry.inputs.push_back(places_.at(name));
+    }
+    for (DERTBL& entry : derived_) visit(entry);
+  }
+
+  // Values of the raw variables in `second`, as a function of name and time.
+  template <class Raw>
+  void compute(double second, Raw raw) {
+    Second = second;
+    for (const FeedBackType rate : {low_rate_feedback, high_rate_feedback}) {
+      FeedBack = rate;
+      for (SampleOffset = 0; SampleOffset < (rate == low_rate_feedback ? 1 : high_rate); ++SampleOffset) {
+        for (const auto& [name, place] : places_) {
+          if (!is_derived(name)) sample(place) = raw(name, sample_time());
+        }
+        for (DERTBL* entry : compute_order_) entry->compute(entry);
+      }
+    }
+    SampleOffset = 0;
+  }
+
+  float low(const std::string& name) const { return record[places_.at(name)].low; }
+  float high(const std::string& name, std::size_t offset) const {
+    return record[places_.at(name)].high[offset];
+  }
+  DERTBL& entry(const std::string& name) { return *find(name); }
+
+ private:
+  std::size_t add(const std::string& name) {
+    record.push_back({});
+    return places_[name] = record.size() - 1;
+  }
+  DERTBL* find(const std::string& name) {
+    for (DERTBL& entry : derived_) {
+      if (entry.name == name) return &entry;
+    }
+    return nullptr;
+  }
+  bool is_derived(const std::string& name) { return find(name) != nullptr; }
+  void visit(DERTBL& entry) {
+    if (std::find(compute_order_.begin(), compute_order_.end(), &entry) != compute_order_.end()) return;
+    for (const std::string& name : entry.depends) {
+      if (DERTBL* const other = find(name)) visit(*other);
+    }
+    compute_order_.push_back(&entry);
+  }
+
+  std::vector<DERTBL> derived_;
+  std::map<std::string, std::size_t> places_;
+  std::vector<DERTBL*> compute_order_;
+};
+
+// A defaults file: a name, the number of values, the values.
+class Defaults {
+ public:
+  explicit Defaults(const std::string& text) {
+    std::istringstream lines(text);
+    std::string name;
+    std::size_t count = 0;
+    while (lines >> name >> count) {
+      values_[name].resize(count);
+      for (float& value : values_[name]) lines >> value;
+    }
+  }
+  const float* value(const char* name) const {
+    const auto found = values_.find(name);
+    return found == values_.end() ? nullptr : found->second.data();
+  }
+  std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const auto& [name, values] : values_) names.push_back(name);
+    return names;
+  }
+
+ private:
+  std::map<std::string, std::vector<float>> values_;
+};
+
+// The C-130's fuselage pair, and the radome pair with a lag of its line.
+
+Model fuselage_model() {
+  Model model;
+  model.effects = {
+      {"static-constant", {0.004127875}}, {"static-alpha", {0.021279816}}, {"static-qp", {0.030849643}}};
+  model.recovery = {{0.95}};
+  return model;
+}
+
+Model radome_model() {
+  Model model;
+  model.effects = {{"static-constant", {-0.0012}}, {"static-lag", {0.15}}};
+  model.recovery = {{0.985}};
+  return model;
+}
+
+struct FuselageTag;
+struct RadomeTag;
+using Fuselage = NimbusSystem<Host, FuselageTag>;
+using Radome = NimbusSystem<Host, RadomeTag>;
+
+const std::vector<std::string> raw_names{"PSFD", "QCF", "PSFRD", "QCFR", "QCR", "ADIFR", "RTF1", "DPB"};
+
+const std::vector<std::string> fuselage_roles{"static_pressure",         "dynamic_pressure",
+                                              "radome_dynamic_pressure", "attack_differential_pressure",
+                                              "recovery_temperature",    "dew_point"};
+const std::vector<std::string> fuselage_inputs{"PSFD", "QCF", "QCR", "ADIFR", "RTF1", "DPB"};
+
+const std::vector<std::string> radome_roles{"recovery_temperature", "dynamic_pressure", "static_pressure"};
+const std::vector<std::string> radome_inputs{"RTF1", "QCFR", "PSFRD"};
+
+bool install_both() {
+  std::string error;
+  const bool installed = Fuselage::install(fuselage_model(), fuselage_roles, 1.0, 25.0, &error) &&
+                         Radome::install(radome_model(), radome_roles, 1.0, 25.0, &error);
+  EXPECT_EQ(error, "");
+  return installed;
+}
+
+std::vector<DERTBL> both_systems() {
+  return {
+      {"PSXC", {"PCOR"}, Fuselage::fetch<Quantity::corrected_static_pressure>},
+      {"QCXC", {"PCOR"}, Fuselage::fetch<Quantity::corrected_dynamic_pressure>},
+      {"MACHX", {"PCOR"}, Fuselage::fetch<Quantity::corrected_mach>},
+      {"ATX", {"PCOR"}, Fuselage::fetch<Quantity::ambient_temperature>},
+      {"TASX", {"PCOR"}, Fuselage::fetch<Quantity::corrected_airspeed>},
+      {"PCORFLAG", {"PCOR"}, Fuselage::fetch_quality},
+      {"PCOR", fuselage_inputs, Fuselage::compute},
+      {"PSXC_R", {"PCOR_R"}, Radome::fetch<Quantity::corrected_static_pressure>},
+      {"TASX_R", {"PCOR_R"}, Radome::fetch<Quantity::corrected_airspeed>},
+      {"PCORFLAG_R", {"PCOR_R"}, Radome::fetch_quality},
+      {"PCOR_R", radome_inputs, Radome::compute},
+  };
+}
+
+// A climb with pitch oscillations; temperatures in degC.
+float raw_value(const std::string& name, double time) {
+  const auto wave = [time](double mean, double size, double period) {
+    return static_cast<float>(mean + size * std::sin(6.283185307179586 * time / period));
+  };
+  if (name == "PSFD") return wave(700.0 - 0.6 * time, 2.0, 31.0);
+  if (name == "PSFRD") return wave(701.2 - 0.6 * time, 2.0, 31.0);
+  if (name == "QCF") return wave(67.6, 3.0, 17.0);
+  if (name == "QCFR") return wave(66.8, 3.0, 17.0);
+  if (name == "QCR") return wave(67.1, 3.0, 17.0);
+  if (name == "ADIFR") return wave(-15.0, 6.0, 9.0);
+  if (name == "RTF1") return wave(8.0, 0.5, 23.0);
+  return wave(-3.0, 2.0, 13.0);
+}
+
+Loop plain(const Model& model, const std::vector<std::string>& roles, double rate) {
+  std::vector<Quantity> recorded;
+  for (const std::string& role : roles) recorded.push_back(pcor::quantity_named(role));
+  std::string error;
+  auto loop = Loop::build(model, recorded, rate, &error);
+  EXPECT_TRUE(loop) << error;
+  return std::move(*loop);
+}
+
+// Runs one sample in a plain loop on the same floats.
+template <class Raw>
+void run_plain(Loop& loop, const std::vector<std::string>& roles, const std::vector<std::string>& inputs,
+               double time, Raw raw) {
+  for (std::size_t i = 0; i < roles.size(); ++i) {
+    const Quantity role = pcor::quantity_named(roles[i]);
+    const auto value = static_cast<double>(raw(inputs[i], time));
+    loop.state()[role] = pcor::facts_of(role).unit == "K" ? value + 273.15 : value;
+  }
+  loop.run(time);
+}
+
+std::uint32_t bits_of(float value) {
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
+void expect_same(float value, double expected) {
+  if (std::isnan(expected)) {
+    EXPECT_THAT(value, IsNan());
+  } else {
+    EXPECT_EQ(bits_of(value), bits_of(static_cast<float>(expected))) << value << " for " << expected;
+  }
+}
+
+// `value` gives what the table has of a name.
+template <class Value>
+void expect_fuselage(const Loop& loop, Value value) {
+  expect_same(value("PCOR"), loop.state()[Quantity::static_defect]);
+  expect_same(value("PSXC"), loop.state()[Quantity::corrected_static_pressure]);
+  expect_same(value("QCXC"), loop.state()[Quantity::corrected_dynamic_pressure]);
+  expect_same(value("MACHX"), loop.state()[Quantity::corrected_mach]);
+  expect_same(value("ATX"), loop.state()[Quantity::ambient_temperature] - 273.15);
+  expect_same(value("TASX"), loop.state()[Quantity::corrected_airspeed]);
+  expect_same(value("PCORFLAG"), loop.quality().bits());
+}
+
+template <class Value>
+void expect_radome(const Loop& loop, Value value) {
+  expect_same(value("PCOR_R"), loop.state()[Quantity::static_defect]);
+  expect_same(value("PSXC_R"), loop.state()[Quantity::corrected_static_pressure]);
+  expect_same(value("TASX_R"), loop.state()[Quantity::corrected_airspeed]);
+  expect_same(value("PCORFLAG_R"), loop.quality().bits());
+}
+
+// Runs the table through `seconds` and compares every value with plain loops.
+template <class Raw>
+void expect_plain_loops(const std::vector<double>& seconds, Raw raw) {
+  ASSERT_TRUE(install_both());
+  Table table(raw_names, both_systems());
+  Loop low = plain(fuselage_model(), fuselage_roles, 1.0);
+  Loop high = plain(fuselage_model(), fuselage_roles, 25.0);
+  Loop low_radome = plain(radome_model(), radome_roles, 1.0);
+  Loop high_radome = plain(radome_model(), radome_roles, 25.0);
+  for (const double second : seconds) {
+    SCOPED_TRACE(second);
+    table.compute(second, raw);
+    const auto low_value = [&](const char* name) { return table.low(name); };
+    run_plain(low, fuselage_roles, fuselage_inputs, second, raw);
+    expect_fuselage(low, low_value);
+    run_plain(low_radome, radome_roles, radome_inputs, second, raw);
+    expect_radome(low_radome, low_value);
+    for (std::size_t offset = 0; offset < high_rate; ++offset) {
+      SCOPED_TRACE(offset);
+      const double time = second + static_cast<double>(offset) / static_cast<double>(high_rate);
+      const auto high_value = [&](const char* name) { return table.high(name, offset); };
+      run_plain(high, fuselage_roles, fuselage_inputs, time, raw);
+      expect_fuselage(high, high_value);
+      run_plain(high_radome, radome_roles, radome_inputs, time, raw);
+      expect_radome(high_radome, high_value);
+    }
+  }
+}
+
+std::vector<double> seconds(double from, double to) {
+  std::vector<double> result;
+  for (double second = from; second < to; ++second) result.push_back(second);
+  return result;
+}
+
+TEST(NimbusSystem, ComputesWhatPlainLoopsDoForTwoSystemsAtBothRates) {
+  expect_plain_loops(seconds(36000.0, 36040.0), raw_value);
+}
+
+TEST(NimbusSystem, RecoversAfterMissingSamplesAsPlainLoopsDo) {
+  expect_plain_loops(seconds(0.0, 20.0), [](const std::string& name, double time) {
+    const bool lost = (name == "RTF1" && std::fmod(time, 7.0) < 1.3) ||
+                      (name == "PSFRD" && std::fmod(time, 5.0) < 0.5) ||
+                      (name == "QCF" && std::fmod(time, 3.0) < 0.2);
+    return lost ? std::numeric_limits<float>::quiet_NaN() : raw_value(name, time);
+  });
+}
+
+TEST(NimbusSystem, StartsTheStateOfEachRateAnewAfterAGap) {
+  std::vector<double> with_gap = seconds(100.0, 105.0);
+  for (const double second : seconds(108.0, 112.0)) with_gap.push_back(second);
+  expect_plain_loops(with_gap, raw_value);
+}
+
+TEST(NimbusSystem, GivesEachRateItsOwnRateOfChange) {
+  ASSERT_TRUE(install_both());
+  Table table(raw_names, both_systems());
+  // The pressure falls 1 hPa a second, and by steps: what the radome pair's lag of 0.15 s sees tells the
+  // rate.
+  const auto falling = [](const std::string& name, double time) {
+    return name == "PSFRD" ? static_cast<float>(700.0 - time) : raw_value(name, 0.0);
+  };
+  const auto lag = [](float corrected, double measured, float defect) {
+    return static_cast<double>(corrected) - measured - static_cast<double>(defect);
+  };
+  for (const double second : {0.0, 1.0, 2.0, 9.0, 10.0}) {
+    SCOPED_TRACE(second);
+    table.compute(second, falling);
+    const bool first = second == 0.0 || second == 9.0;
+    const auto after_gap = static_cast<float>(static_cast<std::uint32_t>(Quality::after_gap) |
+                                              static_cast<std::uint32_t>(Quality::effect_input_missing));
+    const auto dry = static_cast<float>(Quality::dry_air_assumed);
+    if (first) {
+      EXPECT_THAT(table.low("PSXC_R"), IsNan());
+      EXPECT_EQ(table.low("PCORFLAG_R"), after_gap);
+      EXPECT_THAT(table.high("PSXC_R", 0), IsNan());
+      EXPECT_EQ(table.high("PCORFLAG_R", 0), after_gap);
+    } else {
+      EXPECT_NEAR(lag(table.low("PSXC_R"), 700.0 - second, table.low("PCOR_R")), -0.15, 1e-4);
+      EXPECT_EQ(table.low("PCORFLAG_R"), dry);
+    }
+    EXPECT_NEAR(lag(table.high("PSXC_R", 10), 700.0 - second - 0.4, table.high("PCOR_R", 10)), -0.15, 1e-3);
+    EXPECT_EQ(table.high("PCORFLAG_R", 10), dry);
+  }
+}
+
+TEST(NimbusSystem, TakesAndGivesTemperaturesInCelsius) {
+  ASSERT_TRUE(install_both());
+  Table table(raw_names, both_systems());
+  table.compute(0.0, [](const std::string& name, double) {
+    return name == "RTF1" ? 8.0F : name == "DPB" ? -3.0F : raw_value(name, 0.0);
+  });
+  const double mach = static_cast<double>(table.low("MACHX"));
+  EXPECT_NEAR(static_cast<double>(table.low("ATX")), 281.15 / (1.0 + 0.95 * 0.2 * mach * mach) - 273.15,
+              0.02);
+}
+
+TEST(NimbusSystem, NeverPassesOffAnEarlierSampleAsThisOne) {
+  ASSERT_TRUE(install_both());
+  Table table(raw_names, both_systems());
+  table.compute(0.0, raw_value);
+  EXPECT_FALSE(std::isnan(table.low("PSXC")));
+  Second = 1.0;
+  FeedBack = low_rate_feedback;
+  for (const char* name : {"PSXC", "PCORFLAG"}) {
+    table.entry(name).compute(&table.entry(name));
+    EXPECT_THAT(table.low(name), IsNan()) << "the leader has not run for this second";
+  }
+}
+
+TEST(NimbusSystem, StartsAnewWhenReset) {
+  ASSERT_TRUE(install_both());
+  Table table(raw_names, both_systems());
+  table.compute(0.0, raw_value);
+  table.compute(1.0, raw_value);
+  EXPECT_FALSE(std::isnan(table.low("PSXC_R")));
+  EXPECT_FALSE(std::isnan(table.high("PSXC_R", 0)));
+  Radome::reset();
+  table.compute(2.0, raw_value);
+  EXPECT_THAT(table.low("PSXC_R"), IsNan());
+  EXPECT_THAT(table.high("PSXC_R", 0), IsNan());
+}
+
+TEST(NimbusSystem, GivesNanWhereNothingIsInstalled) {
+  struct Tag;
+  using Empty = NimbusSystem<Host, Tag>;
+  Table table({"PSFD", "QCF"}, {{"PCOR", {"PSFD", "QCF"}, Empty::compute},
+                                {"PSXC", {"PCOR"}, Empty::fetch<Quantity::corrected_static_pressure>},
+                                {"PCORFLAG", {"PCOR"}, Empty::fetch_quality}});
+  Empty::reset();
+  table.compute(0.0, raw_value);
+  for (const char* name : {"PCOR", "PSXC", "PCORFLAG"}) {
+    EXPECT_THAT(table.low(name), IsNan());
+    EXPECT_THAT(table.high(name, 24), IsNan());
+  }
+}
+
+TEST(NimbusSystem, TakesVariablesOfFormulasByName) {
+  struct Tag;
+  using Thrust = NimbusSystem<Host, Tag>;
+  Model model;
+  pcor::ModelEffect thrust;
+  thrust.id = "my-thrust";
+  thrust.formula = "k * TORQUE / 100";
+  thrust.parameter_names = {"k"};
+  thrust.parameters = {2.0};
+  model.effects = {thrust};
+  std::string error;
+  ASSERT_TRUE(Thrust::install(model, {"static_pressure", "TORQUE", "dynamic_pressure"}, 1, 25, &error))
+      << error;
+  Table table({"PSFD", "QCF", "ENGTRQ"}, {{"PCOR", {"PSFD", "ENGTRQ", "QCF"}, Thrust::compute}});
+  table.compute(0.0, [](const std::string& name, double time) {
+    return name == "ENGTRQ" ? static_cast<float>(50.0 + time) : raw_value(name, time);
+  });
+  EXPECT_EQ(table.low("PCOR"), 1.0F);
+  EXPECT_EQ(table.high("PCOR", 24), static_cast<float>(2.0 * static_cast<double>(50.96F) / 100.0));
+}
+
+TEST(NimbusSystem, RefusesWhatItCannotRunAndKeepsWhatItHas) {
+  ASSERT_TRUE(install_both());
+  const auto error_of = [](const Model& model, const std::vector<std::string>& inputs,
+                           pcor::CorrectWith with = pcor::CorrectWith::model) {
+    std::string error = "no error";
+    EXPECT_FALSE(Fuselage::install(model, inputs, 1.0, 25.0, &error, with));
+    EXPECT_FALSE(Fuselage::install(model, inputs, 1.0, 25.0, nullptr, with));
+    return error;
+  };
+  EXPECT_EQ(error_of({}, {"static_pressure", "dynamic_pressure", "PSFD"}),
+            "the input 'PSFD' is neither a role nor a variable of the model's formulas");
+  EXPECT_EQ(error_of({}, {"static_pressure", "dynamic_pressure", "corrected_mach"}),
+            "the input 'corrected_mach' is derived, not recorded");
+  EXPECT_EQ(error_of({}, {"static_pressure", "dynamic_pressure", "static_pressure"}),
+            "two inputs are 'static_pressure'");
+  EXPECT_THAT(error_of({}, {"static_pressure"}), testing::HasSubstr("dynamic_pressure"));
+  EXPECT_EQ(error_of({}, {"static_pressure", "dynamic_pressure"}, pcor::CorrectWith::lams),
+            "correction with LAMS needs the role 'lams_airspeed'");
+  Model model;
+  pcor::ModelEffect thrust;
+  thrust.id = "my-thrust";
+  thrust.formula = "TORQUE / 100";
+  model.effects = {thrust};
+  EXPECT_EQ(error_of(model, {"static_pressure", "dynamic_pressure"}),
+            "a formula of the model needs the input 'TORQUE'");
+
+  Table table(raw_names, both_systems());
+  table.compute(0.0, raw_value);
+  Loop loop = plain(fuselage_model(), fuselage_roles, 1.0);
+  run_plain(loop, fuselage_roles, fuselage_inputs, 0.0, raw_value);
+  expect_fuselage(loop, [&](const char* name) { return table.low(name); });
+}
+
+TEST(NimbusDefaults, ReplaceCoefficientsByName) {
+  const Defaults defaults(
+      "RECFB 1 0.95\n"
+      "PCOR.static-constant.a0 1 0.005\n"
+      "PCOR.static-qp.a2 1 -0.25\n"
+      "PCOR_R.static-constant.a0 1 0.75\n");
+  const auto find = [&defaults](const char* name) { return defaults.value(name); };
+  Model fuselage = fuselage_model();
+  EXPECT_EQ(pcor::read_defaults(fuselage, "PCOR", find), 2U);
+  EXPECT_THAT(fuselage.effects[0].parameters, ElementsAre(static_cast<double>(0.005F)));
+  EXPECT_THAT(fuselage.effects[1].parameters, ElementsAre(0.021279816));
+  EXPECT_THAT(fuselage.effects[2].parameters, ElementsAre(-0.25));
+  Model radome = radome_model();
+  EXPECT_EQ(pcor::read_defaults(radome, "PCOR_R", find), 1U);
+  EXPECT_THAT(radome.effects[0].parameters, ElementsAre(0.75));
+  EXPECT_THAT(radome.effects[1].parameters, ElementsAre(0.15));
+}
+
+TEST(NimbusDefaults, NameEveryCoefficientOnce) {
+  Model model = radome_model();
+  pcor::ModelEffect formula;
+  formula.id = "my-thrust";
+  formula.formula = "k0 + k1 * ENGTRQ";
+  formula.parameter_names = {"k0", "k1"};
+  formula.parameters = {0.0, 0.0};
+  model.effects.push_back(formula);
+  EXPECT_THAT(pcor::default_keys(model, "PCOR"), ElementsAre("PCOR.static-constant.a0", "PCOR.static-lag.tau",
+                                                             "PCOR.my-thrust.k0", "PCOR.my-thrust.k1"));
+}
+
+TEST(NimbusDefaults, TellOfOverridesThatNothingReads) {
+  const Defaults defaults(
+      "RECFB 1 0.95\n"
+      "PCOR.static-constant.a0 1 0.005\n"
+      "PCOR.static-constant.a1 1 0.005\n"
+      "PCOR.static-mach.m1 1 0.1\n"
+      "PCOR_R.static-lag.tau 1 0.2\n");
+  EXPECT_THAT(pcor::unread_defaults(fuselage_model(), "PCOR", defaults.names()),
+              ElementsAre("PCOR.static-constant.a1", "PCOR.static-mach.m1"));
+  EXPECT_THAT(pcor::unread_defaults(radome_model(), "PCOR_R", defaults.names()), IsEmpty());
+}
+
+}  // namespace

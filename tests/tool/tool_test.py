@@ -1,0 +1,278 @@
+#!/usr/bin/env python3
+"""The tool as a user meets it: what it prints, how it ends, and what it leaves behind.
+
+    tool_test.py TOOL SOURCE_DIRECTORY
+
+Flights are made from the text of the example flight, with the fault under test written into it.
+"""
+
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+TOOL = Path(sys.argv[1]).resolve()
+SOURCE = Path(sys.argv[2]).resolve()
+MODEL = (SOURCE / "data/models/c130-psfd-qcr-2003.toml").read_text()
+
+
+def example_flight():
+    return subprocess.run([SOURCE / "tools/make_example_flight"], check=True, capture_output=True, text=True).stdout
+
+
+CDL = example_flight()
+
+
+class ToolTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.path = Path(self.folder.name)
+
+    def flight(self, change=lambda cdl: cdl, name="flight.nc"):
+        """A flight from the example's text after `change`."""
+        cdl = change(CDL)
+        path = self.path / name
+        subprocess.run(["ncgen", "-k", "classic", "-o", path, "-"], input=cdl, check=True, text=True)
+        return path
+
+    def model(self, change=lambda toml: toml):
+        path = self.path / "model.toml"
+        text = change(MODEL)
+        path.write_text(text)
+        return path
+
+    def run_tool(self, *arguments, **options):
+        return subprocess.run([TOOL, *arguments], capture_output=True, text=True, **options)
+
+    def process(self, flight, model=None, output=None, *more):
+        output = self.path / "out.nc" if output is None else output
+        return self.run_tool("process", flight, "-m", model or self.model(), "-o", output, *more)
+
+    def assert_refused(self, result, *words, status=1):
+        """One line on standard error with the words, the status, and no output or litter."""
+        self.assertEqual(result.returncode, status, result.stderr)
+        self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+        self.assertEqual(result.stdout, "")
+        for word in words:
+            self.assertIn(word, result.stderr)
+        self.assertFalse((self.path / "out.nc").exists())
+        left = {p.name for p in self.path.iterdir()} - {"flight.nc", "model.toml", "readonly"}
+        self.assertEqual(left, set(), "temporary files are left")
+
+
+def replace(pattern, text, count=0):
+    """A change that must find what it replaces."""
+
+    def change(source):
+        changed, found = re.subn(pattern, text, source, count=count, flags=re.MULTILINE)
+        assert found, f"nothing matches {pattern}"
+        return changed
+
+    return change
+
+
+def data_of(name):
+    return rf"(^ *{name} =)([^;]*);"
+
+
+def with_data(name, edit):
+    """A change to the values of one variable: `edit` takes and gives a list of texts."""
+
+    def change(source):
+        match = re.search(data_of(name), source, flags=re.MULTILINE)
+        assert match, f"no data of {name}"
+        values = [value.strip() for value in match.group(2).split(",")]
+        return source[: match.start(2)] + " " + ", ".join(edit(values)) + source[match.end(2) :]
+
+    return change
+
+
+class Done(ToolTest):
+    def test_processes_a_flight(self):
+        result = self.process(self.flight())
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("corrected 600 of 600 samples", result.stdout)
+        self.assertIn("To look at the result: ncdump", result.stdout)
+        self.assertEqual(result.stderr, "")
+
+    def test_writes_json(self):
+        result = self.process(self.flight(), None, None, "--json", "-")
+        summary = json.loads(result.stdout)
+        self.assertEqual(summary["records"], 600)
+        self.assertIn("PSXC", summary["variables"])
+
+    def test_is_quiet(self):
+        result = self.process(self.flight(), None, None, "--quiet")
+        self.assertEqual((result.returncode, result.stdout, result.stderr), (0, "", ""))
+
+    def test_replaces_an_old_output_by_a_whole_new_one(self):
+        output = self.path / "out.nc"
+        output.write_text("old")
+        self.assertEqual(self.process(self.flight()).returncode, 0)
+        self.assertEqual(output.read_bytes()[:3], b"CDF")
+
+    def test_prints_the_catalogue(self):
+        result = self.run_tool("effects")
+        self.assertEqual(result.returncode, 0)
+        self.assertIn("static-alpha-quad", result.stdout)
+        one = self.run_tool("effects", "static-qp", "--json", "-")
+        self.assertEqual(json.loads(one.stdout)["parameters"][0]["name"], "a2")
+
+    def test_prints_its_version(self):
+        self.assertRegex(self.run_tool("--version").stdout, r"^pcor \d+\.\d+\.\d+\n$")
+
+
+class Usage(ToolTest):
+    def test_unknown_sub_command(self):
+        self.assert_refused(self.run_tool("proces"), "proces", "process", status=2)
+
+    def test_missing_option(self):
+        self.assert_refused(self.run_tool("process", "flight.nc"), "--model", status=2)
+
+    def test_wrong_choice(self):
+        result = self.process(self.flight(), None, None, "--correct-with", "radar")
+        self.assert_refused(result, "radar", status=2)
+
+    def test_unknown_effect(self):
+        self.assert_refused(self.run_tool("effects", "static-alpa"), "static-alpha")
+
+
+class BadFlight(ToolTest):
+    def test_no_such_file(self):
+        self.assert_refused(self.process(self.path / "none.nc"), "none.nc")
+
+    def test_not_netcdf(self):
+        path = self.path / "flight.nc"
+        path.write_text("this is not a netCDF file\n")
+        self.assert_refused(self.process(path), "flight.nc", "netCDF")
+
+    def test_truncated(self):
+        path = self.flight()
+        path.write_bytes(path.read_bytes()[:-5000])
+        self.assert_refused(self.process(path), "flight.nc", "truncated")
+
+    def test_missing_variable(self):
+        flight = self.flight(lambda cdl: cdl.replace("QCR", "QCRX"))
+        self.assert_refused(self.process(flight), "QCR", "QCRX")
+
+    def test_unknown_unit(self):
+        flight = self.flight(replace(r'PSFD:units = "[^"]*"', 'PSFD:units = "bananas"'))
+        self.assert_refused(self.process(flight), "PSFD", "bananas", "[units]")
+
+    def test_wrong_unit(self):
+        flight = self.flight(replace(r'PSFD:units = "[^"]*"', 'PSFD:units = "m/s"'))
+        self.assert_refused(self.process(flight), "PSFD", "m/s", "hPa")
+
+    def test_absent_unit(self):
+        flight = self.flight(replace(r"^.*PSFD:units.*$", ""))
+        self.assert_refused(self.process(flight), "PSFD", "[units]", "static_pressure")
+
+    def test_stated_unit(self):
+        flight = self.flight(replace(r"^.*PSFD:units.*$", ""))
+        model = self.model(lambda toml: toml + '\n[units]\nunit.static_pressure = "hPa"\n')
+        self.assertEqual(self.process(flight, model).returncode, 0)
+
+    def test_all_values_missing(self):
+        flight = self.flight(with_data("PSFD", lambda values: ["-32767"] * len(values)))
+        self.assert_refused(self.process(flight), "PSFD")
+
+    def test_time_backwards(self):
+        flight = self.flight(with_data("time_offset", lambda t: t[:100] + [t[50]] + t[101:]))
+        self.assert_refused(self.process(flight), "time", "100")
+
+    def test_time_repeats(self):
+        flight = self.flight(with_data("time_offset", lambda t: t[:100] + [t[99]] + t[101:]))
+        self.assert_refused(self.process(flight), "time", "100")
+
+    def test_gap_is_told(self):
+        flight = self.flight(
+            with_data("time_offset", lambda t: t[:300] + [str(float(x) + 50) for x in t[300:]])
+        )
+        result = self.process(flight)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("1 gap", result.stdout)
+
+    def test_no_records(self):
+        def empty(cdl):
+            cdl = re.sub(r"Time = \d+ ;", "Time = UNLIMITED ;", cdl)
+            return re.sub(r"^ *[A-Za-z_0-9]+ =[^;]*;$", lambda m: m.group(0) if "base_time" in m.group(0) else "",
+                          cdl[: cdl.index("data:")], flags=0) + "data:\n base_time = 0 ;\n}\n"
+
+        self.assert_refused(self.process(self.flight(empty)), "record")
+
+    def test_bad_values_inside(self):
+        bad = {10: "NaNf", 20: "Infinityf", 30: "-32767", 40: "0", 50: "-5"}
+        edit = lambda values: [bad.get(i, value) for i, value in enumerate(values)]
+        for name in ("PSFD", "QCR", "QCF", "TTRR"):
+            result = self.process(self.flight(with_data(name, edit)))
+            self.assertEqual(result.returncode, 0, result.stderr)
+
+
+class BadOutput(ToolTest):
+    def test_output_is_the_input(self):
+        flight = self.flight()
+        before = flight.read_bytes()
+        self.assert_refused(self.process(flight, None, flight), "flight.nc")
+        self.assertEqual(flight.read_bytes(), before)
+
+    def test_output_is_a_link_to_the_input(self):
+        flight = self.flight()
+        before = flight.read_bytes()
+        link = self.path / "readonly"
+        link.symlink_to(flight)
+        self.assert_refused(self.process(flight, None, link), "input itself")
+        self.assertEqual(flight.read_bytes(), before)
+
+    def test_no_such_folder(self):
+        self.assert_refused(self.process(self.flight(), None, self.path / "none" / "out.nc"), "none")
+
+    def test_full_device(self):
+        self.assert_refused(self.process(self.flight(), None, "/dev/full"), "/dev/full")
+
+    def test_failure_keeps_the_old_output(self):
+        output = self.path / "out.nc"
+        output.write_text("old")
+        flight = self.flight(replace(r'PSFD:units = "[^"]*"', 'PSFD:units = "bananas"'))
+        self.assertEqual(self.process(flight).returncode, 1)
+        self.assertEqual(output.read_text(), "old")
+
+    def test_taken_name(self):
+        flight = self.flight(lambda cdl: cdl.replace("GGALT", "PSXC"))
+        self.assert_refused(self.process(flight, None, None, "--all"), "PSXC", "--suffix")
+        self.assertEqual(self.process(flight, None, None, "--all", "--suffix", "_NEW").returncode, 0)
+
+
+class BadModel(ToolTest):
+    def refuse(self, change, *words):
+        self.assert_refused(self.process(self.flight(), self.model(change)), "model.toml", *words)
+
+    def test_no_such_file(self):
+        self.assert_refused(self.process(self.flight(), self.path / "none.toml"), "none.toml")
+
+    def test_syntax_error(self):
+        self.refuse(lambda toml: 'name = "x\n' + toml, "model.toml:1:")
+
+    def test_unknown_effect(self):
+        self.refuse(lambda toml: toml + '\n[[effect]]\nid = "static-alpa"\n', "static-alpha")
+
+    def test_unknown_parameter(self):
+        self.refuse(
+            lambda toml: toml + '\n[[effect]]\nid = "static-qp"\nparameters = { a3 = 1.0 }\n', "a3", "a2"
+        )
+
+    def test_missing_role(self):
+        self.refuse(replace(r"^static_pressure.*$", ""), "static_pressure")
+
+    def test_not_finite(self):
+        self.refuse(lambda toml: toml + '\n[[effect]]\nid = "static-qp"\nparameters = { a2 = nan }\n', "a2")
+
+
+if __name__ == "__main__":
+    if not os.access(TOOL, os.X_OK):
+        sys.exit(f"{TOOL} is not a program")
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
