@@ -28,7 +28,7 @@ struct Variable {
   bool rate_dimension = false;         // (Time, spsN), also with N = 1
   std::vector<double> missing_values;  // as numbers of the stored type
   UnitConversion unpacking;            // scale_factor and add_offset
-  bool cache_is_limited = false;
+  bool cache_is_fit = false;
 };
 
 std::optional<int> rate_of_dimension(const NetcdfFile& file, int dimension) {
@@ -222,8 +222,8 @@ struct Flight::Implementation {
   void read_stored(Variable& variable, RecordBlock block, double* out) {
     check_block(variable.info.name, block);
     if (block.count == 0) return;
-    if (!variable.cache_is_limited) file.limit_chunk_cache(variable.id);
-    variable.cache_is_limited = true;
+    if (!variable.cache_is_fit) file.fit_chunk_cache(variable.id);
+    variable.cache_is_fit = true;
     const std::size_t start[] = {block.first, 0};
     const std::size_t count[] = {block.count, static_cast<std::size_t>(variable.info.rate)};
     file.check(nc_get_vara_double(file.id(), variable.id, start, count, out),

@@ -322,7 +322,7 @@ struct FlightWriter::Implementation {
     Copied entry;
     entry.from = *source->find_variable(name);
     entry.type = source->type_of(entry.from);
-    source->limit_chunk_cache(entry.from);
+    source->fit_chunk_cache(entry.from);
     if (entry.type > NC_STRING)
       throw Error(shown.string() + ": " + name +
                   " has a type of its own making, which cannot be copied; leave it out");
@@ -344,6 +344,9 @@ struct FlightWriter::Implementation {
     }
     for (const std::string& attribute : source->attribute_names(entry.from))
       copy_attribute(entry.from, entry.to, attribute, entry.type);
+    if (input->variable(name).long_name.empty() &&
+        source->text_attribute(entry.from, "standard_name").empty())
+      put_text(entry.to, "long_name", name);
     copied.push_back(entry);
   }
 

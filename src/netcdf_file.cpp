@@ -4,7 +4,6 @@
 #include <netcdf.h>
 #include <pcor/offline/error.hpp>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -18,6 +17,7 @@ namespace pcor {
 namespace {
 
 constexpr int closed = -1;
+constexpr std::size_t chunk_cache_bytes = 1 << 18, chunk_cache_slots = 1009;
 
 enum class Content { classic, hdf5, other };
 
@@ -53,6 +53,8 @@ NetcdfFile NetcdfFile::open(const std::filesystem::path& path) {
 
   const Content content = content_of(path);
   if (content == Content::other) throw Error(name + " is not a netCDF file; name one that `ncdump -k` knows");
+  // HDF5 keeps what it read of every variable; a file that is open twice shares what the first one asked for.
+  nc_set_chunk_cache(chunk_cache_bytes, chunk_cache_slots, 1);
   int id = closed;
   std::size_t buffer = classic_buffer_bytes;
   const int opened = nc__open(name.c_str(), NC_NOWRITE, &buffer, &id);
@@ -99,7 +101,7 @@ void NetcdfFile::check(int status, const std::string& doing) const {
 
 void NetcdfFile::close() { check(nc_close(std::exchange(id_, closed)), "cannot be closed"); }
 
-void NetcdfFile::limit_chunk_cache(int variable) const {
+void NetcdfFile::fit_chunk_cache(int variable) const {
   int storage = NC_CONTIGUOUS;
   std::vector<std::size_t> chunk(dimensions_of(variable).size());
   if (chunk.empty() || nc_inq_var_chunking(id_, variable, &storage, chunk.data()) != NC_NOERR) return;
@@ -107,8 +109,7 @@ void NetcdfFile::limit_chunk_cache(int variable) const {
   std::size_t bytes = 0;
   check(nc_inq_type(id_, type_of(variable), nullptr, &bytes), "cannot read a variable's type");
   for (const std::size_t length : chunk) bytes *= length;
-  constexpr std::size_t least = 1 << 18, slots = 5003;
-  nc_set_var_chunk_cache(id_, variable, std::max(least, 2 * bytes), slots, 1);
+  if (2 * bytes > chunk_cache_bytes) nc_set_var_chunk_cache(id_, variable, 2 * bytes, chunk_cache_slots, 1);
 }
 
 std::optional<int> NetcdfFile::find_variable(const std::string& name) const {

@@ -30,9 +30,9 @@ class NetcdfFile {
   /// Closes for good; errors that the library kept until now are thrown.
   void close();
 
-  /// Keeps HDF5 from holding more of a variable in memory than a block of records needs; to be called before
-  /// its first value is read.
-  void limit_chunk_cache(int variable) const;
+  /// Has HDF5 hold two chunks of a variable in memory where they are larger than usual, so that a compressed
+  /// one is not unpacked for every block of records; to be called before the first value is read.
+  void fit_chunk_cache(int variable) const;
 
   std::optional<int> find_variable(const std::string& name) const;
   std::string variable_name(int variable) const;

@@ -163,10 +163,10 @@ void Processing::choose_outputs() {
     all.insert(all.end(), corrections.begin(), corrections.end());
     return all;
   };
-  const bool has_recovery = chain_->recorded(Quantity::recovery_temperature);
+  const bool derives_temperature = chain_->derives_temperature();
   const std::string thermometer =
-      variable_of(has_recovery ? Quantity::recovery_temperature : Quantity::ambient_temperature);
-  const std::string temperature = has_recovery ? name_of("ATX") : thermometer;
+      variable_of(derives_temperature ? Quantity::recovery_temperature : Quantity::ambient_temperature);
+  const std::string temperature = derives_temperature ? name_of("ATX") : thermometer;
   const std::string beam = variable_of(Quantity::lams_airspeed);
 
   add_output("PCOR", Quantity::static_defect, "hPa", "Static defect (delta-p) of the model", "",
@@ -181,7 +181,7 @@ void Processing::choose_outputs() {
              "Aircraft State", with_corrections(q));
   add_output("MACHX", Quantity::corrected_mach, "1", "Aircraft Mach Number", "", "Aircraft State",
              {name_of("PSXC"), name_of("QCXC")});
-  if (has_recovery) {
+  if (derives_temperature) {
     add_output("ATX", Quantity::ambient_temperature, "degC", "Ambient Temperature", "air_temperature",
                "Atmos. State", {thermometer, name_of("MACHX")}, kelvin_to_celsius);
   }

@@ -48,8 +48,11 @@ ReplacementFile::ReplacementFile(const fs::path& target) : shown_(target) {
 }
 
 ReplacementFile::~ReplacementFile() {
+  if (committed_) return;
   std::error_code ignored;
-  if (!committed_) fs::remove(path_, ignored);
+  // HDF5 keeps a file open that it could not complete: emptied first, it gives its space back all the same.
+  fs::resize_file(path_, 0, ignored);
+  fs::remove(path_, ignored);
 }
 
 void ReplacementFile::commit() {

@@ -29,8 +29,7 @@ double value(const EffectFacts& facts, const State<double>& state, const Paramet
   return effect_functions<double, double>[effect_named(facts.id)](state, parameters.data());
 }
 
-// Numbers of an aircraft's size for all that an effect needs: up to 1000 of either sign would do as well, but
-// powers of them lose digits.
+// Random inputs and parameters of either sign, within the bounds of the parameters.
 class Draw {
  public:
   State<double> state(const EffectFacts& facts) {

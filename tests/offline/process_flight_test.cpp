@@ -41,8 +41,9 @@ class RealFlight : public testing::Test {
   }
 
   /// The greatest difference between a derived variable and nimbus's, in flight (TASX above 60 m/s).
-  double worst(const Flight& ours, const std::string& name, const Flight& nimbus, const std::string& theirs,
-               const std::string& unit, const std::function<double(double)>& of_ours = [](double x) { return x; }) {
+  double worst(
+      const Flight& ours, const std::string& name, const Flight& nimbus, const std::string& theirs,
+      const std::string& unit, const std::function<double(double)>& of_ours = [](double x) { return x; }) {
     const std::vector<double> derived = read_all(ours, name, unit == "1" ? "1" : unit);
     const std::vector<double> reference = read_all(nimbus, theirs, unit);
     const std::vector<double> airspeed = read_all(nimbus, "TASX", "m/s");
@@ -64,7 +65,8 @@ class RealFlight : public testing::Test {
   ProcessSummary summary_;
 };
 
-// Pressures are stored as 32-bit floats: 6e-5 hPa at 1000 hPa on either side. The issue is the law's coefficients.
+// Pressures are stored as 32-bit floats: 6e-5 hPa at 1000 hPa on either side. The issue is the law's
+// coefficients.
 constexpr double pressure_tolerance = 2e-4;  // hPa
 
 TEST_F(RealFlight, CorrectsPressuresOfTheRadomePairAsNimbus) {
@@ -106,7 +108,8 @@ TEST_F(RealFlight, SaysWhatItDid) {
   EXPECT_EQ(summary_.rate, 1);
   EXPECT_GT(summary_.corrected, 2000U);
   EXPECT_GE(summary_.least_defect, 1.113);
-  EXPECT_THAT(summary_.outputs, testing::ElementsAre("PCOR", "PSXC", "QCXC", "MACHX", "ATX", "TASX", "PCORFLAG"));
+  EXPECT_THAT(summary_.outputs,
+              testing::ElementsAre("PCOR", "PSXC", "QCXC", "MACHX", "ATX", "TASX", "PCORFLAG"));
 }
 
 }  // namespace

@@ -51,8 +51,8 @@ TEST(AirData, SoundPropagatesAsInTheStandardAtmosphere) {
 }
 
 TEST(AirData, AirspeedInTheStandardAtmosphere) {
-  // 500 knots, M 0.8717 at 36089 ft; 250 knots at sea level: M 0.3779. Impact pressures of ISO 2533 air, from
-  // q_c = p[(1+0.2 M^2)^3.5-1]: an airspeed indicator at sea level reads 250 knots at 106.5 hPa.
+  // Sound goes at 661.47 knots at sea level and 573.57 knots in the stratosphere (ISO 2533), so 250 knots are
+  // Mach 0.3779 and 500 knots are Mach 0.8717.
   const double knot = 1852.0 / 3600.0;
   const double mach = 250 * knot / speed_of_sound(288.15, dry);
   EXPECT_NEAR(mach, 0.3779, 5e-5);

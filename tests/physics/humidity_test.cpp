@@ -99,6 +99,20 @@ TEST(VaporPressure, IsMissingWhereThereIsNoTemperature) {
   EXPECT_EQ(vapor_pressure_over_ice(0.0), 0.0) << "nothing evaporates from ice at 0 K";
 }
 
+TEST(VaporPressure, BelowSaturationIsBelowSaturation) {
+  // The quick bound must never pass over saturated air, from the coldest to the warmest of the domain.
+  for (double T = 123; T <= 332; T += 0.1)
+    EXPECT_LE(pcor::vapor_pressure_below_saturation(T), vapor_pressure_over_water(T)) << T;
+  // Nor be so low that it is of no use: the printed digits.
+  for (double T = 200; T <= 320; T += 0.1) {
+    const double part = pcor::vapor_pressure_below_saturation(T) / vapor_pressure_over_water(T);
+    EXPECT_GT(part, 0.9505) << T;
+    EXPECT_LT(part, 0.9975) << T;
+  }
+  EXPECT_EQ(pcor::vapor_pressure_below_saturation(50.0), 0.0);
+  EXPECT_TRUE(std::isnan(pcor::vapor_pressure_below_saturation(missing)));
+}
+
 TEST(EnhancementFactor, IsFourPerMilleAtTheSurface) {
   // Smithsonian tables, and Buck (1981): 1.0040 at 1000 hPa and 0 deg C, 1.0045 at 25 deg C; they differ
   // among themselves by 3e-4.

@@ -329,6 +329,20 @@ TEST(Air, TakesAnAmbientTemperatureAsItIs) {
   EXPECT_NEAR(s[Quantity::lams_static_defect], truth.defect(), 1e-9);
 }
 
+TEST(Air, KeepsARecordedAmbientTemperatureBesideAThermometer) {
+  // A radiometer's, 1 K warmer than the thermometer says: approach 3 stands on it, whenever it is asked.
+  Recorded recorded = with(truth.recorded(), Quantity::ambient_temperature, truth.T + 1);
+  Model model = truth.model();
+  model.lams.approach = LamsApproach::with_temperature;
+  const Chain chain = build(model, recorded);
+  Sample s = fly(chain, recorded);
+  EXPECT_EQ(s[Quantity::ambient_temperature], truth.T + 1);
+  // 0.237 hPa/K in the table of sensitivities, at 268.6 K; it falls as 1/T^2.
+  EXPECT_NEAR(s[Quantity::lams_static_defect] - truth.defect(), 0.237 * std::pow(268.6 / 270.5, 2), 0.001);
+  EXPECT_EQ(chain.lams_static_defect(s.state, chain.parameters().data(), s.flags),
+            s[Quantity::lams_static_defect]);
+}
+
 TEST(Air, WithoutThermometerHasAMachNumberStill) {
   Recorded recorded = without(truth.recorded(), Quantity::lams_airspeed);
   recorded = without(recorded, Quantity::recovery_temperature);
@@ -612,7 +626,7 @@ TEST(Build, WantsEffectsThatExist) {
   EXPECT_EQ(error_of(with(truth.model(), catalogued("static-beauty", {1})), truth.recorded()),
             "there is no effect 'static-beauty'");
   EXPECT_EQ(error_of(with(truth.model(), catalogued("static-qp", {1, 2})), truth.recorded()),
-            "effect 'static-qp' has 1 parameters, not 2");
+            "effect 'static-qp' takes 1 parameter(s), not 2");
 }
 
 TEST(Build, WantsTheInputsOfEffects) {
@@ -636,7 +650,7 @@ TEST(Build, WantsFormulasThatParse) {
       AllOf(HasSubstr("formula of effect 'of-the-user': "), HasSubstr("column 4")));
   EXPECT_EQ(
       error_of(with(truth.model(), written(Where::static_defect, "k", {"k"}, {1, 2})), truth.recorded()),
-      "effect 'of-the-user' has 1 parameters, not 2");
+      "effect 'of-the-user' takes 1 parameter(s), not 2");
   EXPECT_EQ(error_of(with(truth.model(), written(Where::static_defect, "flaps")), truth.recorded()),
             "the formula of effect 'of-the-user' needs the role 'flaps': name its variable in the table "
             "[variables]");

@@ -82,8 +82,9 @@ class FlightWriter {
   std::size_t define(const OutputVariable& variable);
 
   /// Copies a variable of the input, of any type and shape, with its values and attributes as they are,
-  /// except that units which UDUNITS does not know get its spelling ("M/s" becomes "m/s") and trailing NULs
-  /// are cut off. The input's time variable is not copied: `Time` takes its place.
+  /// except that units which UDUNITS does not know get its spelling ("M/s" becomes "m/s"), trailing NULs are
+  /// cut off, markers of missing values get the variable's type, and one that has no name in words is called
+  /// by its own. The input's time variable is not copied: `Time` takes its place.
   /// @throws Error if there is no input, no such variable, or the name is taken.
   void copy(const std::string& name);
 

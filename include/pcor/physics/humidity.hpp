@@ -24,8 +24,8 @@ S vapor_pressure_over_water(const S& temperature) {
   return S(0.01) * exp(warm + blend * cold);
 }
 
-/// A vapour pressure, hPa, that is surely below saturation over water at `temperature` in K, for a fraction of
-/// what `vapor_pressure_over_water` costs:
+/// A vapour pressure, hPa, that is surely below saturation over water at `temperature` in K, for a fraction
+/// of what `vapor_pressure_over_water` costs:
 ///
 ///     e = (1.3454 - 86.55/T)^64
 ///

@@ -13,7 +13,8 @@ namespace pcor {
 /// pack in batch processing, an automatically differentiated number in a fit. A scalar has the four
 /// operations, comparisons, construction from `double`, and `sqrt`, `exp`, `log`, `sin`, `cos`, `tan` by
 /// argument-dependent lookup. Comparisons of a vector pack give one truth value for each lane, so formulas
-/// choose with `select` instead of `if`.
+/// choose with `select` instead of `if`. The formulas of users ask for `abs`, `log10`, `tanh` and `pow`
+/// besides.
 
 /// The type of an expression in a state of scalar `X` and parameters of scalar `P`.
 template <class X, class P>
@@ -59,10 +60,13 @@ constexpr S finite_or_missing(const S& value) {
 }
 
 /// `base` to the `exponent`, for a base above zero. A negative base gives NaN.
+///
+/// Within a few units in the last place where the result is between 0.001 and 1000, as all powers of the
+/// chain are; `std::pow`, which keeps that up to any size, takes nearly twice the time.
 template <class S>
 S power(const S& base, const S& exponent) {
   if constexpr (std::is_floating_point_v<S>) {
-    return std::pow(base, exponent);
+    return std::exp2(exponent * std::log2(base));
   } else {
     return exp(exponent * log(base));
   }

@@ -165,8 +165,7 @@ class Chain {
     S humidity = recorded_humidity(state, parameters, p, flags);
     MoistAir<S> constants = solve_air(state, humidity, thermometer, delta);
     // Most air is far from saturation; only where it may not be is saturation itself computed.
-    if (moist_ &&
-        any(humidity * p > vapor_pressure_below_saturation(state[Quantity::ambient_temperature]))) {
+    if (moist_ && any(humidity * p > vapor_pressure_below_saturation(state[Quantity::ambient_temperature]))) {
       const S saturation = vapor_pressure_over_water(state[Quantity::ambient_temperature]) / p;
       const auto above = humidity > saturation;
       flags.set(above, Quality::humidity_limited);
@@ -187,21 +186,19 @@ class Chain {
     const S p = state[Quantity::port_static_pressure];
     const S q = state[Quantity::port_dynamic_pressure];
     const S v = lams_airspeed(state, parameters);
-    const S e = recorded_humidity(state, parameters, p, flags) * p;
+    S e = recorded_humidity(state, parameters, p, flags) * p;
     const S thermometer = recovery_temperature_of(state, parameters);
     const S delta = sum<S>(Where::recovery, state, parameters);
     const auto recovery = [this, &delta](const S& mach) { return recovery_(mach) + delta; };
-    LamsSolution<S> solution;
-    switch (lams_.approach) {
-      case LamsApproach::simultaneous:
-        solution = lams_simultaneous(p, q, v, thermometer, e, recovery);
-        break;
-      case LamsApproach::iterated:
-        solution = lams_iterated(p, q, v, thermometer, e, recovery);
-        break;
-      case LamsApproach::with_temperature:
-        solution = lams_with_temperature(p, q, v, state[Quantity::ambient_temperature], e);
-        break;
+    LamsSolution<S> solution = solve_lams(p, q, v, e, state, thermometer, recovery);
+    if (moist_ && any(e > vapor_pressure_below_saturation(solution.temperature))) {
+      const S saturation = vapor_pressure_over_water(solution.temperature);
+      const auto above = e > saturation;
+      flags.set(above, Quality::humidity_limited);
+      if (any(above)) {
+        e = select(above, saturation, e);
+        solution = solve_lams(p, q, v, e, state, thermometer, recovery);
+      }
     }
     const auto valid = p > S(0.0) && q > S(0.0) && v > S(0.0) && p + solution.static_defect > S(0.0);
     const S defect = select(valid, finite_or_missing(solution.static_defect), missing<S>());
@@ -264,6 +261,11 @@ class Chain {
 
   template <class R, class S, class P>
   R sum(Where where, const State<S>& state, const P* parameters) const {
+    return acts(where) ? sum_of_terms<R>(where, state, parameters) : R(0.0);
+  }
+
+  template <class R, class S, class P>
+  R sum_of_terms(Where where, const State<S>& state, const P* parameters) const {
     R total(0.0);
     for (std::size_t i = begin_of(where); i < begin_of(where, 1); ++i) {
       total = total + value(terms_[i], state, parameters + terms_[i].first_parameter);
@@ -337,6 +339,20 @@ class Chain {
     flags.set(unknown, Quality::dry_air_assumed);
     flags.set(negative, Quality::humidity_limited);
     return select(unknown || negative, S(0.0), e / p);
+  }
+
+  template <class S, class Recovery>
+  LamsSolution<S> solve_lams(const S& p, const S& q, const S& v, const S& e, const State<S>& state,
+                             const S& thermometer, const Recovery& recovery) const {
+    switch (lams_.approach) {
+      case LamsApproach::simultaneous:
+        return lams_simultaneous(p, q, v, thermometer, e, recovery);
+      case LamsApproach::iterated:
+        return lams_iterated(p, q, v, thermometer, e, recovery);
+      case LamsApproach::with_temperature:
+        return lams_with_temperature(p, q, v, state[Quantity::ambient_temperature], e);
+    }
+    return LamsSolution<S>();
   }
 
   template <class S>
@@ -416,8 +432,8 @@ class Chain::Builder {
     if (place == catalogue_size) return fail("there is no effect " + quoted(effect.id));
     const EffectFacts& facts = effect_facts[place];
     if (effect.parameters.size() != facts.parameter_count()) {
-      return fail("effect " + quoted(effect.id) + " has " + std::to_string(facts.parameter_count()) +
-                  " parameters, not " + std::to_string(effect.parameters.size()));
+      return fail("effect " + quoted(effect.id) + " takes " + std::to_string(facts.parameter_count()) +
+                  " parameter(s), not " + std::to_string(effect.parameters.size()));
     }
     for (std::size_t i = 0; i < facts.need_count(); ++i) {
       if (!require(facts.needs[i], "effect " + quoted(effect.id))) return false;
@@ -434,8 +450,8 @@ class Chain::Builder {
     std::optional<Formula> formula = Formula::parse(effect.formula, effect.parameter_names, &formula_error);
     if (!formula) return fail("formula of effect " + quoted(effect.id) + ": " + formula_error.message);
     if (effect.parameters.size() != effect.parameter_names.size()) {
-      return fail("effect " + quoted(effect.id) + " has " + std::to_string(effect.parameter_names.size()) +
-                  " parameters, not " + std::to_string(effect.parameters.size()));
+      return fail("effect " + quoted(effect.id) + " takes " + std::to_string(effect.parameter_names.size()) +
+                  " parameter(s), not " + std::to_string(effect.parameters.size()));
     }
     if (formula->variables().size() > formula_variable_capacity) {
       return fail("formula of effect " + quoted(effect.id) + " uses more than " +

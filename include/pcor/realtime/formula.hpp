@@ -232,7 +232,11 @@ class Formula {
           top = integer_power(top, static_cast<int>(at->number));
           break;
         case Operation::constant_power:
-          top = power(top, at->number);
+          if constexpr (std::is_floating_point_v<S>) {
+            top = std::pow(top, at->number);  // of any base: a negative one too, where the exponent is whole
+          } else {
+            top = power(top, at->number);
+          }
           break;
         case Operation::power:
           --below;

@@ -48,7 +48,7 @@ struct Policy {
   /// Below this dynamic pressure (hPa) delta-p is multiplied by (q_m/taper_below)^taper_power; 0 for none.
   double taper_below = 0.0;
   double taper_power = 3.0;
-  /// Delta-p (hPa) is not less than this.
+  /// Delta-p (hPa) is not less than this, before the taper.
   double minimum = -std::numeric_limits<double>::infinity();
 };
 
