@@ -211,7 +211,10 @@ FileDescription Processing::describe() const {
   description.longitude = first_of({flight_.attribute("longitude_coordinate"), "LONC", "GGLON", "LON"});
   description.altitude = first_of({flight_.attribute("zaxis_coordinate"), variable_of(Quantity::altitude),
                                    "ALTX", "GGALTC", "GGALT", "ALT"});
-  description.attributes = {{"pcor_model", file_.model.name}};
+  description.attributes = {
+      {"pcor_model", file_.model.name},
+      {"pcor_time_stamp",
+       flight_.time_stamp() == TimeStamp::begin ? "begin of the record" : "middle of the record"}};
   return description;
 }
 

@@ -334,7 +334,7 @@ class Chain {
           : recorded(Quantity::dew_point)    ? vapor_pressure_from_dew_point(state[Quantity::dew_point], p)
                                              : missing<S>();
     e = e + sum<S>(Where::humidity, state, parameters);
-    const auto unknown = is_missing(e) && !is_missing(p);
+    const auto unknown = !(e < p) && !is_missing(p);
     const auto negative = e < S(0.0);
     flags.set(unknown, Quality::dry_air_assumed);
     flags.set(negative, Quality::humidity_limited);
