@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <sstream>
+#include <stdexcept>
 
 namespace {
 
@@ -221,7 +222,7 @@ Loop plain(const Model& model, const std::vector<std::string>& roles, double rat
   for (const std::string& role : roles) recorded.push_back(pcor::quantity_named(role));
   std::string error;
   auto loop = Loop::build(model, recorded, rate, &error);
-  EXPECT_TRUE(loop) << error;
+  if (!loop) throw std::runtime_error(error);
   return std::move(*loop);
 }
 

@@ -200,7 +200,7 @@ class Chain {
         solution = solve_lams(p, q, v, e, state, thermometer, recovery);
       }
     }
-    const auto valid = p > S(0.0) && q > S(0.0) && v > S(0.0) && p + solution.static_defect > S(0.0);
+    const auto valid = p > S(0.0) && q > S(0.0) && v > S(0.0);
     const S defect = select(valid, finite_or_missing(solution.static_defect), missing<S>());
     flags.set(is_missing(defect), Quality::lams_missing);
     return defect;
@@ -326,7 +326,8 @@ class Chain {
     return select(temperature > S(0.0), temperature, missing<S>());
   }
 
-  // e/p at static pressure p, zero or above; zero where dry constants are asked for or nothing is recorded.
+  // e/p at static pressure p, zero or above; zero where dry constants are asked for, nothing is recorded, or
+  // e is not below p, which no air is.
   template <class S, class P, class Flags>
   S recorded_humidity(const State<S>& state, const P* parameters, const S& p, Flags& flags) const {
     if (!moist_) return S(0.0);
@@ -334,7 +335,7 @@ class Chain {
           : recorded(Quantity::dew_point)    ? vapor_pressure_from_dew_point(state[Quantity::dew_point], p)
                                              : missing<S>();
     e = e + sum<S>(Where::humidity, state, parameters);
-    const auto unknown = !(e < p) && !is_missing(p);
+    const auto unknown = !(e < p) && p > S(0.0);
     const auto negative = e < S(0.0);
     flags.set(unknown, Quality::dry_air_assumed);
     flags.set(negative, Quality::humidity_limited);

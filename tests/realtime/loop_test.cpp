@@ -1,0 +1,726 @@
+#include "pcor/realtime/loop.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <map>
+#include <random>
+#include <sstream>
+#include <stdexcept>
+
+namespace {
+
+using pcor::CorrectWith;
+using pcor::Functor;
+using pcor::Loop;
+using pcor::Model;
+using pcor::ModelEffect;
+using pcor::Quality;
+using pcor::QualityFlags;
+using pcor::Quantity;
+using pcor::State;
+using pcor::Where;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsNan;
+using testing::Not;
+
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+using Sample = std::map<Quantity, double>;
+
+std::vector<Quantity> roles(const Sample& sample) {
+  std::vector<Quantity> result;
+  for (const auto& [quantity, value] : sample) result.push_back(quantity);
+  return result;
+}
+
+Sample with(Sample sample, const Sample& changes) {
+  for (const auto& [quantity, value] : changes) sample[quantity] = value;
+  return sample;
+}
+
+Loop build(const Model& model, const Sample& sample, double rate, CorrectWith with = CorrectWith::model) {
+  std::string error;
+  auto loop = Loop::build(model, roles(sample), rate, &error, with);
+  if (!loop) throw std::runtime_error(error);
+  return std::move(*loop);
+}
+
+void run(Loop& loop, const Sample& sample, double time) {
+  for (const auto& [quantity, value] : sample) loop.state()[quantity] = value;
+  loop.run(time);
+}
+
+/// A functor of a test's own, from a function of the state.
+class Own final : public Functor {
+ public:
+  using Function = std::function<void(State<double>&)>;
+  Own(std::vector<Quantity> inputs, std::vector<Quantity> outputs, Function function)
+      : Functor(std::move(inputs), std::move(outputs)), function_(std::move(function)) {}
+  void compute(State<double>& state, QualityFlags&) noexcept override { function_(state); }
+
+ private:
+  Function function_;
+};
+
+std::unique_ptr<Functor> own(std::vector<Quantity> inputs, std::vector<Quantity> outputs,
+                             Own::Function function) {
+  return std::make_unique<Own>(std::move(inputs), std::move(outputs), std::move(function));
+}
+
+// Writes one more than the sum of its inputs.
+std::unique_ptr<Functor> sum(const std::vector<Quantity>& inputs, Quantity output) {
+  return own(inputs, {output}, [inputs, output](State<double>& state) {
+    double total = 1.0;
+    for (const Quantity input : inputs) total += state[input];
+    state[output] = total;
+  });
+}
+
+ModelEffect formula(Where where, std::string text, std::vector<std::string> names = {},
+                    std::vector<double> values = {}) {
+  ModelEffect effect;
+  effect.id = "of-the-user";
+  effect.where = where;
+  effect.formula = std::move(text);
+  effect.parameter_names = std::move(names);
+  effect.parameters = std::move(values);
+  return effect;
+}
+
+// A C-130 with LAMS, flow angles from the radome, and humidity.
+Model c130() {
+  Model model;
+  model.effects = {
+      {"static-constant", {0.004127875}}, {"static-alpha", {0.021279816}}, {"static-qp", {0.030849643}}};
+  model.recovery = {{0.95}};
+  model.lams.elevation = 1.5;
+  model.lams.azimuth = -0.8;
+  model.attack_radome = {4.9, 13.4, 6.1};
+  model.sideslip_radome = {0.1, 11.8, 0.0};
+  return model;
+}
+
+// Level flight at 700 hPa. The laser's airspeed goes with a delta-p near that of the model.
+const Sample level{{Quantity::static_pressure, 700.0},
+                   {Quantity::dynamic_pressure, 67.6},
+                   {Quantity::radome_dynamic_pressure, 67.1},
+                   {Quantity::attack_differential_pressure, -15.3},
+                   {Quantity::sideslip_differential_pressure, 1.2},
+                   {Quantity::recovery_temperature, 280.0},
+                   {Quantity::vapor_pressure, 4.2},
+                   {Quantity::lams_airspeed, 117.0}};
+
+const std::vector<Quantity> results{
+    Quantity::static_defect,        Quantity::lams_static_defect, Quantity::corrected_static_pressure,
+    Quantity::corrected_mach,       Quantity::humidity,           Quantity::corrected_dynamic_pressure,
+    Quantity::ambient_temperature,  Quantity::corrected_airspeed, Quantity::lams_temperature,
+    Quantity::lams_dynamic_pressure};
+
+std::uint32_t bits(std::initializer_list<Quality> list) {
+  QualityFlags flags;
+  for (const Quality bit : list) flags.set(bit);
+  return flags.bits();
+}
+
+// All results of two loops agree to the last bit, missing ones too.
+void expect_same(const Loop& loop, const Loop& expected) {
+  for (const Quantity result : results) {
+    const double value = loop.state()[result];
+    const double wanted = expected.state()[result];
+    EXPECT_TRUE(value == wanted || (std::isnan(value) && std::isnan(wanted)))
+        << pcor::facts_of(result).name << ": " << value << " for " << wanted;
+  }
+  EXPECT_EQ(loop.quality().bits(), expected.quality().bits());
+}
+
+TEST(LoopOrder, DoesNotDependOnTheOrderOfAdding) {
+  std::vector<std::size_t> order{0, 1, 2, 3, 4};
+  do {
+    Loop loop(1.0);
+    std::vector<Quantity> v;
+    for (const char* name : {"raw", "a", "b", "c", "d", "e"}) v.push_back(*loop.add_variable(name));
+    std::vector<std::unique_ptr<Functor>> functors;
+    functors.push_back(sum({v[0]}, v[1]));
+    functors.push_back(sum({v[1]}, v[2]));
+    functors.push_back(sum({v[1], v[2]}, v[3]));
+    functors.push_back(sum({v[3], v[0]}, v[4]));
+    functors.push_back(sum({v[4], v[2], v[1]}, v[5]));
+    for (const std::size_t number : order) loop.add(std::move(functors[number]));
+    std::string error;
+    ASSERT_TRUE(loop.order(&error)) << error;
+    loop.state()[v[0]] = 1.0;
+    loop.run(0.0);
+    // a = 2, b = 3, c = 6, d = 8, e = 14
+    ASSERT_EQ(loop.state()[v[5]], 14.0);
+  } while (std::next_permutation(order.begin(), order.end()));
+}
+
+TEST(LoopOrder, MayHaveMoreFunctorsThanQuantities) {
+  Loop loop(1.0);
+  int seen = 0;
+  const Quantity late = *loop.add_variable("late");
+  for (int i = 0; i < 100; ++i) {
+    loop.add(own({late}, {}, [&seen, late](State<double>& state) { seen += state[late] == 1.0 ? 1 : 0; }));
+  }
+  loop.add(own({}, {late}, [late](State<double>& state) { state[late] = 1.0; }));
+  std::string error;
+  ASSERT_TRUE(loop.order(&error)) << error;
+  loop.run(0.0);
+  EXPECT_EQ(seen, 100);
+}
+
+TEST(LoopOrder, CompletesInPlaceBeforeAnyoneElseReads) {
+  for (const bool reader_first : {false, true}) {
+    Loop loop(1.0);
+    const Quantity x = *loop.add_variable("x");
+    const Quantity y = *loop.add_variable("y");
+    if (reader_first) loop.add(sum({x}, y));
+    loop.add(own({x}, {x}, [x](State<double>& state) { state[x] *= 10.0; }));
+    if (!reader_first) loop.add(sum({x}, y));
+    ASSERT_TRUE(loop.order(nullptr));
+    loop.state()[x] = 2.0;
+    loop.run(0.0);
+    EXPECT_EQ(loop.state()[y], 21.0);
+  }
+}
+
+TEST(LoopOrder, RefusesTwoWritersOfOneQuantity) {
+  Loop loop(1.0);
+  const Quantity x = *loop.add_variable("THRUST");
+  loop.add(sum({}, x));
+  loop.add(sum({}, x));
+  std::string error;
+  EXPECT_FALSE(loop.order(&error));
+  EXPECT_EQ(error, "two functors write 'THRUST'");
+  EXPECT_FALSE(loop.order(nullptr));
+
+  Loop corrected = build(c130(), level, 1.0);
+  corrected.add(sum({}, Quantity::static_defect));
+  EXPECT_FALSE(corrected.order(&error));
+  EXPECT_EQ(error, "two functors write 'static_defect'");
+}
+
+TEST(LoopOrder, RefusesACircleAndShowsIt) {
+  Loop loop(1.0);
+  const Quantity a = *loop.add_variable("a");
+  const Quantity b = *loop.add_variable("b");
+  const Quantity c = *loop.add_variable("c");
+  const Quantity outside = *loop.add_variable("outside");
+  loop.add(sum({c}, outside));
+  loop.add(sum({b}, a));
+  loop.add(sum({c}, b));
+  loop.add(sum({a}, c));
+  loop.add(own({outside}, {}, [](State<double>&) {}));
+  std::string error;
+  EXPECT_FALSE(loop.order(&error));
+  EXPECT_THAT(
+      error, testing::AnyOf("functors wait for each other: 'a' needs 'b', which needs 'c', which needs 'a'",
+                            "functors wait for each other: 'b' needs 'c', which needs 'a', which needs 'b'",
+                            "functors wait for each other: 'c' needs 'a', which needs 'b', which needs 'c'"));
+  EXPECT_FALSE(loop.order(nullptr));
+  loop.run(0.0);  // still whole
+}
+
+TEST(Loop, ComputesEquation18ByHand) {
+  Loop loop = build(c130(), level, 1.0);
+  run(loop, level, 0.0);
+  const State<double>& s = loop.state();
+  const double defect = 700.0 * (0.004127875 + 0.021279816 * (-15.3 / 67.1) + 0.030849643 * (67.6 / 700.0));
+  EXPECT_NEAR(s[Quantity::static_defect], defect, 1e-12);
+  EXPECT_NEAR(s[Quantity::corrected_static_pressure], 700.0 + defect, 1e-12);
+  EXPECT_NEAR(s[Quantity::corrected_dynamic_pressure], 67.6 - defect, 1e-12);
+  const double humidity = 4.2 / (700.0 + defect);
+  const double heating = std::pow(767.6 / (700.0 + defect), 2.0 / 7.0 / (1.0 + humidity / 7.0)) - 1.0;
+  EXPECT_NEAR(s[Quantity::corrected_mach], std::sqrt(5.0 * (1.0 + humidity / 5.0) * heating), 1e-12);
+  EXPECT_EQ(loop.quality().bits(), 0U);
+  for (const Quantity result : results) EXPECT_TRUE(std::isfinite(s[result])) << pcor::facts_of(result).name;
+}
+
+TEST(Loop, AgreesAtAnyRateOnAConstantFlight) {
+  Model model = c130();
+  model.effects.push_back({"static-lag", {0.15}});
+  Loop slow = build(model, level, 1.0);
+  Loop fast = build(model, level, 25.0);
+  for (int second = 0; second < 5; ++second) {
+    run(slow, level, second);
+    for (int i = 0; i < 25; ++i) {
+      run(fast, level, second + i / 25.0);
+      if (second > 0) expect_same(fast, slow);
+    }
+  }
+}
+
+TEST(Loop, KeepsItsStateFromOtherLoops) {
+  Model model = c130();
+  model.effects.push_back({"static-lag", {0.15}});
+  const auto climb = [](double time, double rate) {
+    return with(level, {{Quantity::static_pressure, 700.0 - rate * time + 0.1 * std::sin(time)}});
+  };
+  Loop alone_slow = build(model, level, 1.0), alone_fast = build(model, level, 25.0);
+  Loop slow = build(model, level, 1.0), fast = build(model, level, 25.0);
+  for (int i = 0; i < 250; ++i) run(alone_fast, climb(i / 25.0, 2.0), i / 25.0);
+  for (int i = 0; i < 10; ++i) run(alone_slow, climb(i, 0.5), i);
+  for (int i = 0; i < 250; ++i) {
+    if (i % 25 == 0) run(slow, climb(i / 25, 0.5), i / 25);
+    run(fast, climb(i / 25.0, 2.0), i / 25.0);
+  }
+  expect_same(slow, alone_slow);
+  expect_same(fast, alone_fast);
+}
+
+TEST(LoopGap, StartsAnewAtGapsAndWhereTimeDoesNotAdvance) {
+  struct Case {
+    double rate;
+    double time;  // after samples at 100 and 100 + 1/rate
+    bool gap;
+  };
+  const Case cases[] = {
+      {1.0, 102.0, false},   {1.0, 102.49, false},  {1.0, 102.51, true},  {1.0, 1e6, true},
+      {1.0, 101.0, true},    {1.0, 100.5, true},    {1.0, 0.0, true},     {1.0, missing, true},
+      {1.0, infinity, true}, {25.0, 100.08, false}, {25.0, 100.12, true}, {25.0, 100.04, true},
+      {25.0, 101.0, true},   {1.0, 101.001, false},
+  };
+  Model model;
+  model.effects = {{"static-lag", {0.15}}};
+  const Sample recorded{{Quantity::static_pressure, 700.0}, {Quantity::dynamic_pressure, 67.6}};
+  for (const auto& [rate, time, gap] : cases) {
+    SCOPED_TRACE(testing::Message() << rate << " Hz, " << time << " s");
+    Loop loop = build(model, recorded, rate);
+    run(loop, recorded, 100.0);
+    EXPECT_TRUE(loop.quality().has(Quality::after_gap)) << "the first sample";
+    EXPECT_THAT(loop.state()[Quantity::corrected_static_pressure], IsNan());
+    run(loop, recorded, 100.0 + 1.0 / rate);
+    EXPECT_FALSE(loop.quality().has(Quality::after_gap));
+    EXPECT_EQ(loop.state()[Quantity::corrected_static_pressure], 700.0);
+    run(loop, recorded, time);
+    EXPECT_EQ(loop.quality().has(Quality::after_gap), gap);
+    EXPECT_EQ(std::isnan(loop.state()[Quantity::corrected_static_pressure]), gap);
+    if (std::isnan(time)) continue;
+    run(loop, recorded, 2000.0);
+    run(loop, recorded, 2000.0 + 1.0 / rate);
+    EXPECT_FALSE(loop.quality().has(Quality::after_gap)) << "and goes on";
+  }
+}
+
+TEST(LoopGap, MayBeAskedFor) {
+  Model model;
+  model.effects = {{"static-lag", {0.15}}};
+  const Sample recorded{{Quantity::static_pressure, 700.0}, {Quantity::dynamic_pressure, 67.6}};
+  Loop loop = build(model, recorded, 1.0);
+  run(loop, recorded, 0.0);
+  run(loop, recorded, 1.0);
+  loop.reset();
+  run(loop, recorded, 2.0);
+  EXPECT_TRUE(loop.quality().has(Quality::after_gap));
+}
+
+TEST(LoopGap, SaysNothingWhereNothingIsKept) {
+  Loop loop = build(c130(), level, 1.0);
+  run(loop, level, 0.0);
+  run(loop, level, 50.0);
+  EXPECT_FALSE(loop.quality().has(Quality::after_gap)) << "no rate of change is in use";
+}
+
+TEST(LoopVariables, HaveOnePlaceForEachName) {
+  Loop loop(1.0);
+  const auto first = loop.add_variable("N1");
+  const auto second = loop.add_variable("N2");
+  ASSERT_TRUE(first && second);
+  EXPECT_NE(*first, *second);
+  EXPECT_EQ(loop.add_variable("N1"), first);
+  EXPECT_EQ(loop.add_variable("altitude"), Quantity::altitude);
+  EXPECT_THAT(loop.extra_names(), ElementsAre("N1", "N2"));
+  for (std::size_t i = 2; i < pcor::extra_capacity; ++i) {
+    EXPECT_TRUE(loop.add_variable("M" + std::to_string(i)));
+  }
+  EXPECT_FALSE(loop.add_variable("one too many"));
+  EXPECT_EQ(loop.add_variable("N2"), second);
+}
+
+TEST(LoopVariables, OfFormulasAreSetByName) {
+  Model model;
+  model.effects = {formula(Where::static_defect, "k * ENGTRQ / 100 + SPLR", {"k"}, {2.0})};
+  const Sample recorded{{Quantity::static_pressure, 700.0}, {Quantity::dynamic_pressure, 67.6}};
+  Loop loop = build(model, recorded, 1.0);
+  EXPECT_THAT(loop.extra_names(), ElementsAre("ENGTRQ", "SPLR"));
+  loop.state()[pcor::extra_quantity(0)] = 50.0;
+  loop.state()[pcor::extra_quantity(1)] = 0.25;
+  run(loop, recorded, 0.0);
+  EXPECT_EQ(loop.state()[Quantity::static_defect], 1.25);
+  loop.state()[pcor::extra_quantity(1)] = missing;
+  run(loop, recorded, 1.0);
+  EXPECT_THAT(loop.state()[Quantity::static_defect], IsNan());
+  EXPECT_TRUE(loop.quality().has(Quality::effect_input_missing));
+}
+
+// What a functor of the user's own computes is there before the stage that reads it, whatever the stage.
+TEST(LoopFunctors, MayStandBetweenTheStagesOfTheModel) {
+  Model model = c130();
+  model.effects.push_back(formula(Where::static_defect, "THRUST"));
+  Sample recorded = level;
+  recorded.erase(Quantity::lams_airspeed);
+  Loop loop = build(model, recorded, 1.0);
+  recorded.erase(Quantity::vapor_pressure);
+  const Quantity thrust = *loop.add_variable("THRUST");
+  const Quantity speed = *loop.add_variable("N1");
+  const Quantity mixing = *loop.add_variable("hygrometer");
+  loop.add(own({speed}, {thrust}, [=](State<double>& state) { state[thrust] = state[speed] / 200.0; }));
+  loop.add(own({mixing, Quantity::corrected_static_pressure}, {Quantity::vapor_pressure},
+               [=](State<double>& state) {
+                 state[Quantity::vapor_pressure] = state[mixing] * state[Quantity::corrected_static_pressure];
+               }));
+  const Quantity twice = *loop.add_variable("twice the airspeed");
+  loop.add(own({Quantity::corrected_airspeed}, {twice},
+               [=](State<double>& state) { state[twice] = 2.0 * state[Quantity::corrected_airspeed]; }));
+  std::string error;
+  ASSERT_TRUE(loop.order(&error)) << error;
+  for (int i = 0; i < 3; ++i) {
+    SCOPED_TRACE(i);
+    loop.state()[speed] = 80.0 + i;
+    loop.state()[mixing] = 0.001 * (i + 1);
+    run(loop, recorded, i);
+    Loop plain = build(c130(), recorded, 1.0);
+    run(plain, recorded, 0.0);
+    const State<double>& s = loop.state();
+    EXPECT_NEAR(s[Quantity::static_defect], plain.state()[Quantity::static_defect] + 0.4 + i / 200.0, 1e-12);
+    EXPECT_NEAR(s[Quantity::humidity], 0.001 * (i + 1), 1e-15);
+    EXPECT_EQ(s[twice], 2.0 * s[Quantity::corrected_airspeed]);
+    EXPECT_EQ(loop.quality().bits(), 0U);
+  }
+}
+
+TEST(LoopLams, CorrectsWhereItIsValidAndSaysSo) {
+  Loop with_model = build(c130(), level, 1.0);
+  Loop with_lams = build(c130(), level, 1.0, CorrectWith::lams);
+  run(with_model, level, 0.0);
+  run(with_lams, level, 0.0);
+  const State<double>& s = with_lams.state();
+  EXPECT_EQ(with_model.quality().bits(), 0U);
+  EXPECT_EQ(with_lams.quality().bits(), bits({Quality::corrected_with_lams}));
+  EXPECT_EQ(s[Quantity::static_defect], with_model.state()[Quantity::static_defect]);
+  EXPECT_EQ(s[Quantity::lams_static_defect], with_model.state()[Quantity::lams_static_defect]);
+  EXPECT_NE(s[Quantity::lams_static_defect], s[Quantity::static_defect]);
+  EXPECT_EQ(s[Quantity::corrected_static_pressure], 700.0 + s[Quantity::lams_static_defect]);
+  // Approach 4 is an identity: from pressures corrected by this very laser its temperature is the
+  // thermometer's.
+  EXPECT_NEAR(s[Quantity::lams_temperature], s[Quantity::ambient_temperature], 1e-6);
+
+  const Sample unlocked = with(level, {{Quantity::lams_airspeed, missing}});
+  run(with_model, unlocked, 1.0);
+  run(with_lams, unlocked, 1.0);
+  expect_same(with_lams, with_model);
+  EXPECT_EQ(with_lams.quality().bits(), bits({Quality::lams_missing}));
+}
+
+// Delta-p from LAMS needs the humidity, so a humidity may not wait for the pressures that it corrects.
+TEST(LoopFunctors, MayNotWaitForWhatWaitsForThem) {
+  const auto add_inlet = [](Loop loop, std::string* error) {
+    loop.add(own({Quantity::corrected_static_pressure}, {Quantity::vapor_pressure}, [](State<double>&) {}));
+    return loop.order(error);
+  };
+  std::string error;
+  EXPECT_TRUE(add_inlet(build(c130(), level, 1.0, CorrectWith::model), &error)) << error;
+  EXPECT_FALSE(add_inlet(build(c130(), level, 1.0, CorrectWith::lams), &error));
+  EXPECT_THAT(error, HasSubstr("'vapor_pressure'"));
+}
+
+TEST(LoopLams, IsRefusedWithoutItsAirspeed) {
+  Sample recorded = level;
+  recorded.erase(Quantity::lams_airspeed);
+  std::string error;
+  EXPECT_FALSE(Loop::build(c130(), roles(recorded), 1.0, &error, CorrectWith::lams));
+  EXPECT_EQ(error, "correction with LAMS needs the role 'lams_airspeed'");
+  EXPECT_FALSE(Loop::build(c130(), roles(recorded), 1.0, nullptr, CorrectWith::lams));
+}
+
+// Approach 3 takes the radiometer's temperature, not the thermometer's that the loop might derive.
+TEST(LoopLams, UsesARecordedAmbientTemperatureBesideARecoveryTemperature) {
+  Model model = c130();
+  model.lams.approach = pcor::LamsApproach::with_temperature;
+  Sample radiometer = with(level, {{Quantity::ambient_temperature, 274.0}});
+  Loop both = build(model, radiometer, 1.0);
+  run(both, radiometer, 0.0);
+  EXPECT_EQ(both.state()[Quantity::ambient_temperature], 274.0);
+  radiometer.erase(Quantity::recovery_temperature);
+  Loop alone = build(model, radiometer, 1.0);
+  run(alone, radiometer, 0.0);
+  expect_same(both, alone);
+}
+
+// At an absurd airspeed all of the total pressure would be dynamic, and none static.
+TEST(LoopLams, LeavesSomeStaticPressure) {
+  Model model = c130();
+  model.lams.approach = pcor::LamsApproach::with_temperature;
+  const Sample radiometer = with(level, {{Quantity::ambient_temperature, 274.0}});
+  Loop loop = build(model, radiometer, 1.0, CorrectWith::lams);
+  run(loop, with(radiometer, {{Quantity::lams_airspeed, 1e60}}), 0.0);
+  EXPECT_THAT(loop.state()[Quantity::lams_static_defect], IsNan());
+  EXPECT_EQ(loop.quality().bits(), bits({Quality::lams_missing}));
+}
+
+struct QualityCase {
+  const char* name;
+  Sample changes;
+  std::uint32_t expected;
+  std::vector<Quantity> lost;  // NaN; all other results are finite
+};
+
+const std::vector<Quantity> everything = results;
+
+// Each way in which a sample can be bad, one at a time, in a loop where every stage is at work.
+TEST(LoopQuality, TellsWhatWasWrongAndLosesOnlyWhatDependsOnIt) {
+  using Q = Quality;
+  const std::vector<Quantity> with_temperature{Quantity::ambient_temperature, Quantity::corrected_airspeed,
+                                               Quantity::lams_dynamic_pressure};
+  std::vector<Quantity> all_of_temperature = with_temperature;
+  all_of_temperature.push_back(Quantity::lams_static_defect);
+  const std::vector<Quantity> of_laser{Quantity::lams_static_defect, Quantity::lams_temperature,
+                                       Quantity::lams_dynamic_pressure};
+  std::vector<QualityCase> cases{
+      {"good", {}, 0, {}},
+      {"dry", {{Quantity::vapor_pressure, missing}}, bits({Q::dry_air_assumed}), {}},
+      {"negative vapour", {{Quantity::vapor_pressure, -0.1}}, bits({Q::humidity_limited}), {}},
+      {"much vapour", {{Quantity::vapor_pressure, 30.0}}, bits({Q::humidity_limited}), {}},
+      {"outside",
+       {{Quantity::dynamic_pressure, 130.0},
+        {Quantity::lams_airspeed, 157.0},
+        {Quantity::vapor_pressure, 1.0}},
+       bits({Q::outside_domain}),
+       {}},
+      {"slow", {{Quantity::dynamic_pressure, 30.0}, {Quantity::lams_airspeed, 80.0}}, bits({Q::tapered}), {}},
+      {"minimum", {{Quantity::attack_differential_pressure, -40.0}}, bits({Q::minimum_applied}), {}},
+      {"no laser", {{Quantity::lams_airspeed, missing}}, bits({Q::lams_missing}), of_laser},
+      {"no laser, zero",
+       {{Quantity::lams_airspeed, 0.0}},
+       bits({Q::lams_missing}),
+       {Quantity::lams_static_defect}},
+      {"no temperature",
+       {{Quantity::recovery_temperature, missing}},
+       bits({Q::temperature_missing, Q::lams_missing}),
+       all_of_temperature},
+      {"impossible temperature",
+       {{Quantity::recovery_temperature, -5.0}},
+       bits({Q::temperature_missing, Q::lams_missing}),
+       all_of_temperature},
+      {"zero temperature",
+       {{Quantity::recovery_temperature, 0.0}},
+       bits({Q::temperature_missing, Q::lams_missing}),
+       all_of_temperature},
+      {"no attack",
+       {{Quantity::attack_differential_pressure, missing}},
+       bits({Q::effect_input_missing, Q::lams_missing}),
+       everything},
+      {"radome blocked",
+       {{Quantity::radome_dynamic_pressure, 0.0}},
+       bits({Q::effect_input_missing, Q::lams_missing, Q::impossible_radome_pressure}),
+       everything},
+      {"no static pressure",
+       {{Quantity::static_pressure, missing}},
+       bits({Q::static_pressure_missing, Q::lams_missing}),
+       everything},
+      {"no dynamic pressure",
+       {{Quantity::dynamic_pressure, missing}},
+       bits({Q::dynamic_pressure_missing, Q::lams_missing}),
+       everything},
+      {"impossible static pressure",
+       {{Quantity::static_pressure, -1.0}},
+       bits({Q::impossible_static_pressure, Q::lams_missing}),
+       everything},
+  };
+  Model model = c130();
+  model.policy.taper_below = 40.0;
+  model.policy.minimum = -3.0;
+  model.domain = {{"dynamic_pressure", 20.0, 120.0}};
+  Loop loop = build(model, level, 1.0);
+  double time = 0.0;
+  for (const QualityCase& test : cases) {
+    SCOPED_TRACE(test.name);
+    run(loop, with(level, test.changes), ++time);
+    EXPECT_EQ(loop.quality().bits(), test.expected) << std::hex << loop.quality().bits();
+    for (const Quantity result : results) {
+      const bool lost = std::count(test.lost.begin(), test.lost.end(), result) > 0;
+      const double value = loop.state()[result];
+      EXPECT_TRUE(lost ? std::isnan(value) : std::isfinite(value))
+          << pcor::facts_of(result).name << " " << value;
+    }
+  }
+}
+
+TEST(LoopQuality, HasNoAirspeedOnTheGround) {
+  Loop strict = build(c130(), level, 1.0);
+  Model model = c130();
+  model.policy.taper_below = 40.0;
+  Loop tapered = build(model, level, 1.0);
+  const Sample ground =
+      with(level, {{Quantity::dynamic_pressure, -0.3}, {Quantity::radome_dynamic_pressure, -0.1}});
+  run(strict, ground, 0.0);
+  run(tapered, ground, 0.0);
+  for (const Loop* loop : {&strict, &tapered}) {
+    EXPECT_TRUE(loop->quality().has(Quality::impossible_dynamic_pressure));
+    EXPECT_THAT(loop->state()[Quantity::corrected_mach], IsNan());
+    EXPECT_THAT(loop->state()[Quantity::corrected_airspeed], IsNan());
+  }
+  EXPECT_THAT(strict.state()[Quantity::static_defect], IsNan());
+  EXPECT_EQ(tapered.state()[Quantity::static_defect], 0.0);
+  EXPECT_EQ(tapered.state()[Quantity::corrected_static_pressure], 700.0);
+}
+
+TEST(LoopQuality, TellsOfAnEffectThatDividesByZero) {
+  const Where places[] = {Where::static_transducer, Where::static_line, Where::total_line, Where::pitot,
+                          Where::static_defect,     Where::attack,      Where::recovery};
+  for (const Where place : places) {
+    Model model = c130();
+    model.effects.push_back(formula(place, "1 / (static_pressure - 700)"));
+    Loop loop = build(model, level, 1.0);
+    run(loop, level, 0.0);
+    // The angle of attack is of use to LAMS alone here.
+    EXPECT_EQ(loop.quality().has(Quality::effect_input_missing), place != Where::attack)
+        << pcor::facts_of(place).name;
+    EXPECT_TRUE(loop.quality().has(Quality::lams_missing) || place == Where::static_defect);
+    for (const Quantity result : results) EXPECT_FALSE(std::isinf(loop.state()[result]));
+    EXPECT_THAT(loop.state()[Quantity::corrected_airspeed],
+                place == Where::attack ? Not(IsNan()) : testing::Matcher<double>(IsNan()));
+  }
+}
+
+TEST(Loop, KeepsTheTotalPressure) {
+  std::mt19937 random(18);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  for (const CorrectWith correct_with : {CorrectWith::model, CorrectWith::lams}) {
+    Loop loop = build(c130(), level, 25.0, correct_with);
+    for (int i = 0; i < 1000; ++i) {
+      const double p = 200.0 + 800.0 * unit(random);
+      const double q = 20.0 + 150.0 * unit(random);
+      run(loop,
+          with(level, {{Quantity::static_pressure, p},
+                       {Quantity::dynamic_pressure, q},
+                       {Quantity::lams_airspeed, 20.0 + 250.0 * unit(random)}}),
+          i / 25.0);
+      const double corrected_p = loop.state()[Quantity::corrected_static_pressure];
+      const double corrected_q = loop.state()[Quantity::corrected_dynamic_pressure];
+      if (loop.quality().has(Quality::impossible_dynamic_pressure)) continue;
+      ASSERT_NEAR(corrected_p + corrected_q, p + q, 1e-12 * (p + q));
+    }
+  }
+}
+
+// An infinite value is no value: in every role, all that a NaN would lose is lost, with the same bits.
+TEST(LoopGarbage, InfinityCountsAsMissing) {
+  for (const CorrectWith correct_with : {CorrectWith::model, CorrectWith::lams}) {
+    Model model = c130();
+    model.policy.taper_below = 40.0;
+    model.policy.minimum = -3.0;
+    Loop infinite = build(model, level, 1.0, correct_with);
+    Loop absent = build(model, level, 1.0, correct_with);
+    double time = 0.0;
+    for (const auto& [role, value] : level) {
+      for (const double garbage : {infinity, -infinity}) {
+        SCOPED_TRACE(testing::Message() << pcor::facts_of(role).name << " = " << garbage);
+        run(infinite, with(level, {{role, garbage}}), ++time);
+        run(absent, with(level, {{role, missing}}), time);
+        expect_same(infinite, absent);
+        EXPECT_NE(infinite.quality().bits(), 0U);
+        for (const Quantity result : results) EXPECT_FALSE(std::isinf(infinite.state()[result]));
+      }
+    }
+  }
+}
+
+TEST(LoopGarbage, InfinityCountsAsMissingInOtherRoles) {
+  for (const auto& [role, good] : Sample{{Quantity::dew_point, 270.0},
+                                         {Quantity::ambient_temperature, 274.0},
+                                         {Quantity::attack, 3.0},
+                                         {Quantity::sideslip, 0.5},
+                                         {Quantity::mach, 0.37}}) {
+    Sample recorded = with(level, {{role, good}});
+    if (role == Quantity::dew_point) recorded.erase(Quantity::vapor_pressure);
+    if (role == Quantity::ambient_temperature) recorded.erase(Quantity::lams_airspeed);
+    Model model = c130();
+    model.effects.push_back({"static-mach2", {0.01}});
+    Loop infinite = build(model, recorded, 1.0);
+    Loop absent = build(model, recorded, 1.0);
+    SCOPED_TRACE(pcor::facts_of(role).name);
+    run(infinite, with(recorded, {{role, infinity}}), 0.0);
+    run(absent, with(recorded, {{role, missing}}), 0.0);
+    expect_same(infinite, absent);
+    EXPECT_NE(infinite.quality().bits(), 0U);
+  }
+}
+
+double garbage(std::mt19937& random, double good) {
+  const double values[] = {missing, infinity, -infinity, 0.0,   -0.0,  -1.0,   -good,
+                           1e300,   -1e300,   1e-300,    1e30,  -1e30, good,   good,
+                           good,    good,     -32767.0,  1e-40, 1e10,  273.15, good * 1.5};
+  return values[random() % std::size(values)];
+}
+
+std::string text(const Sample& sample) {
+  std::ostringstream text;
+  for (const auto& [role, value] : sample) text << "\n  " << pcor::facts_of(role).name << " = " << value;
+  return text.str();
+}
+
+// Nothing of a bad sample stays: after any number of them a good sample is what a new loop makes of it.
+TEST(LoopGarbage, LeavesNothingForTheNextSample) {
+  std::mt19937 random(20111102);
+  std::vector<Model> models(4, c130());
+  models[1].lams.approach = pcor::LamsApproach::iterated;
+  models[1].policy.taper_below = 40.0;
+  models[2].effects.push_back({"static-mach2", {0.01}});
+  models[2].effects.push_back(formula(Where::static_defect, "sqrt(dynamic_ratio) * log(mach)"));
+  models[2].policy.minimum = -3.0;
+  models[3].moist = false;
+  models[3].recovery = {{0.9959, 0.0283, 0.0374, 0.0762}};
+  for (const Model& model : models) {
+    for (const CorrectWith correct_with : {CorrectWith::model, CorrectWith::lams}) {
+      Loop fresh = build(model, level, 25.0, correct_with);
+      run(fresh, level, 0.0);
+      ASSERT_TRUE(std::isfinite(fresh.state()[Quantity::corrected_airspeed]));
+      Loop loop = build(model, level, 25.0, correct_with);
+      int time = 0;
+      for (int i = 0; i < 2000; ++i) {
+        for (std::size_t j = random() % 5; j > 0; --j) {
+          Sample bad = level;
+          for (auto& [role, value] : bad) value = garbage(random, value);
+          run(loop, bad, ++time / 25.0);
+          for (const Quantity result : results) {
+            if (!std::isnan(loop.state()[result])) continue;
+            ASSERT_NE(loop.quality().bits(), 0U)
+                << pcor::facts_of(result).name << " lost without a word:" << text(bad);
+          }
+        }
+        run(loop, level, ++time / 25.0);
+        expect_same(loop, fresh);
+        if (HasFailure()) return;
+      }
+    }
+  }
+}
+
+// With rates of change one sample after the bad one is lost, and says so.
+TEST(LoopGarbage, CostsALagOneFurtherSample) {
+  Model model = c130();
+  model.effects.push_back({"static-lag", {0.15}});
+  for (const double garbage : {missing, infinity, -infinity}) {
+    Loop loop = build(model, level, 25.0);
+    Loop fresh = build(model, level, 25.0);
+    for (int i = 0; i < 3; ++i) run(fresh, level, i / 25.0);
+    for (int i = 0; i < 5; ++i) run(loop, level, i / 25.0);
+    run(loop, with(level, {{Quantity::static_pressure, garbage}}), 5 / 25.0);
+    EXPECT_TRUE(loop.quality().has(Quality::static_pressure_missing));
+    run(loop, level, 6 / 25.0);
+    EXPECT_TRUE(loop.quality().has(Quality::after_gap));
+    EXPECT_THAT(loop.state()[Quantity::corrected_static_pressure], IsNan());
+    run(loop, level, 7 / 25.0);
+    expect_same(loop, fresh);
+  }
+}
+
+}  // namespace
