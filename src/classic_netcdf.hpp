@@ -2,14 +2,16 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 
 namespace pcor {
 
 /// The least number of bytes that a classic netCDF file (CDF-1, CDF-2 or CDF-5) must have to hold what its
-/// header promises. The netCDF library reads zeros where a truncated file ends, so this must be checked.
+/// header promises; nothing if the header cannot be what a writer wrote: it has no end, or counts more than
+/// the file has room for.
 ///
-/// A header that cannot be read to its end gives the largest number there is; a file whose record count is
-/// marked as unknown ("streaming") is taken to have no records.
-std::uintmax_t promised_size_of_classic(const std::filesystem::path& path);
+/// To be asked before the netCDF library sees the file: of a damaged header the library believes every count
+/// and takes that much memory, and where a truncated file ends it reads zeros.
+std::optional<std::uintmax_t> promised_size_of_classic(const std::filesystem::path& path);
 
 }  // namespace pcor

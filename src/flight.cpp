@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <netcdf.h>
 #include <pcor/offline/error.hpp>
 #include <pcor/offline/flight.hpp>
@@ -6,9 +7,12 @@
 #include <pcor/offline/utc.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 #include <limits>
+#include <set>
 #include <unordered_map>
 
 #include "netcdf_file.hpp"
@@ -103,6 +107,35 @@ Variable describe(const NetcdfFile& file, int id, int time_dimension) {
   return variable;
 }
 
+bool is_convertible(const std::string& unit, const std::string& wanted) {
+  try {
+    UnitConversion::between(unit, wanted, {});
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+bool is_same(const UnitConversion& a, const UnitConversion& b) {
+  constexpr double rounding = 1e-9;
+  return std::abs(a.scale() - b.scale()) <= rounding * std::abs(a.scale()) &&
+         std::abs(a.offset() - b.offset()) <= rounding * std::abs(a.offset());
+}
+
+// How many words of a role ("recovery_temperature") are in a text, without regard to case.
+int shared_words(const std::string& role, const std::string& text) {
+  const auto is_same_letter = [](char a, char b) {
+    return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+  };
+  int shared = 0;
+  for (auto word = role.begin(); word != role.end();) {
+    const auto end = std::find(word, role.end(), '_');
+    if (std::search(text.begin(), text.end(), word, end, is_same_letter) != text.end()) ++shared;
+    word = end == role.end() ? end : end + 1;
+  }
+  return shared;
+}
+
 FileKind kind_of(const NetcdfFile& file) {
   int format = 0;
   file.check(nc_inq_format(file.id(), &format), "cannot tell its format");
@@ -120,8 +153,8 @@ FileKind kind_of(const NetcdfFile& file) {
   }
 }
 
-// Of an even number of values the lower of the middle two.
-double median(std::vector<double> values) {
+// Of an even number of values the lower of the middle two. Changes the order of the values.
+double median(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -196,10 +229,66 @@ struct Flight::Implementation {
     const auto found = index.find(name);
     if (found != index.end()) return variables[found->second];
     const std::vector<std::string> alike = suggest(name, names);
-    std::string message = path() + ": " + name + " is not in this file; it has ";
-    for (std::size_t i = 0; i < alike.size(); ++i) message += (i == 0 ? "" : ", ") + alike[i];
-    if (alike.empty()) message += fmt::format("{} others, see ncdump -h {}", names.size(), path());
-    throw Error(message);
+    throw Error(path() + ": " + name + " is not in this file; it has " +
+                (alike.empty() ? fmt::format("{} others, see ncdump -h {}", names.size(), path())
+                               : fmt::format("{}", fmt::join(alike, ", "))));
+  }
+
+  // That a variable of the model is absent, and which ones of the file could take its place.
+  [[noreturn]] void refuse_absent(const std::string& name, const std::string& wanted,
+                                  const std::string& role) const {
+    std::vector<const VariableInfo*> fitting;
+    std::vector<std::string> fitting_names;
+    for (const Variable& variable : variables) {
+      if (!variable.info.is_series || !is_convertible(variable.info.units, wanted)) continue;
+      fitting.push_back(&variable.info);
+      fitting_names.push_back(variable.info.name);
+    }
+    const std::vector<std::string> alike = suggest(name, fitting_names);
+    if (!alike.empty())
+      throw Error(
+          fmt::format("{}: {} is not in this file; it has {}; change {} in the [variables] of the model",
+                      path(), name, fmt::join(alike, ", "), role));
+    const std::string absent =
+        fmt::format("{}: {} ({} of the model) is not in this file", path(), name, role);
+    if (fitting.empty())
+      throw Error(fmt::format(
+          "{}; it has no time series in {} or a unit that converts to it, see ncdump -h {}; change "
+          "[variables] of the model",
+          absent, wanted, path()));
+
+    constexpr std::size_t most_named = 6;
+    std::stable_sort(fitting.begin(), fitting.end(), [&](const VariableInfo* a, const VariableInfo* b) {
+      return shared_words(role, a->long_name) > shared_words(role, b->long_name);
+    });
+    const std::size_t others = fitting.size() - std::min(fitting.size(), most_named);
+    fitting.resize(fitting.size() - others);
+    std::string named;
+    for (std::size_t i = 0; i < fitting.size(); ++i) {
+      named += (i == 0 ? "" : ", ") + fitting[i]->name;
+      const bool unit_changes =
+          i + 1 == fitting.size() || standard_unit(fitting[i]->units) != standard_unit(fitting[i + 1]->units);
+      if (unit_changes) named += " in " + standard_unit(fitting[i]->units);
+    }
+    if (others > 0) named += fmt::format(" and {} more", others);
+    throw Error(
+        fmt::format("{}; it has {} (units that fit); change [variables] of the model", absent, named));
+  }
+
+  // The names of rates that can be brought to the wanted one, as this file has them: "1, 5 or 25".
+  std::string rates_that_fit(int wanted) const {
+    std::set<int> rates;
+    for (const Variable& variable : variables) {
+      const int rate = variable.info.rate;
+      if (rate > 0 && (rate % wanted == 0 || wanted % rate == 0)) rates.insert(rate);
+    }
+    std::string text;
+    for (auto rate = rates.begin(); rate != rates.end(); ++rate)
+      text += (rate == rates.begin()            ? ""
+               : std::next(rate) == rates.end() ? " or "
+                                                : ", ") +
+              std::to_string(*rate);
+    return text;
   }
 
   Variable& find_series(const std::string& name) {
@@ -278,7 +367,7 @@ struct Flight::Implementation {
         axis.first = times.front();
         for (std::size_t i = 1; i < block.count; ++i)
           if (times[i] > times[i - 1]) steps.push_back(times[i] - times[i - 1]);
-        if (!steps.empty()) axis.step = median(std::move(steps));
+        if (!steps.empty()) axis.step = median(steps);
       }
       for (std::size_t i = 0; i < block.count; ++i) {
         const std::size_t record = block.first + i;
@@ -310,7 +399,7 @@ struct Flight::Implementation {
   }
 };
 
-Flight::Flight(std::filesystem::path path, TimeStamp time_stamp)
+Flight::Flight(const std::filesystem::path& path, TimeStamp time_stamp)
     : implementation_(std::make_unique<Implementation>(path, time_stamp)) {}
 Flight::Flight(Flight&&) noexcept = default;
 Flight& Flight::operator=(Flight&&) noexcept = default;
@@ -352,8 +441,25 @@ const VariableInfo& Flight::variable(const std::string& name) const {
 
 UnitConversion Flight::conversion(const std::string& name, const std::string& wanted, const std::string& role,
                                   const std::string& stated) const {
-  const VariableInfo& info = variable(name);
-  return UnitConversion::between(stated.empty() ? info.units : stated, wanted, {name, path().string(), role});
+  if (!has(name) && !role.empty()) implementation_->refuse_absent(name, wanted, role);
+  const std::string& own = variable(name).units;
+  if (stated.empty()) return UnitConversion::between(own, wanted, {name, path().string(), role});
+  if (!is_convertible(stated, wanted))
+    throw Error(
+        fmt::format("{}: the unit \"{}\" that the model states for {} ({}) is not known or does not convert "
+                    "to {}; correct "
+                    "unit.{} in the [units] of the model",
+                    path().string(), stated, name, role, wanted, role));
+  const UnitConversion conversion = UnitConversion::between(stated, wanted, {name, path().string(), role});
+  const bool file_says_otherwise =
+      is_known_unit(own) &&
+      !(is_convertible(own, wanted) && is_same(UnitConversion::between(own, wanted, {}), conversion));
+  if (file_says_otherwise)
+    throw Error(fmt::format(
+        "{}: {} has the unit \"{}\", and the model states \"{}\"; remove unit.{} from the [units] of the "
+        "model, or mend the units attribute of the file if that is wrong",
+        path().string(), name, own, stated, role));
+  return conversion;
 }
 
 void Flight::require_values(const std::string& name) const {
@@ -381,10 +487,12 @@ void Flight::read_at_rate(int rate, const std::string& name, RecordBlock block,
   Variable& variable = implementation_->find_series(name);
   const int own = variable.info.rate;
   if (rate == own) return read(name, block, conversion, out);
-  if (rate < 1 || (rate % own != 0 && own % rate != 0))
+  if (rate < 1) throw Error(fmt::format("{}: {} samples a record are impossible", path().string(), rate));
+  if (rate % own != 0 && own % rate != 0)
     throw Error(fmt::format(
-        "{}: {} has {} samples a record, which cannot be brought to {}; choose a multiple or a divisor",
-        path().string(), name, own, rate));
+        "{}: {} has {} samples a record, which cannot be brought to {}; name a variable with {} samples a "
+        "record instead",
+        path().string(), name, own, rate, implementation_->rates_that_fit(rate)));
   std::vector<double>& values = implementation_->scratch;
   values.resize(block.count * static_cast<std::size_t>(own));
   implementation_->read(variable, block, values.data());

@@ -106,10 +106,10 @@ struct FlightWriter::Implementation {
   std::vector<std::pair<int, std::string>> unknown;  // attributes that turned out to have no value
 
   Implementation(std::filesystem::path output, const Flight* flight, const NewFlight& start,
-                 const FileDescription& what)
+                 FileDescription what)
       : shown(std::move(output)),
         input(flight),
-        description(what),
+        description(std::move(what)),
         kind(start.kind),
         midnight(midnight_before(start.first_time)),
         whole_seconds(start.whole_seconds),
@@ -300,6 +300,7 @@ struct FlightWriter::Implementation {
   void copy_attribute(int from, int to, const std::string& name, int type_of_variable) const {
     nc_type type = NC_NAT;
     check(nc_inq_atttype(source->id(), from, name.c_str(), &type));
+    if (type > NC_STRING) return;  // of the file's own making
     if (type == NC_CHAR) {
       const std::string text = source->text_attribute(from, name);
       return put_text(to, name, name == "units" ? standard_unit(text) : text);
@@ -312,6 +313,24 @@ struct FlightWriter::Implementation {
       return;
     }
     check(nc_copy_att(source->id(), from, name.c_str(), id(), to));
+  }
+
+  bool can_copy(const std::string& name) const {
+    if (!input || !input->has(name)) return false;
+    const int variable = *source->find_variable(name);
+    if (source->type_of(variable) > NC_STRING) return false;
+    const std::vector<int> shape = source->dimensions_of(variable);
+    for (std::size_t i = 0; i < shape.size(); ++i) {
+      if (shape[i] == source_time_dimension) {
+        if (i > 0) return false;
+        continue;
+      }
+      const auto known = dimensions.find(source->dimension_name(shape[i]));
+      if (known != dimensions.end() &&
+          file->dimension_length(known->second) != source->dimension_length(shape[i]))
+        return false;
+    }
+    return true;
   }
 
   void copy(const std::string& name) {
@@ -601,6 +620,7 @@ FlightWriter::~FlightWriter() = default;
 
 std::size_t FlightWriter::define(const OutputVariable& variable) { return implementation_->define(variable); }
 void FlightWriter::copy(const std::string& name) { implementation_->copy(name); }
+bool FlightWriter::can_copy(const std::string& name) const { return implementation_->can_copy(name); }
 bool FlightWriter::has(const std::string& name) const { return implementation_->has(name); }
 
 void FlightWriter::write_time_stamps(RecordBlock block, const double* times) {

@@ -285,6 +285,7 @@ class Reader {
     with("units", &Reader::read_units);
     with("output", &Reader::read_output);
     with("lams", &Reader::read_lams);
+    check_variables();
     with("temperature", &Reader::read_temperature);
     with("humidity", &Reader::read_humidity);
     with("radome", &Reader::read_radome);
@@ -300,6 +301,7 @@ class Reader {
     for (const Entry& entry : entries_of(section(section_entry), "[variables]")) {
       const Quantity quantity = role(entry);
       file_.variables[quantity] = variable_name(entry);
+      variable_places_[quantity] = entry.place;
     }
   }
 
@@ -309,6 +311,37 @@ class Reader {
       const std::string_view name = facts_of(quantity).name;
       fail(place, fmt::format("the role '{}' has no variable; add {} = \"...\" to [variables]", name, name));
     }
+  }
+
+  // What the variables say together. The place of an error is that of the later one.
+  void check_variables() const {
+    const std::string& variable = file_.variables.at(Quantity::static_pressure);
+    if (variable == file_.variables.at(Quantity::dynamic_pressure)) {
+      fail(std::max(variable_places_.at(Quantity::static_pressure),
+                    variable_places_.at(Quantity::dynamic_pressure)),
+           fmt::format("'static_pressure' and 'dynamic_pressure' are both {}; give each its own variable",
+                       in_quotes(variable)));
+    }
+    give_one({Quantity::vapor_pressure, Quantity::dew_point, Quantity::frost_point}, "the humidity");
+    if (file_.model.lams.approach != LamsApproach::with_temperature) {
+      give_one({Quantity::recovery_temperature, Quantity::ambient_temperature},
+               "the temperature, except with [lams] approach = 3, which takes the ambient one");
+    }
+  }
+
+  // An error where more than one of `roles` has a variable.
+  void give_one(std::initializer_list<Quantity> roles, std::string_view what) const {
+    std::vector<Quantity> given;
+    for (const Quantity role : roles) {
+      if (file_.variables.count(role) != 0) given.push_back(role);
+    }
+    if (given.size() < 2) return;
+    std::stable_sort(given.begin(), given.end(), [this](Quantity a, Quantity b) {
+      return variable_places_.at(a) < variable_places_.at(b);
+    });
+    fail(variable_places_.at(given[1]),
+         fmt::format("the roles '{}' and '{}' both have a variable; give one for {}", facts_of(given[0]).name,
+                     facts_of(given[1]).name, what));
   }
 
   // Both `static_pressure = "mbar"` and `unit.static_pressure = "mbar"`.
@@ -535,10 +568,24 @@ class Reader {
     }
     ModelEffect effect = neutral_effect(id);
     if (given.parameters) {
-      each_parameter(*given.parameters, effect,
-                     [&](std::size_t i, const Entry& entry) { effect.parameters[i] = number(entry); });
+      const EffectFacts& facts = effect_facts[effect_named(id)];
+      each_parameter(*given.parameters, effect, [&](std::size_t i, const Entry& entry) {
+        effect.parameters[i] = possible(entry, facts.parameters[i]);
+      });
     }
     return effect;
+  }
+
+  // A value that physics allows.
+  double possible(const Entry& entry, const ParameterFacts& facts) const {
+    const double value = number(entry);
+    if (value < facts.lower || value > facts.upper) {
+      fail(*entry.node,
+           fmt::format("{} = {} is outside the bounds of the catalogue; give a value within [{}, {}]{}",
+                       in_quotes(entry.key), value, facts.lower, facts.upper,
+                       facts.unit == "1" ? "" : fmt::format(" {}", facts.unit)));
+    }
+    return value;
   }
 
   static std::string full_stop(std::string text) {
@@ -652,11 +699,23 @@ class Reader {
           fail(*entry.node, fmt::format("the value {} of {} is outside its bounds; change one of them", value,
                                         in_quotes(entry.key)));
         }
+        check_bounds(bounds, effect, i, entry);
         fit[i].bounds = bounds;
       });
     }
     if (given.fixed) read_fixed(*given.fixed, effect, fit);
     return fit;
+  }
+
+  // A refit must not find what the reader would refuse.
+  void check_bounds(const Bounds& bounds, const ModelEffect& effect, std::size_t number,
+                    const Entry& entry) const {
+    if (effect.is_formula()) return;
+    const ParameterFacts& facts = effect_facts[effect_named(effect.id)].parameters[number];
+    if (bounds.lower >= facts.lower && bounds.upper <= facts.upper) return;
+    fail(*entry.node,
+         fmt::format("the bounds of {} go beyond those of the catalogue; give bounds within [{}, {}]",
+                     in_quotes(entry.key), facts.lower, facts.upper));
   }
 
   void read_fixed(const Entry& entry, const ModelEffect& effect, EffectFit& fit) const {
@@ -803,6 +862,7 @@ class Reader {
 
   std::string name_;
   ModelFile file_;
+  std::map<Quantity, toml::source_position> variable_places_;
   std::map<std::string, toml::source_index> effect_lines_;
 };
 

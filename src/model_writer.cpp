@@ -130,7 +130,8 @@ class Writer {
       heading("[temperature]");
       line("recovery_factor", recovery_factor(file));
     }
-    if (has(Quantity::vapor_pressure) || has(Quantity::dew_point) || !model.moist) {
+    if (has(Quantity::vapor_pressure) || has(Quantity::dew_point) || has(Quantity::frost_point) ||
+        !model.moist) {
       heading("[humidity]");
       line("moist", model.moist ? "true" : "false");
     }

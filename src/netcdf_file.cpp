@@ -36,12 +36,26 @@ std::string without_trailing_blanks(std::string text) {
   return text;
 }
 
+void check_size_of_classic(const std::filesystem::path& path) {
+  const auto promised = promised_size_of_classic(path);
+  if (!promised)
+    throw Error(path.string() +
+                " is truncated or damaged: its header cannot be read; fetch it again from its source");
+  const auto size = std::filesystem::file_size(path);
+  if (size < *promised)
+    throw Error(fmt::format(
+        "{} is truncated or damaged: its header promises {} bytes and it has {}; fetch it again from its "
+        "source",
+        path.string(), *promised, size));
+}
+
 }  // namespace
 
 std::string netcdf_reason(int status) { return status > 0 ? std::strerror(status) : nc_strerror(status); }
 
 NetcdfFile NetcdfFile::open(const std::filesystem::path& path) {
   const std::string name = path.string();
+  if (path.empty()) throw Error("the input has no name; name a netCDF file");
   std::error_code code;
   const auto status = std::filesystem::status(path, code);
   if (!std::filesystem::exists(status)) throw Error(name + ": no such file; check the path");
@@ -53,6 +67,7 @@ NetcdfFile NetcdfFile::open(const std::filesystem::path& path) {
 
   const Content content = content_of(path);
   if (content == Content::other) throw Error(name + " is not a netCDF file; name one that `ncdump -k` knows");
+  if (content == Content::classic) check_size_of_classic(path);
   // HDF5 keeps what it read of every variable; a file that is open twice shares what the first one asked for.
   nc_set_chunk_cache(chunk_cache_bytes, chunk_cache_slots, 1);
   int id = closed;
@@ -61,29 +76,21 @@ NetcdfFile NetcdfFile::open(const std::filesystem::path& path) {
   if (opened != NC_NOERR)
     throw Error(name + " is truncated or damaged (" + netcdf_reason(opened) +
                 "); fetch it again from its source");
-  NetcdfFile file(id, path);
-  if (content == Content::classic) {
-    const auto promised = promised_size_of_classic(path), size = std::filesystem::file_size(path);
-    if (size < promised)
-      throw Error(fmt::format(
-          "{} is truncated: its header promises {} bytes and it has {}; fetch it again from its source", name,
-          promised, size));
-  }
-  return file;
+  return {id, path, Use::reading};
 }
 
 NetcdfFile NetcdfFile::create(const std::filesystem::path& path, const std::filesystem::path& shown_path,
                               int mode) {
   int id = closed;
   std::size_t buffer = classic_buffer_bytes;
-  const int status = nc__create(path.c_str(), mode | NC_NOCLOBBER, 0, &buffer, &id);
-  NetcdfFile file(id, shown_path);
+  const int status = nc__create(path.c_str(), mode | NC_CLOBBER, 0, &buffer, &id);
+  NetcdfFile file(id, shown_path, Use::writing);
   file.check(status, "cannot be created");
   return file;
 }
 
 NetcdfFile::NetcdfFile(NetcdfFile&& other) noexcept
-    : id_(std::exchange(other.id_, closed)), path_(std::move(other.path_)) {}
+    : id_(std::exchange(other.id_, closed)), path_(std::move(other.path_)), use_(other.use_) {}
 
 NetcdfFile::~NetcdfFile() {
   if (id_ != closed) nc_close(id_);
@@ -92,11 +99,14 @@ NetcdfFile::~NetcdfFile() {
 void NetcdfFile::check(int status, const std::string& doing) const {
   if (status == NC_NOERR) return;
   std::string message = path_.string() + ": " + doing + ": " + netcdf_reason(status);
+  if (use_ == Use::reading) throw Error(message + "; fetch the file again from its source");
   std::error_code code;
   const auto space = std::filesystem::space(std::filesystem::absolute(path_).parent_path(), code);
   constexpr std::uintmax_t little = 1 << 20;
-  if (!code && space.available < little && status != ENOSPC) message += " (the disk is full)";
-  throw Error(message);
+  const bool full = status == ENOSPC || (!code && space.available < little);
+  if (full && status != ENOSPC) message += " (the disk is full)";
+  throw Error(message + (full ? "; make room or choose another output"
+                              : "; check the space and the permissions there"));
 }
 
 void NetcdfFile::close() { check(nc_close(std::exchange(id_, closed)), "cannot be closed"); }

@@ -13,7 +13,7 @@ class NetcdfFile {
   /// Opens for reading. @throws Error if the file is absent, not netCDF, damaged or truncated.
   static NetcdfFile open(const std::filesystem::path& path);
 
-  /// Creates a file that must not exist yet; `mode` is that of nc_create. Messages call it `shown_path`.
+  /// Creates a file, over what is there; `mode` is that of nc_create. Messages call it `shown_path`.
   static NetcdfFile create(const std::filesystem::path& path, const std::filesystem::path& shown_path,
                            int mode);
 
@@ -24,7 +24,7 @@ class NetcdfFile {
   int id() const { return id_; }
   const std::filesystem::path& path() const { return path_; }
 
-  /// @throws Error "<path>: <doing>: <reason>" unless `status` is NC_NOERR.
+  /// @throws Error "<path>: <doing>: <reason>; <what to do>" unless `status` is NC_NOERR.
   void check(int status, const std::string& doing) const;
 
   /// Closes for good; errors that the library kept until now are thrown.
@@ -51,10 +51,13 @@ class NetcdfFile {
   std::vector<double> number_attribute(int variable, const std::string& name) const;
 
  private:
-  NetcdfFile(int id, std::filesystem::path path) : id_(id), path_(std::move(path)) {}
+  enum class Use { reading, writing };
+
+  NetcdfFile(int id, std::filesystem::path path, Use use) : id_(id), path_(std::move(path)), use_(use) {}
 
   int id_;
   std::filesystem::path path_;
+  Use use_;
 };
 
 /// What a netCDF status means in words.

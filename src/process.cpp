@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 
 #include "pcor/offline/error.hpp"
 #include "pcor/offline/flight_writer.hpp"
+#include "pcor/offline/suggest.hpp"
+#include "pcor/offline/utc.hpp"
 #include "pcor/realtime/loop.hpp"
 
 namespace pcor {
@@ -43,8 +46,18 @@ class Processing {
   ProcessSummary run(const std::filesystem::path& output);
 
  private:
+  using Names = std::vector<std::string>;
+
   [[noreturn]] void fail(const std::string& what) const {
     throw Error(flight_.path().string() + ": " + what);
+  }
+  [[noreturn]] void fail_model(const std::string& what) const {
+    throw Error(fmt::format("model '{}': {}", file_.model.name, what));
+  }
+
+  template <class... Values>
+  void note(fmt::format_string<const Values&...> format, const Values&... values) {
+    summary_.notes.push_back(fmt::format(format, values...));
   }
 
   std::string variable_of(Quantity role) const {
@@ -56,7 +69,10 @@ class Processing {
     return file_.output_name(standard) + options_.suffix;
   }
 
+  Names variables_for(const Chain& chain, const std::vector<Quantity>& quantities) const;
+  Names variables_of_law() const;
   void choose_roles();
+  void check_law();
   void choose_inputs();
   void choose_rate();
   void choose_outputs();
@@ -74,7 +90,7 @@ class Processing {
   const ModelFile& file_;
   const ProcessOptions& options_;
   std::vector<Quantity> roles_;
-  std::optional<Chain> chain_;
+  std::shared_ptr<const Chain> chain_;
   std::optional<Loop> loop_;
   std::vector<Input> inputs_;
   std::vector<Output> outputs_;
@@ -86,35 +102,74 @@ class Processing {
 void Processing::choose_roles() {
   for (const auto& [role, variable] : file_.variables) {
     if (role == Quantity::lams_airspeed && !flight_.has(variable)) {
-      summary_.notes.push_back(
-          fmt::format("{} is not in this file: the flight is processed without LAMS", variable));
+      if (options_.correct_with == CorrectWith::lams) {
+        fail(fmt::format(
+            "{} (lams_airspeed) is not in this file, so it cannot be corrected with LAMS; leave out "
+            "--correct-with lams",
+            variable));
+      }
+      note("{} is not in this file: the flight is processed without LAMS", variable);
       continue;
     }
     roles_.push_back(role);
   }
   std::string why;
-  chain_ = Chain::build(file_.model, roles_, &why);
-  if (!chain_) throw Error(fmt::format("model '{}': {}", file_.model.name, why));
+  std::optional<Chain> chain = Chain::build(file_.model, roles_, &why);
+  if (!chain) fail_model(why);
+  chain_ = std::make_shared<const Chain>(std::move(*chain));
+}
+
+/// What a user should know of a law that was made for another time or aircraft.
+void Processing::check_law() {
+  const std::string day = utc_text(summary_.first_time, "%Y-%m-%d");
+  const LawFacts& law = file_.law;
+  const bool early = !law.valid_from.empty() && day < law.valid_from;
+  const bool late = !law.valid_to.empty() && day > law.valid_to;
+  if (early || late) {
+    note("the law holds {} {}, the flight is of {}: is there a model of its time?", early ? "from" : "until",
+         early ? law.valid_from : law.valid_to, day);
+  }
+  const std::string& expected = file_.model.aircraft;
+  if (!expected.empty() && !summary_.aircraft.empty() &&
+      expected.find(summary_.aircraft) == std::string::npos) {
+    note("the model is of the aircraft '{}', the flight of '{}'", expected, summary_.aircraft);
+  }
 }
 
 void Processing::choose_inputs() {
-  const auto always = {Quantity::recovery_temperature, Quantity::ambient_temperature,
-                       Quantity::vapor_pressure, Quantity::dew_point, Quantity::lams_airspeed};
-  for (const Quantity role : roles_) {
-    if (!chain_->needs(role) && std::find(always.begin(), always.end(), role) == always.end()) continue;
+  const auto conversion_of = [this](Quantity role) {
     const QuantityFacts& facts = facts_of(role);
     const auto stated = file_.units.find(role);
-    const std::string variable = file_.variables.at(role);
-    const UnitConversion conversion =
-        flight_.conversion(variable, std::string(facts.unit), std::string(facts.name),
-                           stated == file_.units.end() ? std::string() : stated->second);
-    inputs_.push_back({variable, role, conversion, {}});
+    return flight_.conversion(variable_of(role), std::string(facts.unit), std::string(facts.name),
+                              stated == file_.units.end() ? std::string() : stated->second);
+  };
+  const auto always = {Quantity::recovery_temperature, Quantity::ambient_temperature,
+                       Quantity::vapor_pressure,       Quantity::dew_point,
+                       Quantity::frost_point,          Quantity::lams_airspeed};
+  for (const Quantity role : roles_) {
+    if (!chain_->needs(role) && std::find(always.begin(), always.end(), role) == always.end()) continue;
+    inputs_.push_back({variable_of(role), role, conversion_of(role), {}});
   }
-  // Formulas take further variables as the file has them.
+  // A formula that names the variable of a role means that role; other variables it takes as the file has
+  // them.
   const std::vector<std::string>& extras = chain_->extra_names();
   for (std::size_t i = 0; i < extras.size(); ++i) {
-    flight_.variable(extras[i]);
-    inputs_.push_back({extras[i], extra_quantity(i), UnitConversion(), {}});
+    const std::string& name = extras[i];
+    const auto role = std::find_if(file_.variables.begin(), file_.variables.end(),
+                                   [&name](const auto& entry) { return entry.second == name; });
+    if (role != file_.variables.end()) {
+      inputs_.push_back({name, extra_quantity(i), conversion_of(role->first), {}});
+      continue;
+    }
+    if (!flight_.has(name)) {
+      const std::string meant = did_you_mean(name, flight_.variables());
+      fail(fmt::format(
+          "{}, which a formula of the model names, is neither a variable of this file nor a quantity{}", name,
+          meant.empty() ? "" : "; " + meant));
+    }
+    const std::string unit = flight_.variable(name).units;
+    note("a formula takes {} in {}", name, unit.empty() ? "no unit: the file gives none" : unit);
+    inputs_.push_back({name, extra_quantity(i), UnitConversion(), {}});
   }
   for (const Input& input : inputs_) flight_.require_values(input.variable);
 }
@@ -123,10 +178,9 @@ void Processing::choose_rate() {
   for (const Quantity pressure : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
     summary_.rate = std::max(summary_.rate, flight_.variable(variable_of(pressure)).rate);
   }
-  const double samples_per_second = summary_.rate / flight_.time().step;
   std::string why;
-  loop_ = Loop::build(file_.model, roles_, samples_per_second, &why, options_.correct_with);
-  if (!loop_) throw Error(fmt::format("model '{}': {}", file_.model.name, why));
+  loop_ = Loop::build(chain_, summary_.rate / flight_.time().step, &why, options_.correct_with);
+  if (!loop_) fail_model(why);
 }
 
 void Processing::add_output(const std::string& standard, Quantity quantity, const std::string& units,
@@ -147,53 +201,85 @@ void Processing::add_output(const std::string& standard, Quantity quantity, cons
   outputs_.push_back(std::move(output));
 }
 
-void Processing::choose_outputs() {
-  const std::string p = variable_of(Quantity::static_pressure);
-  const std::string q = variable_of(Quantity::dynamic_pressure);
-  const std::string defect = name_of("PCOR");
-  std::vector<std::string> law{p, q};
+/// The variables that the loop reads for any of the quantities.
+Processing::Names Processing::variables_for(const Chain& chain,
+                                            const std::vector<Quantity>& quantities) const {
+  Names names;
   for (const Input& input : inputs_) {
-    if (chain_->needs(input.quantity) && input.variable != p && input.variable != q)
-      law.push_back(input.variable);
+    const bool wanted = std::find(quantities.begin(), quantities.end(), input.quantity) != quantities.end();
+    if (wanted && (chain.needs(input.quantity) || chain.recorded(input.quantity)))
+      names.push_back(input.variable);
   }
-  std::vector<std::string> corrections{defect};
-  if (options_.correct_with == CorrectWith::lams) corrections.push_back(name_of("PCOR_LAMS"));
-  const auto with_corrections = [&corrections](const std::string& measured) {
-    std::vector<std::string> all{measured};
-    all.insert(all.end(), corrections.begin(), corrections.end());
+  return names;
+}
+
+/// The variables that the law reads: those that the chain would need without LAMS.
+Processing::Names Processing::variables_of_law() const {
+  std::vector<Quantity> without_lams = roles_;
+  without_lams.erase(std::remove(without_lams.begin(), without_lams.end(), Quantity::lams_airspeed),
+                     without_lams.end());
+  const std::optional<Chain> law = Chain::build(file_.model, without_lams, nullptr);
+  Names names;
+  for (const Input& input : inputs_) {
+    if (law && law->needs(input.quantity)) names.push_back(input.variable);
+  }
+  return names;
+}
+
+void Processing::choose_outputs() {
+  const auto join = [](std::initializer_list<Names> lists) {
+    Names all;
+    for (const Names& list : lists) {
+      for (const std::string& name : list) {
+        if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
+      }
+    }
     return all;
   };
+  const Names p{variable_of(Quantity::static_pressure)};
+  const Names q{variable_of(Quantity::dynamic_pressure)};
   const bool derives_temperature = chain_->derives_temperature();
-  const std::string thermometer =
-      variable_of(derives_temperature ? Quantity::recovery_temperature : Quantity::ambient_temperature);
-  const std::string temperature = derives_temperature ? name_of("ATX") : thermometer;
-  const std::string beam = variable_of(Quantity::lams_airspeed);
+  const Names thermometer{
+      variable_of(derives_temperature ? Quantity::recovery_temperature : Quantity::ambient_temperature)};
+  const Names temperature = derives_temperature ? Names{name_of("ATX")} : thermometer;
+  const Names humidity =
+      file_.model.moist
+          ? variables_for(*chain_, {Quantity::vapor_pressure, Quantity::dew_point, Quantity::frost_point})
+          : Names{};
+  const Names beam =
+      variables_for(*chain_, {Quantity::lams_airspeed, Quantity::attack, Quantity::sideslip,
+                              Quantity::attack_differential_pressure,
+                              Quantity::sideslip_differential_pressure, Quantity::radome_dynamic_pressure});
+  Names corrections{name_of("PCOR")};
+  if (options_.correct_with == CorrectWith::lams) corrections.push_back(name_of("PCOR_LAMS"));
+  const Names pressures{name_of("PSXC"), name_of("QCXC")};
+  const Names mach{name_of("MACHX")};
 
   add_output("PCOR", Quantity::static_defect, "hPa", "Static defect (delta-p) of the model", "",
-             "Aircraft State", law);
+             "Aircraft State", join({variables_of_law()}));
   if (chain_->has_lams()) {
     add_output("PCOR_LAMS", Quantity::lams_static_defect, "hPa", "Static defect (delta-p) from LAMS", "",
-               "Aircraft State", {p, q, beam, thermometer});
+               "Aircraft State", join({p, q, beam, thermometer, humidity}));
   }
   add_output("PSXC", Quantity::corrected_static_pressure, "hPa", "Corrected Static Pressure", "air_pressure",
-             "Atmos. State", with_corrections(p));
+             "Atmos. State", join({p, corrections}));
   add_output("QCXC", Quantity::corrected_dynamic_pressure, "hPa", "Corrected Dynamic Pressure", "",
-             "Aircraft State", with_corrections(q));
+             "Aircraft State", join({q, corrections}));
   add_output("MACHX", Quantity::corrected_mach, "1", "Aircraft Mach Number", "", "Aircraft State",
-             {name_of("PSXC"), name_of("QCXC")});
+             join({pressures, humidity}));
   if (derives_temperature) {
     add_output("ATX", Quantity::ambient_temperature, "degC", "Ambient Temperature", "air_temperature",
-               "Atmos. State", {thermometer, name_of("MACHX")}, kelvin_to_celsius);
+               "Atmos. State", join({thermometer, mach, humidity}), kelvin_to_celsius);
   }
   if (chain_->has_temperature()) {
     add_output("TASX", Quantity::corrected_airspeed, "m/s", "Aircraft True Airspeed",
-               "platform_speed_wrt_air", "Aircraft State", {name_of("MACHX"), temperature});
+               "platform_speed_wrt_air", "Aircraft State", join({mach, temperature, humidity}));
   }
   if (chain_->has_lams()) {
     add_output("ATLAMS", Quantity::lams_temperature, "degC", "Ambient Temperature from LAMS",
-               "air_temperature", "Atmos. State", {beam, name_of("MACHX")}, kelvin_to_celsius);
+               "air_temperature", "Atmos. State", join({beam, mach, humidity}), kelvin_to_celsius);
     add_output("QCLAMS", Quantity::lams_dynamic_pressure, "hPa", "Dynamic Pressure from LAMS", "",
-               "Aircraft State", {beam, name_of("PSXC"), temperature});
+               "Aircraft State", join({beam, {name_of("PSXC")}, temperature, humidity}));
   }
 }
 
@@ -213,6 +299,8 @@ FileDescription Processing::describe() const {
                                    "ALTX", "GGALTC", "GGALT", "ALT"});
   description.attributes = {
       {"pcor_model", file_.model.name},
+      {"pcor_model_source", file_.law.source},
+      {"pcor_model_aircraft", file_.model.aircraft},
       {"pcor_time_stamp",
        flight_.time_stamp() == TimeStamp::begin ? "begin of the record" : "middle of the record"}};
   return description;
@@ -223,7 +311,13 @@ void Processing::copy_inputs(FlightWriter& writer, const FileDescription& descri
     if (!name.empty() && !writer.has(name)) writer.copy(name);
   };
   if (options_.copy_all) {
-    for (const std::string& name : flight_.variables()) copy(name);
+    for (const std::string& name : flight_.variables()) {
+      if (writer.can_copy(name)) {
+        copy(name);
+      } else if (name != flight_.time_variable()) {
+        note("{} is of a kind that cannot be copied, and left out", name);
+      }
+    }
     return;
   }
   for (const std::string& name : {description.latitude, description.longitude, description.altitude})
@@ -306,6 +400,7 @@ ProcessSummary Processing::run(const std::filesystem::path& output) {
   summary_.greatest_defect = -std::numeric_limits<double>::infinity();
 
   choose_roles();
+  check_law();
   choose_inputs();
   choose_rate();
   choose_outputs();

@@ -115,6 +115,12 @@ TimeSource find_time(const NetcdfFile& file) {
     return source;
   }
   if (units_hold) {
+    constexpr double week = 7 * day;
+    if (epoch->scale() > week)
+      throw Error(path + ": " + name + " counts in \"" + units +
+                  "\", and months and years are not always as long; state the unit it is in with ncatted -a "
+                  "units," +
+                  name + ",o,c,\"seconds since 2004-02-18 00:00:00 +0000\" " + path);
     source.scale = epoch->scale();
     source.offset = std::round(epoch->offset() * 1000) / 1000;
     source.words = name + ", " + units;

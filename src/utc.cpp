@@ -10,7 +10,7 @@ std::string utc_text(double seconds, const char* pattern) {
   std::tm fields{};
   gmtime_r(&whole, &fields);
   char text[128];
-  return std::string(text, std::strftime(text, sizeof text, pattern, &fields));
+  return {text, std::strftime(text, sizeof text, pattern, &fields)};
 }
 
 double midnight_before(double seconds) {

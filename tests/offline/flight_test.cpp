@@ -1,12 +1,16 @@
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 #include <pcor/offline/error.hpp>
 #include <pcor/offline/flight.hpp>
 #include <pcor/offline/utc.hpp>
 
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <limits>
+#include <random>
+#include <sstream>
 
 #include "support/netcdf_file.hpp"
 #include "support/temporary_directory.hpp"
@@ -113,6 +117,69 @@ TEST_F(FlightTest, ATruncatedFileIsRefusedWhateverItsKind) {
   }
 }
 
+TEST_F(FlightTest, AFileWithoutANameIsRefused) {
+  EXPECT_EQ(pcor::test::message_of<Error>([] { Flight{""}; }), "the input has no name; name a netCDF file");
+}
+
+// The netCDF library believes a header, and takes the memory it asks for.
+TEST_F(FlightTest, ADamagedHeaderIsRefusedOrReadSoonAndInLittleMemory) {
+  constexpr int mutations = 250;
+  constexpr std::size_t most_mutated = 2048;
+  const auto begin = std::chrono::steady_clock::now();
+  std::mt19937 random(20040218);
+  int refused = 0;
+  for (const int mode : {0, NC_64BIT_OFFSET, NC_64BIT_DATA}) {
+    {
+      NetcdfMaker maker(path(), mode);
+      maker.text(NC_GLOBAL, "FlightDate", "02/18/2004");
+      maker.time(sequence(100, 50));
+      for (int i = 0; i < 10; ++i) {
+        const int number = maker.series("PS" + std::to_string(i), "hPa", std::vector<double>(50, 850));
+        maker.text(number, "long_name", "Static Pressure of system " + std::to_string(i));
+      }
+      maker.series("FAST", "hPa", std::vector<double>(250, 100), 5);
+    }
+    std::ostringstream text;
+    text << std::ifstream(path(), std::ios::binary).rdbuf();
+    const std::string whole = text.str();
+    std::uniform_int_distribution<std::size_t> place(0, std::min(most_mutated, whole.size()) - 1);
+    for (int i = 0; i < mutations; ++i) {
+      std::string damaged = whole;
+      for (auto changes = 1 + random() % 4; changes > 0; --changes) {
+        const auto kind = random() % 3;
+        damaged[place(random)] = static_cast<char>(kind == 0 ? 0xff : kind == 1 ? 0 : random() % 256);
+      }
+      std::ofstream(path(), std::ios::binary) << damaged;
+      try {
+        const Flight flight(path());
+        for (const std::string& name : flight.variables()) {
+          if (!flight.variable(name).is_series) continue;
+          std::vector<double> values(flight.records() * static_cast<std::size_t>(flight.variable(name).rate));
+          flight.read(name, {0, flight.records()}, {}, values.data());
+        }
+      } catch (const Error&) {
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GT(refused, 100);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60));
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  EXPECT_LT(usage.ru_maxrss, 2 << 20) << "kB";
+}
+
+TEST_F(FlightTest, ACountThatTheFileHasNoRoomForIsDamage) {
+  for (const int mode : {0, NC_64BIT_DATA}) {
+    { NetcdfMaker(path(), mode).time(sequence(100, 5)); }
+    std::fstream file(path(), std::ios::binary | std::ios::in | std::ios::out);
+    file.seekp(mode == 0 ? 12 : 16);  // how many dimensions
+    file.put('\x3f');
+    file.close();
+    EXPECT_THAT(refusal(), HasSubstr("is truncated or damaged: its header cannot be read"));
+  }
+}
+
 TEST_F(FlightTest, AnEmptyTimeDimensionIsRefused) {
   NetcdfMaker(path()).time({});
   EXPECT_THAT(refusal(), HasSubstr("has no records"));
@@ -205,6 +272,15 @@ TEST_F(FlightTest, WithoutBaseTimeTheFlightDateServes) {
   }
 }
 
+TEST_F(FlightTest, MonthsAndYearsAreNoUnitsOfAFlightsTime) {
+  for (const char* units : {"months since 2004-01-01", "years since 2004-01-01"}) {
+    { NetcdfMaker(path()).time({1, 2}, units); }
+    EXPECT_THAT(refusal(), AllOf(HasSubstr(units), HasSubstr("ncatted -a units,Time")));
+  }
+  { NetcdfMaker(path()).time({1, 2}, "days since 2004-02-18"); }
+  EXPECT_EQ(Flight(path()).time().step, 86400) << "slow, and not wrong";
+}
+
 TEST_F(FlightTest, ATimeThatCannotBeToldSaysHowToStateIt) {
   { NetcdfMaker(path()).time({51720, 51721}, "seconds since 1141-01-00 00:00:00 +0000"); }
   EXPECT_THAT(refusal(), AllOf(HasSubstr("does not tell the time"), HasSubstr("1141-01-00"),
@@ -285,6 +361,83 @@ TEST_F(FlightTest, AMissingVariableSuggestsThoseThatLookLikeIt) {
             path().string() + ": QCF is not in this file; it has QCFR, QCR, QCX");
   EXPECT_TRUE(flight.has("QCR"));
   EXPECT_FALSE(flight.has("QCF"));
+}
+
+TEST_F(FlightTest, AMissingVariableOfTheModelNamesItsRoleAndWhatFits) {
+  {
+    NetcdfMaker maker(path());
+    maker.time({100});
+    maker.series("QCFR", "mbar", {1});
+    maker.series("QCR", "hPa", {1});
+    maker.series("QCX", "hPa", {1});
+    maker.series("QCFK", "K", {1});
+    maker.text(maker.series("ATX", "degC", {1}), "long_name", "Ambient");
+    maker.series("RSTB1", "m/s", {1});
+    for (const char* name : {"TTRR", "TTRL", "TTWH"})
+      maker.text(maker.series(name, "C", {1}), "long_name", "Recovery Air Temperature");
+  }
+  const Flight flight(path());
+  const auto refusal_of = [&](const char* name, const char* unit, const char* role) {
+    return pcor::test::message_of<Error>([&] { flight.conversion(name, unit, role); });
+  };
+  EXPECT_EQ(
+      refusal_of("QCF", "hPa", "dynamic_pressure"),
+      path().string() +
+          ": QCF is not in this file; it has QCFR, QCR, QCX; change dynamic_pressure in the [variables] of "
+          "the model");
+  EXPECT_EQ(refusal_of("RTF1", "K", "recovery_temperature"),
+            path().string() +
+                ": RTF1 (recovery_temperature of the model) is not in this file; it has TTRR, TTRL, TTWH in "
+                "degC, QCFK in K, ATX in degC (units that fit); change [variables] of the model")
+      << "the words of the role first";
+  EXPECT_THAT(refusal_of("ALT", "radian", "attack"),
+              AllOf(HasSubstr("ALT (attack of the model) is not in this file"),
+                    HasSubstr("no time series in radian"), HasSubstr("[variables]")));
+  EXPECT_EQ(pcor::test::message_of<Error>([&] { flight.conversion("QCF", "hPa"); }),
+            pcor::test::message_of<Error>([&] { flight.variable("QCF"); }))
+      << "without a role there is no model to change";
+}
+
+TEST_F(FlightTest, NoMoreThanSixVariablesThatFitAreNamed) {
+  {
+    NetcdfMaker maker(path());
+    maker.time({100});
+    for (int i = 1; i < 10; ++i) maker.series("ABCD" + std::to_string(i), "degC", {1});
+  }
+  const Flight flight(path());
+  EXPECT_THAT(
+      pcor::test::message_of<Error>([&] { flight.conversion("ZZ", "K", "ambient_temperature"); }),
+      HasSubstr("it has ABCD1, ABCD2, ABCD3, ABCD4, ABCD5, ABCD6 in degC and 3 more (units that fit)"));
+}
+
+TEST_F(FlightTest, AUnitOfTheModelNeverReplacesAnotherOneOfTheFile) {
+  {
+    NetcdfMaker maker(path());
+    maker.time({100});
+    maker.series("PSFD", "mbar", {850});
+    maker.series("HEAT", "K", {1});
+    maker.series("ODD", "furlong-ish", {1});
+    maker.series("BARE", "", {1});
+  }
+  const Flight flight(path());
+  const auto stated = [&](const char* name, const char* unit) {
+    return flight.conversion(name, "hPa", "static_pressure", unit)(1);
+  };
+  EXPECT_EQ(stated("PSFD", "hPa"), 1) << "the same in another spelling";
+  EXPECT_EQ(stated("ODD", "kPa"), 10);
+  EXPECT_EQ(stated("BARE", "kPa"), 10);
+  const auto refusal_of = [&](const char* name, const char* unit) {
+    return pcor::test::message_of<Error>([&] { stated(name, unit); });
+  };
+  EXPECT_EQ(refusal_of("PSFD", "Pa"),
+            path().string() +
+                ": PSFD has the unit \"mbar\", and the model states \"Pa\"; remove unit.static_pressure from "
+                "the [units] of the model, or mend the units attribute of the file if that is wrong");
+  EXPECT_THAT(refusal_of("HEAT", "hPa"), HasSubstr("HEAT has the unit \"K\", and the model states \"hPa\""));
+  for (const char* wrong : {"furlong", "K", "furlong-ish"})
+    EXPECT_THAT(refusal_of("BARE", wrong),
+                AllOf(HasSubstr(std::string("the unit \"") + wrong + "\" that the model states for BARE"),
+                      HasSubstr("correct unit.static_pressure in the [units]")));
 }
 
 TEST_F(FlightTest, AttributesComeWithoutTrailingNul) {
@@ -429,7 +582,9 @@ TEST_F(FlightTest, RatesSideBySideAreReadAtEither) {
   EXPECT_THAT(at(2, "FAST"), ElementsAre(1.5, 6, IsNan(), IsNan()));
   EXPECT_THAT(at(4, "FAST"), ElementsAre(1, 2, IsNan(), 6, IsNan(), IsNan(), IsNan(), IsNan()));
   EXPECT_THAT(pcor::test::message_of<Error>([&] { at(3, "FAST"); }),
-              HasSubstr("FAST has 4 samples a record"));
+              AllOf(HasSubstr("FAST has 4 samples a record"), HasSubstr("with 1 samples a record")));
+  EXPECT_THAT(pcor::test::message_of<Error>([&] { at(6, "FAST"); }),
+              HasSubstr("FAST has 4 samples a record, which cannot be brought to 6"));
 }
 
 TEST_F(FlightTest, AnglesAverageOnTheCircle) {

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <pcor/offline/error.hpp>
 #include <pcor/offline/flight_writer.hpp>
+#include <pcor/offline/replacement_file.hpp>
 #include <pcor/offline/utc.hpp>
 
 #include <csignal>
@@ -418,6 +419,35 @@ TEST_F(FlightWriterTest, AVariableThatWasNotWrittenInFullIsAnError) {
   EXPECT_EQ(directory.entries(), 1) << "only the input is left";
 }
 
+TEST_F(FlightWriterTest, WhatCannotBeCopiedIsToldBeforeAndLeavesTheRest) {
+  {
+    NetcdfMaker maker(input);
+    maker.time({100, 101});
+    maker.series("PSFD", "hPa", {850, 851});
+    maker.series("FAST", "hPa", sequence(1, 8), 4);
+    const int bins = maker.dimension("Vector2", 2);
+    maker.variable("SIDEWAYS", NC_FLOAT, {bins, maker.time_dimension});
+    nc_type pair = NC_NAT;
+    ASSERT_EQ(nc_def_compound(maker.id(), 8, "pair", &pair), NC_NOERR);
+    ASSERT_EQ(nc_insert_compound(maker.id(), pair, "first", 0, NC_INT), NC_NOERR);
+    ASSERT_EQ(nc_insert_compound(maker.id(), pair, "second", 4, NC_INT), NC_NOERR);
+    maker.variable("PAIRS", pair, {maker.time_dimension});
+    const int values[] = {1, 2};
+    ASSERT_EQ(nc_put_att(maker.id(), NC_GLOBAL, "pair", pair, 1, values), NC_NOERR);
+  }
+  const Flight flight(input);
+  FlightWriter writer(output, flight, {});
+  EXPECT_TRUE(writer.can_copy("PSFD"));
+  EXPECT_TRUE(writer.can_copy("FAST"));
+  for (const char* name : {"PAIRS", "SIDEWAYS", "ABSENT"}) EXPECT_FALSE(writer.can_copy(name)) << name;
+  EXPECT_THAT(message_of<Error>([&] { writer.copy("PAIRS"); }),
+              AllOf(HasSubstr("PAIRS has a type of its own making"), HasSubstr("leave it out")));
+  writer.copy("PSFD");
+  writer.finish();
+  EXPECT_THAT(Written(output).values("PSFD"), ElementsAre(850, 851));
+  EXPECT_FALSE(FlightWriter(output, NewFlight{midnight}, {}).can_copy("PSFD")) << "there is no input";
+}
+
 TEST_F(FlightWriterTest, FlagsMustBeWholeNumbers) {
   NewFlight start{midnight};
   FlightWriter writer(output, start, {});
@@ -484,6 +514,53 @@ TEST_F(FlightWriterTest, ASymbolicLinkIsFollowed) {
   EXPECT_EQ(Flight(directory / "real.nc").records(), 1);
 }
 
+TEST_F(FlightWriterTest, WhatIsNotFinishedIsHiddenBesideTheOutputAndGoesAtASignal) {
+  for (const FileKind kind : {FileKind::classic, FileKind::netcdf4}) {
+    std::ofstream(output) << "old";
+    NewFlight flight{midnight};
+    flight.kind = kind;
+    FlightWriter first(output, flight, {}), second(output, flight, {});
+    EXPECT_EQ(directory.entries(), 3) << "each has its own";
+    for (const auto& entry : std::filesystem::directory_iterator(directory.path()))
+      EXPECT_THAT(entry.path().filename().string(), MatchesRegex("(\\.out\\.nc\\.......\\.part|out\\.nc)"));
+    pcor::remove_unfinished_files();
+    EXPECT_EQ(directory.entries(), 1);
+    EXPECT_EQ(contents(output), "old");
+  }
+}
+
+TEST_F(FlightWriterTest, AFinishedFileStaysAtASignal) {
+  FlightWriter writer(output, NewFlight{midnight}, {});
+  writer.write_time_stamps({0, 1}, &midnight);
+  writer.finish();
+  pcor::remove_unfinished_files();
+  EXPECT_EQ(Flight(output).records(), 1);
+}
+
+TEST_F(FlightWriterTest, MoreUnfinishedFilesThanAreListedAreStillWritten) {
+  std::vector<std::unique_ptr<pcor::ReplacementFile>> files;
+  for (int i = 0; i < 20; ++i)
+    files.push_back(std::make_unique<pcor::ReplacementFile>(directory / std::to_string(i)));
+  for (const auto& file : files) file->commit();
+  EXPECT_EQ(directory.entries(), 20);
+  files.clear();
+  EXPECT_EQ(directory.entries(), 20);
+}
+
+TEST_F(FlightWriterTest, ANewFileHasThePermissionsOfAnyNewFile) {
+  pcor::ReplacementFile file(output);
+  file.commit();
+  const auto other = directory / "other";
+  std::ofstream(other).flush();
+  EXPECT_EQ(std::filesystem::status(output).permissions(), std::filesystem::status(other).permissions());
+}
+
+TEST_F(FlightWriterTest, AnOutputsNameMayBeAsLongAsTheDiskAllows) {
+  const auto longest = directory / std::string(255, 'n');
+  pcor::ReplacementFile(longest).commit();
+  EXPECT_TRUE(std::filesystem::exists(longest));
+}
+
 TEST_F(FlightWriterTest, TheInputIsNeverTheOutputNotEvenByALink) {
   make_input_of(0);
   const std::string before = contents(input);
@@ -527,7 +604,8 @@ TEST_F(FlightWriterTest, AFileThatMayNotGrowLeavesNothing) {
     setrlimit(RLIMIT_FSIZE, &small);
     const std::string message = write_much(output, kind);
     setrlimit(RLIMIT_FSIZE, &before);
-    EXPECT_THAT(message, AllOf(HasSubstr(output.string()), HasSubstr("cannot be"), Not(HasSubstr("\n"))));
+    EXPECT_THAT(message, AllOf(HasSubstr(output.string()), HasSubstr("cannot be"),
+                               HasSubstr("check the space"), Not(HasSubstr("\n"))));
     EXPECT_EQ(contents(output), "old");
     EXPECT_EQ(directory.entries(), 1);
   }

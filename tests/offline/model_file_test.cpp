@@ -289,8 +289,8 @@ class ModelGenerator {
   void variables(ModelFile& file) {
     file.variables = {{Quantity::static_pressure, "PSFD"}, {Quantity::dynamic_pressure, "QC \"F\" é"}};
     for (std::size_t i = 2; i < role_count; ++i) {
-      if (!maybe()) continue;
       const auto role = static_cast<Quantity>(i);
+      if (!maybe() || (is_humidity(role) && has_humidity(file))) continue;
       file.variables[role] = "V" + std::to_string(i);
       if (maybe()) file.units[role] = facts_of(role).unit;
     }
@@ -299,9 +299,22 @@ class ModelGenerator {
     }
   }
 
+  static bool is_humidity(Quantity role) {
+    return role == Quantity::vapor_pressure || role == Quantity::dew_point || role == Quantity::frost_point;
+  }
+
+  static bool has_humidity(const ModelFile& file) {
+    return std::any_of(file.variables.begin(), file.variables.end(),
+                       [](const auto& variable) { return is_humidity(variable.first); });
+  }
+
   void instrument(ModelFile& file) {
     Model& model = file.model;
     if (maybe()) model.lams = {number(), number(), static_cast<LamsApproach>(1 + below(3))};
+    if (file.variables.count(Quantity::recovery_temperature) != 0 &&
+        file.variables.count(Quantity::ambient_temperature) != 0) {
+      model.lams.approach = LamsApproach::with_temperature;
+    }
     switch (below(4)) {
       case 0: {
         const PublishedRecoveryFactor& law =
@@ -343,9 +356,21 @@ class ModelGenerator {
     return effect;
   }
 
+  double between(double lower, double upper) {
+    const double value = maybe() ? number() : std::uniform_real_distribution<>(lower, upper)(random_);
+    return std::clamp(value, lower, upper);
+  }
+
   void add_effect(ModelFile& file, ModelEffect effect) {
-    for (double& parameter : effect.parameters) {
-      if (maybe()) parameter = number();
+    const std::size_t place = effect_named(effect.id);
+    for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
+      if (maybe()) continue;
+      if (effect.is_formula()) {
+        effect.parameters[i] = number();
+      } else {
+        const ParameterFacts& facts = effect_facts[place].parameters[i];
+        effect.parameters[i] = between(facts.lower, facts.upper);
+      }
     }
     file.model.effects.push_back(std::move(effect));
   }
@@ -355,11 +380,17 @@ class ModelGenerator {
     for (std::size_t i = 0; i < fit.size(); ++i) {
       fit[i].fixed = maybe();
       if (maybe()) fit[i].standard_error = positive();
-      const Bounds bounds = range();
+      const Bounds bounds = effect.is_formula() ? range() : range_within(effect, i);
       const double value = effect.parameters[i];
       if (value >= bounds.lower && value <= bounds.upper) fit[i].bounds = bounds;
     }
     return fit;
+  }
+
+  Bounds range_within(const ModelEffect& effect, std::size_t number) {
+    const ParameterFacts& facts = effect_facts[effect_named(effect.id)].parameters[number];
+    const double a = between(facts.lower, facts.upper), b = between(facts.lower, facts.upper);
+    return a == b ? Bounds{facts.lower, facts.upper} : Bounds{std::min(a, b), std::max(a, b)};
   }
 
   void covariance(ModelFile& file) {
@@ -584,9 +615,9 @@ TEST(ModelFile, AnEffectWithoutBoundsHasThoseOfTheCatalogue) {
   EXPECT_EQ(file.bounds(0, 0).upper, 0.2);
 }
 
-TEST(ModelFile, BothTemperaturesMayBeGiven) {
-  const ModelFile file =
-      parse_model(least + "recovery_temperature = \"RTF1\"\nambient_temperature = \"MTP\"\n", "m.toml");
+TEST(ModelFile, TheThirdApproachOfLamsTakesBothTemperatures) {
+  const std::string both = "recovery_temperature = \"RTF1\"\nambient_temperature = \"MTP\"\n";
+  const ModelFile file = parse_model(least + both + "[lams]\napproach = 3\n", "m.toml");
   EXPECT_EQ(file.variables.count(Quantity::recovery_temperature), 1u);
   EXPECT_EQ(file.variables.count(Quantity::ambient_temperature), 1u);
 }
@@ -661,6 +692,7 @@ TEST_P(BadInputTest, IsRefusedWithItsPlaceAndAdvice) {
   const std::string message = error_of(whole ? input.text : least + input.text);
   EXPECT_THAT(message, StartsWith("m.toml:" + input.place + ": "));
   for (const std::string& part : input.parts) EXPECT_THAT(message, HasSubstr(part));
+  EXPECT_THAT(message, Not(AnyOf(HasSubstr("?;"), HasSubstr("?."))));
 }
 
 const std::string own = "[[effect]]\nid = \"own\"\nformula = \"k * mach\"\nparameters = { k = 1 }\n";
@@ -692,6 +724,31 @@ INSTANTIATE_TEST_SUITE_P(
                  "format = \"pcor-model/1\"\n[variables]\nstatic_pressure = \"PSFD\"\n",
                  "2:2",
                  {"the role 'dynamic_pressure' has no variable"}},
+        BadInput{"OneVariableForBothPressures",
+                 "\nformat = \"pcor-model/1\"\n[variables]\ndynamic_pressure = \"PSFD\"\n"
+                 "static_pressure = \"PSFD\"\n",
+                 "5:1",
+                 {"'static_pressure' and 'dynamic_pressure' are both 'PSFD'", "give each its own"}},
+        BadInput{"ImpossibleElevation",
+                 "[[effect]]\nid = \"lams-elevation\"\nparameters = { dtheta1 = 11 }\n",
+                 "7:26",
+                 {"'dtheta1' = 11", "within [-10, 10] deg"}},
+        BadInput{"VapourPressureAndDewPoint",
+                 "vapor_pressure = \"EWX\"\ndew_point = \"DPXC\"\n",
+                 "6:1",
+                 {"'vapor_pressure' and 'dew_point'", "give one for the humidity"}},
+        BadInput{"FrostPointAndVapourPressure",
+                 "frost_point = \"DPT\"\nvapor_pressure = \"EWX\"\n",
+                 "6:1",
+                 {"'frost_point' and 'vapor_pressure'", "give one for the humidity"}},
+        BadInput{"DewPointAndFrostPoint",
+                 "dew_point = \"DPXC\"\nfrost_point = \"DPT\"\n",
+                 "6:1",
+                 {"'dew_point' and 'frost_point'", "give one for the humidity"}},
+        BadInput{"BothTemperatures",
+                 "recovery_temperature = \"RTF1\"\nambient_temperature = \"ATX\"\n[lams]\napproach = 2\n",
+                 "6:1",
+                 {"'recovery_temperature' and 'ambient_temperature'", "give one", "approach = 3"}},
         BadInput{"UnknownRole",
                  "recovery_temprature = \"RTF1\"\n",
                  "5:1",
@@ -807,8 +864,18 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"FixedTwice", constant + "fixed = [\"a0\", \"a0\"]\n", "7:16", {"named twice"}},
         BadInput{"FixedOfWrongType", constant + "fixed = true\n", "7:9", {"the names of parameters"}},
         BadInput{"BoundsUpsideDown", constant + "bounds = { a0 = [1, -1] }\n", "7:17", {"not below"}},
-        BadInput{
-            "ValueOutsideItsBounds", constant + "bounds = { a0 = [1, 2] }\n", "7:17", {"outside its bounds"}},
+        BadInput{"ImpossibleParameter",
+                 constant + "parameters = { a0 = 0.42 }\n",
+                 "7:21",
+                 {"'a0' = 0.42 is outside the bounds of the catalogue", "within [-0.05, 0.05]"}},
+        BadInput{"BoundsBeyondTheCatalogue",
+                 constant + "bounds = { a0 = [-1, 0.01] }\n",
+                 "7:17",
+                 {"beyond those of the catalogue", "within [-0.05, 0.05]"}},
+        BadInput{"ValueOutsideItsBounds",
+                 constant + "bounds = { a0 = [0.01, 0.02] }\n",
+                 "7:17",
+                 {"outside its bounds"}},
         BadInput{"FormulaWithoutParameters",
                  "[[effect]]\nid = \"own\"\nformula = \"k * mach\"\n",
                  "7:1",

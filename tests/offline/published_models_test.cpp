@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -133,6 +134,47 @@ TEST(PublishedModels, TellWhatTheyAre) {
   }
 }
 
+// The cells of the table row that begins with `first`.
+std::vector<std::string> cells_of_row(const std::string& text, const std::string& first) {
+  const std::size_t begin = text.find("\n| " + first + " |");
+  if (begin == std::string::npos) return {};
+  std::istringstream row(text.substr(begin + 2, text.find('\n', begin + 1) - begin - 2));
+  std::vector<std::string> cells;
+  for (std::string cell; std::getline(row, cell, '|');) cells.push_back(cell.substr(1, cell.size() - 2));
+  return cells;
+}
+
+std::string validity(const LawFacts& law) {
+  if (law.valid_from.empty() && law.valid_to.empty()) return "not stated";
+  if (law.valid_from.empty()) return "until " + law.valid_to;
+  return law.valid_from + (law.valid_to.empty() ? " on" : " to " + law.valid_to);
+}
+
+TEST(PublishedModels, TheTablesSayWhatTheFilesSay) {
+  std::ifstream file(model_directory / "README.md");
+  std::ostringstream text;
+  text << file.rdbuf();
+  for (const std::string& name : model_names()) {
+    const ModelFile model = read_published(name);
+    const std::vector<std::string> cells = cells_of_row(text.str(), "`" + name + ".toml`");
+    ASSERT_EQ(cells.size(), 7u) << name;
+    EXPECT_EQ(cells[1], model.variables.at(Quantity::static_pressure) + "/" +
+                            model.variables.at(Quantity::dynamic_pressure))
+        << name;
+    EXPECT_EQ(cells[3], validity(model.law)) << name;
+    EXPECT_EQ(cells[5], model.law.rms_hpa ? fmt::format("{}", *model.law.rms_hpa) : "-") << name;
+  }
+}
+
+TEST(PublishedModels, CommentsDoNotBreakAFileName) {
+  for (const std::string& name : model_names()) {
+    std::ifstream file(model_directory / (name + ".toml"));
+    for (std::string line; std::getline(file, line);) {
+      EXPECT_FALSE(line.rfind('#', 0) == 0 && line.back() == '-') << name << ": " << line;
+    }
+  }
+}
+
 TEST(PublishedModels, GiveAValueAndKeepTheTotalPressure) {
   const Sample sample;
   for (const std::string& name : model_names()) {
@@ -195,14 +237,18 @@ Sample c130_sample(const C130Row& row) {
   return sample;
 }
 
-TEST(PublishedModels, ReproduceTheTableOfTheC130) {
-  // The table is made without the taper, which acts below q = 40 hPa: in its first row alone.
-  const std::vector<std::string> columns{
+// The laws of the columns of `c130_rows`.
+const std::vector<std::string>& c130_columns() {
+  static const std::vector<std::string> columns{
       "c130-psfd-eq18",  "c130-psfd-eq19",          "c130-psfd-linear",        "c130-psfd-qcf-2003",
       "c130-psfrd-eq18", "c130-psfrd-eq19-printed", "c130-psfrd-eq19-decoded", "c130-psfrd-2003",
       "c130-psfd-2014",  "c130-psfrd-2014",         "c130-psfd-2016",          "c130-psfrd-2016"};
+  return columns;
+}
+
+const std::vector<C130Row>& c130_rows() {
   // clang-format off
-  const std::vector<C130Row> rows{
+  static const std::vector<C130Row> rows{
       {1000,  75,  34.5,  6.1,  0.024,
        { 5.70,  5.57,  4.22, 4.93, 4.72, 5.69, 4.66, 4.79,  5.30, 3.63, 3.24, 3.07}},
       {1000, 100,  61.9,  1.4, -0.289,
@@ -233,10 +279,16 @@ TEST(PublishedModels, ReproduceTheTableOfTheC130) {
        { 1.09,  1.05,  0.64, 1.11, 4.59, 6.12, 4.38, 5.17,  0.89, 4.28, 1.50, 5.80}},
   };
   // clang-format on
+  return rows;
+}
+
+TEST(PublishedModels, ReproduceTheTableOfTheC130) {
+  // The table is made without the taper, which acts below q = 40 hPa: in its first row alone.
+  const std::vector<std::string>& columns = c130_columns();
   for (std::size_t column = 0; column < columns.size(); ++column) {
     const Law law(columns[column]);
     const bool tapered = read_published(columns[column]).model.policy.taper_below > 0.0;
-    for (const C130Row& row : rows) {
+    for (const C130Row& row : c130_rows()) {
       const Sample sample = c130_sample(row);
       // Half of the last printed digit and, where that decides, the two constants and the standard
       // atmosphere.
@@ -247,6 +299,28 @@ TEST(PublishedModels, ReproduceTheTableOfTheC130) {
       EXPECT_NEAR(law(sample), taper * row.defects[column], table_tolerance)
           << columns[column] << " at " << row.p << " hPa, " << row.airspeed << " m/s";
     }
+  }
+}
+
+// The files say by how much the fits of 2011 differ from the laws that came after them. The table is of level
+// flight.
+TEST(PublishedModels, FitsOfTheMemoTellHowFarTheLawOf2016IsFromThem) {
+  const auto column = [](const std::string& name) {
+    const auto found = std::find(c130_columns().begin(), c130_columns().end(), name);
+    return static_cast<std::size_t>(found - c130_columns().begin());
+  };
+  for (const std::string& name : c130_columns()) {
+    const ModelFile model = read_published(name);
+    if (model.law.valid_from != "2011-11-17") continue;
+    const std::string pair = name.substr(0, name.find('-', 5));
+    double most = 0.0;
+    for (const C130Row& row : c130_rows()) {
+      const DomainRange& domain = model.model.domain.at(0);
+      if (row.attack_ratio < domain.lower || row.attack_ratio > domain.upper) continue;
+      most = std::max(most, std::abs(row.defects[column(name)] - row.defects[column(pair + "-2016")]));
+    }
+    EXPECT_THAT(model.law.note, testing::EndsWith(fmt::format("up to {:.1f} hPa from the law of 2016", most)))
+        << name;
   }
 }
 

@@ -312,9 +312,20 @@ TEST(Air, TakesTheVapourFromTheDewPoint) {
   const Recorded recorded =
       with(without(truth.recorded(), Quantity::vapor_pressure), Quantity::dew_point, dew_point);
   const Sample s = fly(truth.model(), recorded);
-  const double e = pcor::vapor_pressure_over_ice(dew_point) * pcor::enhancement_factor(dew_point, truth.p);
+  const double e = pcor::vapor_pressure_over_water(dew_point) * pcor::enhancement_factor(dew_point, truth.p);
   EXPECT_NEAR(s[Quantity::humidity] * truth.p, e, 1e-11);
-  EXPECT_NEAR(e, 3.06, 0.02) << "the ice saturation at -8 deg C and 0.3 %";
+  EXPECT_NEAR(e, 3.31, 0.02) << "the saturation over water at -8 deg C and 0.3 %";
+}
+
+TEST(Air, TakesTheVapourFromTheFrostPoint) {
+  const double frost_point = 265;
+  const Recorded recorded =
+      with(without(truth.recorded(), Quantity::vapor_pressure), Quantity::frost_point, frost_point);
+  const Sample s = fly(truth.model(), recorded);
+  const double e =
+      pcor::vapor_pressure_over_ice(frost_point) * pcor::enhancement_factor(frost_point, truth.p);
+  EXPECT_NEAR(s[Quantity::humidity] * truth.p, e, 1e-11);
+  EXPECT_NEAR(e, 3.06, 0.02) << "the saturation over ice at -8 deg C and 0.3 %";
 }
 
 TEST(Air, TakesAnAmbientTemperatureAsItIs) {
@@ -604,11 +615,14 @@ TEST(QualityBits, NotSetByOtherCauses) {
       << "the pressure is at fault, not an input";
 }
 
-TEST(QualityBits, ADefectLargerThanTheDynamicPressureLeavesNone) {
+TEST(QualityBits, ADefectLargerThanTheDynamicPressureIsNone) {
   Model model = truth.model();
   model.effects = {catalogued("static-constant", {0.02})};
   const Sample s = fly(model, with(truth.recorded(), Quantity::dynamic_pressure, 10.0));
-  EXPECT_TRUE(s.has(Quality::impossible_dynamic_pressure));
+  EXPECT_TRUE(s.has(Quality::defect_exceeds_dynamic_pressure));
+  EXPECT_FALSE(s.has(Quality::impossible_dynamic_pressure)) << "the dynamic pressure itself is in order";
+  EXPECT_TRUE(std::isnan(s[Quantity::static_defect]));
+  EXPECT_TRUE(std::isnan(s[Quantity::corrected_static_pressure]));
   EXPECT_TRUE(std::isnan(s[Quantity::corrected_dynamic_pressure]));
   EXPECT_TRUE(std::isnan(s[Quantity::corrected_airspeed]));
 }

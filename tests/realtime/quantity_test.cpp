@@ -36,6 +36,7 @@ TEST(Quantity, RolesAreThoseOfTheModelFile) {
                          "ambient_temperature",
                          "vapor_pressure",
                          "dew_point",
+                         "frost_point",
                          "radome_dynamic_pressure",
                          "attack_differential_pressure",
                          "sideslip_differential_pressure",

@@ -9,6 +9,7 @@ Flights are made from the text of the example flight, with the fault under test 
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -138,8 +139,53 @@ class Usage(ToolTest):
         result = self.process(self.flight(), None, None, "--correct-with", "radar")
         self.assert_refused(result, "radar", status=2)
 
+    def test_unknown_option(self):
+        result = self.process(self.flight(), None, None, "--sufix", "_X")
+        self.assert_refused(result, "'--sufix'", "--suffix", status=2)
+        self.assert_refused(self.run_tool("process", "--sufix"), "'--sufix'", "--suffix", status=2)
+
+    def test_nothing_asked(self):
+        self.assert_refused(self.run_tool(), "pcor --help", status=2)
+
     def test_unknown_effect(self):
         self.assert_refused(self.run_tool("effects", "static-alpa"), "static-alpha")
+
+    def test_full_standard_output(self):
+        with open("/dev/full", "w") as full:
+            result = subprocess.run([TOOL, "effects"], stdout=full, stderr=subprocess.PIPE, text=True)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("standard output", result.stderr)
+
+
+class Notes(ToolTest):
+    def test_law_of_another_time_and_aircraft(self):
+        model = self.model(
+            lambda toml: re.sub(r'^valid_from.*$', 'valid_from = "2010-01-01"', toml, flags=re.MULTILINE)
+            .replace("valid_to", "# valid_to").replace("N130AR", "N677F")
+        )
+        result = self.process(self.flight(), model)
+        self.assertIn("the law holds from 2010-01-01", result.stdout)
+        self.assertIn("the flight of 'N130AR'", result.stdout)
+
+    def test_formula_of_a_role_is_in_its_unit(self):
+        """TTRR is in degC in the file; a formula that names it means the recovery temperature, in K."""
+        effect = '\n[[effect]]\nid = "mine"\nformula = "k * (TTRR - recovery_temperature)"\nparameters = {{ k = {} }}\n'
+        means = []
+        for k in (0.0, 1.0):
+            result = self.process(self.flight(), self.model(lambda toml: toml + effect.format(k)), None, "--json", "-")
+            means.append(json.loads(result.stdout)["delta_p_hpa"]["mean"])
+        self.assertAlmostEqual(means[0], means[1], places=9)
+
+    def test_formula_of_another_variable_tells_its_unit(self):
+        effect = '\n[[effect]]\nid = "mine"\nformula = "k * GGALT"\nparameters = { k = 0.0 }\n'
+        result = self.process(self.flight(), self.model(lambda toml: toml + effect))
+        self.assertIn("a formula takes GGALT in", result.stdout)
+
+    def test_dependencies_name_what_was_used(self):
+        self.process(self.flight())
+        header = subprocess.run(["ncdump", "-h", self.path / "out.nc"], capture_output=True, text=True).stdout
+        self.assertIn('PCOR:Dependencies = "3 PSFD QCR ADIFR"', header)
+        self.assertIn('TASX:Dependencies = "3 MACHX ATX EDPC"', header)
 
 
 class BadFlight(ToolTest):
@@ -227,6 +273,37 @@ class BadOutput(ToolTest):
         link.symlink_to(flight)
         self.assert_refused(self.process(flight, None, link), "input itself")
         self.assertEqual(flight.read_bytes(), before)
+
+    def test_outputs_are_not_inputs(self):
+        flight, model = self.flight(), self.model()
+        before = flight.read_bytes(), model.read_bytes()
+        for output, json_file in ((model, "-"), (self.path / "out.nc", flight), (self.path / "out.nc", model),
+                                  (self.path / "out.nc", self.path / "out.nc")):
+            result = self.process(flight, model, output, "--json", json_file)
+            self.assert_refused(result, "choose")
+        self.assertEqual((flight.read_bytes(), model.read_bytes()), before)
+
+    def test_json_place_is_tried_before_the_work(self):
+        result = self.process(self.flight(), None, None, "--json", self.path / "none" / "result.json")
+        self.assert_refused(result, "none")
+
+    def test_names_that_are_not_utf8(self):
+        name = os.fsencode(self.path) + b"/w\xff.nc"
+        os.rename(self.flight(), name)
+        result = subprocess.run([TOOL, "process", name, "-m", self.model(), "-o", self.path / "out.nc", "--json", "-"],
+                                capture_output=True)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(json.loads(result.stdout)["records"], 600)
+
+    def test_a_stopped_run_leaves_nothing(self):
+        flight, model = self.flight(), self.model()
+        for stop in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            run = subprocess.Popen([TOOL, "process", flight, "-m", model, "-o", self.path / "out.nc"],
+                                   stdout=subprocess.DEVNULL)
+            run.send_signal(stop)
+            run.wait()
+            left = {p.name for p in self.path.iterdir()} - {"flight.nc", "model.toml", "out.nc"}
+            self.assertEqual(left, set())
 
     def test_no_such_folder(self):
         self.assert_refused(self.process(self.flight(), None, self.path / "none" / "out.nc"), "none")

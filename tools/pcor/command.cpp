@@ -6,9 +6,25 @@
 #include <fstream>
 
 #include "pcor/offline/error.hpp"
-#include "pcor/offline/replacement_file.hpp"
 
 namespace pcor::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* standard_output = "-";
+
+bool is_file(const fs::path& path) { return !path.empty() && path != standard_output; }
+
+/// True where the two names lead to one file, be it there or not.
+bool same_place(const fs::path& a, const fs::path& b) {
+  if (!is_file(a) || !is_file(b)) return false;
+  std::error_code code;
+  if (fs::equivalent(a, b, code)) return true;
+  return fs::weakly_canonical(fs::absolute(a), code) == fs::weakly_canonical(fs::absolute(b), code);
+}
+
+}  // namespace
 
 void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_option("--json", options.json, "write the result as JSON to FILE, - for standard output")
@@ -16,22 +32,41 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_flag("--quiet", options.quiet, "print no text");
 }
 
-void write_json(const nlohmann::ordered_json& result, const CommonOptions& options) {
-  if (options.json.empty()) return;
-  const std::string text = result.dump(2) + "\n";
-  if (options.json == "-") {
-    std::fwrite(text.data(), 1, text.size(), stdout);
-    if (std::fflush(stdout) != 0) throw Error("standard output: cannot write the JSON result");
-    return;
-  }
-  ReplacementFile file(options.json);
-  std::ofstream stream(file.path(), std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream) throw Error(fmt::format("{}: cannot write the JSON result: is the disk full?", options.json));
-  file.commit();
+bool wants_text(const CommonOptions& options) { return !options.quiet && options.json != standard_output; }
+
+JsonResult::JsonResult(const CommonOptions& options) : place_(options.json) {
+  if (is_file(place_)) file_.emplace(place_);
 }
 
-bool wants_text(const CommonOptions& options) { return !options.quiet && options.json != "-"; }
+void JsonResult::write(const nlohmann::ordered_json& result) {
+  if (place_.empty()) return;
+  const std::string text = result.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  if (!file_) {
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    return;
+  }
+  std::ofstream stream(file_->path(), std::ios::binary);
+  stream << text;
+  stream.close();
+  if (!stream) {
+    throw Error(fmt::format("{}: cannot write the JSON result; check the space and the permissions", place_));
+  }
+  file_->commit();
+}
+
+void refuse_overwriting(const std::vector<fs::path>& outputs, const std::vector<fs::path>& inputs) {
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    for (const fs::path& input : inputs) {
+      if (same_place(outputs[i], input)) {
+        throw Error(fmt::format("{} is an input itself; choose another output", outputs[i].string()));
+      }
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      if (same_place(outputs[i], outputs[j])) {
+        throw Error(fmt::format("{} is asked for twice as an output; choose two names", outputs[i].string()));
+      }
+    }
+  }
+}
 
 }  // namespace pcor::tool

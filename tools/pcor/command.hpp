@@ -4,24 +4,47 @@
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <vector>
+
+#include "pcor/offline/replacement_file.hpp"
 
 namespace pcor::tool {
 
 /// The options that every sub-command has.
 struct CommonOptions {
-  std::string json;    ///< where the machine-readable result goes, `-` for standard output; empty for nowhere
+  std::string json{};  ///< where the machine-readable result goes, `-` for standard output; empty for nowhere
   bool quiet = false;  ///< no text for people
 };
 
 /// Adds the common options to a sub-command.
 void add_common_options(CLI::App& command, CommonOptions& options);
 
-/// Writes a result as JSON to where the options say. A file appears whole or not at all; NaN becomes null.
-void write_json(const nlohmann::ordered_json& result, const CommonOptions& options);
-
 /// True where text for people is wanted on standard output.
 bool wants_text(const CommonOptions& options);
+
+/// The result as JSON. Made before the work, so that a place that cannot be written stops it in time; the
+/// file appears whole or not at all.
+class JsonResult {
+ public:
+  /// @throws Error if the place that the options name cannot be written.
+  explicit JsonResult(const CommonOptions& options);
+
+  /// Writes `result` where the options say, if anywhere. NaN becomes null. @throws Error if it cannot be
+  /// written.
+  void write(const nlohmann::ordered_json& result);
+
+ private:
+  std::string place_;
+  std::optional<ReplacementFile> file_{};
+};
+
+/// Refuses outputs that are inputs, under whatever name, and two outputs in one place. Empty names and `-`
+/// are no files.
+/// @throws Error
+void refuse_overwriting(const std::vector<std::filesystem::path>& outputs,
+                        const std::vector<std::filesystem::path>& inputs);
 
 /// A sub-command: adds itself to the program, and returns what to run when it was asked for.
 using AddCommand = std::function<void()> (*)(CLI::App& program);

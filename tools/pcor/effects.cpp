@@ -23,8 +23,8 @@ const EffectFacts& find(const std::string& id) {
   std::vector<std::string> ids;
   for (const EffectFacts& facts : effect_facts) ids.emplace_back(facts.id);
   const std::string hint = did_you_mean(id, ids);
-  throw Error(fmt::format("there is no effect '{}'{}{}; 'pcor effects' lists them all", id,
-                          hint.empty() ? "" : ": ", hint));
+  throw Error(fmt::format("there is no effect '{}'{}{} 'pcor effects' lists them all", id,
+                          hint.empty() ? ";" : "; ", hint));
 }
 
 std::string names_of_needs(const EffectFacts& facts) {
@@ -65,7 +65,7 @@ nlohmann::ordered_json as_json(const EffectFacts& facts) {
 void print_one(const EffectFacts& facts) {
   const WhereFacts& where = facts_of(facts.where);
   fmt::print("{}: {}\n\n", facts.id, facts.title);
-  fmt::print("  formula      {}  [{}], added to the {}\n", facts.formula, where.unit, where.adds_to);
+  fmt::print("  formula      {}  [{}]\n  acts on      {}\n", facts.formula, where.unit, where.adds_to);
   for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
     const ParameterFacts& parameter = facts.parameters[i];
     fmt::print("  parameter    {}  [{}], neutral {}, from {} to {}, typically {}\n", parameter.name,
@@ -81,32 +81,36 @@ void print_one(const EffectFacts& facts) {
     if (input.quantity == Quantity::count) break;
     fmt::print("{} = {}, ", facts_of(input.quantity).name, input.value);
   }
+  std::string example;
+  std::string typical;
   for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
-    fmt::print("{} = {}", facts.parameters[i].name, facts.example.parameters[i]);
+    const std::string_view separator = i == 0 ? "" : ", ";
+    example += fmt::format("{}{} = {}", separator, facts.parameters[i].name, facts.example.parameters[i]);
+    typical += fmt::format("{}{} = {}", separator, facts.parameters[i].name, facts.parameters[i].typical);
   }
-  fmt::print(" gives {} {}\n\nIn a model file:\n\n", facts.example.value, where.unit);
-  fmt::print("  [[effect]]\n  id = \"{}\"\n  parameters = {{ {} = {} }}\n", facts.id,
-             facts.parameters[0].name, facts.parameters[0].typical);
+  fmt::print("{} gives {} {}\n\nIn a model file:\n\n", example, facts.example.value, where.unit);
+  fmt::print("  [[effect]]\n  id = \"{}\"\n  parameters = {{ {} }}\n", facts.id, typical);
 }
 
 void print_all() {
-  fmt::print("{:<18} {:<15} {:<44} {}\n", "effect", "where", "formula", "what");
+  fmt::print("{:<18} {:<15} {:<52} {}\n", "effect", "where", "formula", "what");
   for (const EffectFacts& facts : effect_facts) {
-    fmt::print("{:<18} {:<15} {:<44} {}\n", facts.id, facts_of(facts.where).name, facts.formula, facts.title);
+    fmt::print("{:<18} {:<15} {:<52} {}\n", facts.id, facts_of(facts.where).name, facts.formula, facts.title);
   }
   fmt::print("\nTo read more of one: pcor effects {}\n", effect_facts.front().id);
 }
 
 void run(const Options& options) {
+  JsonResult json(options.common);
   if (!options.id.empty()) {
     const EffectFacts& facts = find(options.id);
-    write_json(as_json(facts), options.common);
+    json.write(as_json(facts));
     if (wants_text(options.common)) print_one(facts);
     return;
   }
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const EffectFacts& facts : effect_facts) all.push_back(as_json(facts));
-  write_json({{"effects", all}}, options.common);
+  json.write({{"effects", all}});
   if (wants_text(options.common)) print_all();
 }
 

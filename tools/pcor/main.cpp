@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
+#include <csignal>
+#include <cstdio>
 #include <exception>
 #include <functional>
 #include <string>
@@ -9,6 +12,7 @@
 
 #include "command.hpp"
 #include "pcor/offline/error.hpp"
+#include "pcor/offline/replacement_file.hpp"
 #include "pcor/offline/suggest.hpp"
 
 namespace {
@@ -16,23 +20,65 @@ namespace {
 constexpr int work_not_done = 1;
 constexpr int wrong_usage = 2;
 
-/// The message of a usage error, with the sub-command that may have been meant.
-std::string usage_message(const CLI::App& program, const std::string& message, int argc, char** argv) {
-  const std::string text = fmt::format("pcor: {}", message);
-  if (argc < 2) return "pcor: no sub-command; 'pcor --help' lists them";
-  if (argv[1][0] == '-') return text + "; 'pcor --help' lists the options";
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::string with_hint(const std::string& message, const std::string& hint, const std::string& help) {
+  return fmt::format("pcor: {};{}{} '{}' lists them", message, hint.empty() ? "" : " ", hint, help);
+}
+
+/// The long options of a command line that `command` does not have.
+std::vector<std::string> unknown_options(const CLI::App& command, const std::vector<std::string>& words,
+                                         std::vector<std::string>& known) {
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  }
+  std::vector<std::string> unknown;
+  for (const std::string& word : words) {
+    const std::string name = word.substr(0, word.find('='));
+    if (name.rfind("--", 0) == 0 && name != "--" && !contains(known, name)) unknown.push_back(name);
+  }
+  return unknown;
+}
+
+/// One line about a usage error: what was wrong, what may have been meant, and where all is listed.
+std::string usage_message(const CLI::App& program, const std::string& message,
+                          const std::vector<std::string>& words) {
+  if (words.empty()) return "pcor: no sub-command; 'pcor --help' lists them";
   std::vector<std::string> names;
-  for (const CLI::App* command : program.get_subcommands({})) names.push_back(command->get_name());
-  const bool known = std::find(names.begin(), names.end(), argv[1]) != names.end();
-  if (known) return fmt::format("{}; 'pcor {} --help' lists the options", text, argv[1]);
-  const std::string hint = pcor::did_you_mean(argv[1], names);
-  return fmt::format("pcor: there is no sub-command '{}'{}{}; 'pcor --help' lists them", argv[1],
-                     hint.empty() ? "" : ": ", hint);
+  const CLI::App* command = nullptr;
+  for (const CLI::App* each : program.get_subcommands({})) {
+    names.push_back(each->get_name());
+    if (each->get_name() == words.front()) command = each;
+  }
+  if (command == nullptr && words.front()[0] != '-') {
+    return with_hint(fmt::format("there is no sub-command '{}'", words.front()),
+                     pcor::did_you_mean(words.front(), names), "pcor --help");
+  }
+  const std::string help = command == nullptr ? "pcor --help" : "pcor " + words.front() + " --help";
+  std::vector<std::string> known;
+  const std::vector<std::string> unknown =
+      unknown_options(command == nullptr ? program : *command, words, known);
+  if (!unknown.empty()) {
+    return with_hint(fmt::format("there is no option '{}'", unknown.front()),
+                     pcor::did_you_mean(unknown.front(), known), help);
+  }
+  return fmt::format("pcor: {}; '{}' lists the options", message, help);
+}
+
+/// Leaves nothing unfinished behind when the program is stopped.
+extern "C" void stop(int signal) {
+  pcor::remove_unfinished_files();
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, stop);
+
   CLI::App program("Corrects the static and dynamic pressure that a research aircraft measures.", "pcor");
   program.set_version_flag("--version", "pcor " PCOR_VERSION);
   program.require_subcommand(1);
@@ -41,6 +87,7 @@ int main(int argc, char** argv) {
   constexpr std::array<pcor::tool::AddCommand, 2> commands{&pcor::tool::add_process,
                                                            &pcor::tool::add_effects};
   std::vector<std::function<void()>> runs;
+  runs.reserve(commands.size());
   for (const auto add : commands) runs.push_back(add(program));
 
   try {
@@ -48,7 +95,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::Success& success) {
     return program.exit(success);
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "{}\n", usage_message(program, error.what(), argc, argv));
+    fmt::print(stderr, "{}\n", usage_message(program, error.what(), {argv + 1, argv + argc}));
     return wrong_usage;
   }
 
@@ -57,8 +104,14 @@ int main(int argc, char** argv) {
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (all[i]->parsed()) runs[i]();
     }
-  } catch (const std::exception& error) {
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+      throw pcor::Error("standard output: cannot be written; check the space where it goes");
+    }
+  } catch (const pcor::Error& error) {
     fmt::print(stderr, "pcor: {}\n", error.what());
+    return work_not_done;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "pcor: a fault of the program itself, please report it: {}\n", error.what());
     return work_not_done;
   }
   return 0;

@@ -13,6 +13,8 @@
 namespace pcor::tool {
 namespace {
 
+constexpr const char* iso_time = "%Y-%m-%dT%H:%M:%SZ";
+
 struct Options {
   CommonOptions common;
   std::string input;
@@ -24,12 +26,29 @@ struct Options {
   bool copy_all = false;
 };
 
+/// A word of a command line as a shell takes it.
+std::string quoted(const std::string& word) {
+  const bool plain = !word.empty() && word.find_first_not_of(
+                                          "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+                                          "0123456789_-+./:,=@%") == std::string::npos;
+  if (plain) return word;
+  std::string text = "'";
+  for (const char letter : word) {
+    if (letter == '\'') {
+      text += "'\\''";
+    } else {
+      text += letter;
+    }
+  }
+  return text + "'";
+}
+
 std::string command_line(const Options& options) {
-  std::string line = fmt::format("pcor " PCOR_VERSION " process {} -m {} -o {}", options.input, options.model,
-                                 options.output);
+  std::string line = fmt::format("pcor " PCOR_VERSION " process {} -m {} -o {}", quoted(options.input),
+                                 quoted(options.model), quoted(options.output));
   if (options.correct_with != "model") line += " --correct-with " + options.correct_with;
   if (options.time_stamp != "begin") line += " --time-stamp " + options.time_stamp;
-  if (!options.suffix.empty()) line += " --suffix " + options.suffix;
+  if (!options.suffix.empty()) line += " --suffix " + quoted(options.suffix);
   if (options.copy_all) line += " --all";
   return line;
 }
@@ -42,8 +61,8 @@ nlohmann::ordered_json as_json(const ProcessSummary& summary, const Options& opt
   result["aircraft"] = summary.aircraft;
   result["project"] = summary.project;
   result["flight"] = summary.flight;
-  result["start"] = utc_text(summary.first_time);
-  result["end"] = utc_text(summary.last_time);
+  result["start"] = utc_text(summary.first_time, iso_time);
+  result["end"] = utc_text(summary.last_time, iso_time);
   result["records"] = summary.records;
   result["rate"] = summary.rate;
   result["samples"] = summary.samples;
@@ -61,9 +80,15 @@ nlohmann::ordered_json as_json(const ProcessSummary& summary, const Options& opt
 }
 
 void print(const ProcessSummary& summary, const Options& options) {
-  fmt::print("{} {} {}, {} to {}: {} records, {} sample{} in a record\n", summary.project, summary.flight,
-             summary.aircraft, utc_text(summary.first_time), utc_text(summary.last_time), summary.records,
-             summary.rate, summary.rate == 1 ? "" : "s");
+  std::string flight;
+  for (const std::string& part : {summary.project, summary.flight, summary.aircraft}) {
+    if (part.empty()) continue;
+    if (!flight.empty()) flight += ' ';
+    flight += part;
+  }
+  fmt::print("{}{}{} to {} UTC: {} records, {} sample{} in a record\n", flight, flight.empty() ? "" : ", ",
+             utc_text(summary.first_time), utc_text(summary.last_time), summary.records, summary.rate,
+             summary.rate == 1 ? "" : "s");
   fmt::print("corrected {} of {} samples", summary.corrected, summary.samples);
   if (summary.corrected > 0) {
     fmt::print(": delta-p {:.2f} hPa in the mean, {:.2f} to {:.2f} hPa", summary.mean_defect,
@@ -80,10 +105,13 @@ void print(const ProcessSummary& summary, const Options& options) {
   }
   for (const std::string& note : summary.notes) fmt::print("\nNote: {}.\n", note);
   fmt::print("\nwrote {} to {}\n", fmt::join(summary.outputs, " "), options.output);
-  fmt::print("To look at the result: ncdump -v {} {} | less\n", summary.outputs.front(), options.output);
+  fmt::print("To look at the result: ncdump -v {} {} | less\n", summary.outputs.front(),
+             quoted(options.output));
 }
 
 void run(const Options& options) {
+  refuse_overwriting({options.output, options.common.json}, {options.input, options.model});
+  JsonResult json(options.common);
   const ModelFile model = read_model(options.model);
   ProcessOptions process;
   process.correct_with = options.correct_with == "lams" ? CorrectWith::lams : CorrectWith::model;
@@ -97,7 +125,7 @@ void run(const Options& options) {
     process.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
     summary = process_flight(options.input, model, options.output, process);
   }
-  write_json(as_json(summary, options), options.common);
+  json.write(as_json(summary, options));
   if (wants_text(options.common)) print(summary, options);
 }
 

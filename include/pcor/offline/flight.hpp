@@ -81,7 +81,7 @@ class Flight {
   ///
   /// @throws Error if the file is absent, not netCDF, truncated, without records, or if a time is missing,
   /// repeated, earlier than the one before, or cannot be told at all. Gaps are no error, see `time()`.
-  explicit Flight(std::filesystem::path path, TimeStamp time_stamp = TimeStamp::begin);
+  explicit Flight(const std::filesystem::path& path, TimeStamp time_stamp = TimeStamp::begin);
 
   Flight(Flight&&) noexcept;
   Flight& operator=(Flight&&) noexcept;
@@ -112,7 +112,11 @@ class Flight {
   /// The conversion of a variable's values to the unit `wanted`.
   ///
   /// `role` is what the model file calls the variable, for the message. `stated`, if not empty, is the unit
-  /// that the model file states; it replaces what the file says. @throws Error as UnitConversion::between.
+  /// that the model file states; it counts where the file states none, or one that is not known.
+  ///
+  /// @throws Error as UnitConversion::between, or if the file's unit is known and is not the one stated, or
+  /// if the variable is absent: with a role, the message has the names that look like it among the time
+  /// series whose unit fits, or else up to six of these time series.
   UnitConversion conversion(const std::string& name, const std::string& wanted, const std::string& role = "",
                             const std::string& stated = "") const;
 

@@ -85,8 +85,14 @@ class FlightWriter {
   /// except that units which UDUNITS does not know get its spelling ("M/s" becomes "m/s"), trailing NULs are
   /// cut off, markers of missing values get the variable's type, and one that has no name in words is called
   /// by its own. The input's time variable is not copied: `Time` takes its place.
-  /// @throws Error if there is no input, no such variable, or the name is taken.
+  /// Attributes of types that the file makes itself are left out.
+  /// @throws Error if there is no input, no such variable, the name is taken, or it is not one to copy.
   void copy(const std::string& name);
+
+  /// Whether the input has a variable of this name that is one to copy: not if its type is one that the file
+  /// makes itself (compound, enum, opaque, variable length), if Time is not the first of its dimensions, or
+  /// if one of them is in the output with another length.
+  bool can_copy(const std::string& name) const;
 
   /// Whether a name is taken in the output.
   bool has(const std::string& name) const;

@@ -15,8 +15,8 @@ namespace pcor {
 template <class S>
 S mach_number(const S& p, const S& q, const MoistAir<S>& air) {
   using std::sqrt;
-  const S temperature_ratio = power(S(1.0) + q / p, air.poisson_exponent);
-  const S mach = sqrt(S(2.0) * air.specific_heat_volume / air.gas_constant * (temperature_ratio - S(1.0)));
+  const S heating = power_less_one(q, p, air.poisson_exponent);
+  const S mach = sqrt(S(2.0) * air.specific_heat_volume / air.gas_constant * heating);
   return select(p > S(0.0), mach, missing<S>());
 }
 
@@ -40,8 +40,8 @@ S dynamic_pressure_from_mach(const S& p, const S& mach, const MoistAir<S>& air) 
 /// Domain: T > 0; anything else gives NaN. Result: 1. Source: memo eq. 10.
 template <class S>
 S pressure_ratio_of_airspeed(const S& airspeed, const S& temperature, const MoistAir<S>& air) {
-  const S heating = airspeed * airspeed / (S(2.0) * air.specific_heat_pressure * temperature);
-  const S ratio = power(S(1.0) + heating, S(1.0) / air.poisson_exponent) - S(1.0);
+  const S ratio = power_less_one(S(airspeed * airspeed), S(S(2.0) * air.specific_heat_pressure * temperature),
+                                 S(S(1.0) / air.poisson_exponent));
   return select(temperature > S(0.0), ratio, missing<S>());
 }
 

@@ -52,7 +52,8 @@ S vapor_pressure_over_ice(const S& temperature) {
                        S(0.00728332) * temperature);
 }
 
-/// Saturation vapour pressure of a chilled mirror, hPa: over ice below the ice point, over water from it on.
+/// Saturation vapour pressure over a chilled mirror at `temperature` in K, hPa: over ice below the ice point,
+/// over water from it on. Domain and accuracy are those of the two laws. Source: Murphy and Koop (2005).
 template <class S>
 S saturation_vapor_pressure(const S& temperature) {
   return select(temperature < S(constants::ice_point), vapor_pressure_over_ice(temperature),
@@ -69,11 +70,19 @@ S enhancement_factor(const S& temperature, const S& pressure) {
   return S(1.0) + S(1e-5) * pressure * (S(4.923) + temperature * (S(-0.0325) + S(5.84e-5) * temperature));
 }
 
-/// Vapour pressure, hPa, from the dew or frost point of a chilled mirror (K) in air at `pressure` (hPa).
-/// Below the ice point the mirror is taken to carry ice.
+/// Vapour pressure, hPa, from the dew point (K) in air at `pressure` (hPa): over water at any temperature, as
+/// NCAR's DPXC is given. Accuracy of `vapor_pressure_over_water`; NaN gives NaN.
 template <class S>
 S vapor_pressure_from_dew_point(const S& dew_point, const S& pressure) {
-  return saturation_vapor_pressure(dew_point) * enhancement_factor(dew_point, pressure);
+  return vapor_pressure_over_water(dew_point) * enhancement_factor(dew_point, pressure);
+}
+
+/// Vapour pressure, hPa, from the temperature of a chilled mirror (K) in air at `pressure` (hPa). Below the
+/// ice point the mirror is taken to carry ice: at -20 deg C that is 18 % less than for a dew point. NaN gives
+/// NaN.
+template <class S>
+S vapor_pressure_from_frost_point(const S& frost_point, const S& pressure) {
+  return saturation_vapor_pressure(frost_point) * enhancement_factor(frost_point, pressure);
 }
 
 /// Mixing ratio of water vapour, kg/kg: r = eps e/(p - e), both pressures in one unit, 0 <= e < p.

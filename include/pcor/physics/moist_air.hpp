@@ -29,19 +29,17 @@ constexpr MoistAir<S> moist_air(const S& e_over_p) {
   const S ratio = S(1.0) / (S(1.0) + S(c::molar_mass_ratio - 1.0) * e_over_p);
   const S volume = S(1.0) + S(1.0 / 5.0) * e_over_p;
   const S pressure = S(1.0) + S(1.0 / 7.0) * e_over_p;
-  MoistAir<S> air;
-  air.gas_constant = S(c::gas_constant_dry_air) * ratio;
-  air.specific_heat_volume = S(c::specific_heat_volume_dry_air) * ratio * volume;
-  air.specific_heat_pressure = S(c::specific_heat_pressure_dry_air) * ratio * pressure;
-  air.heat_capacity_ratio = S(7.0 / 5.0) * pressure / volume;
-  air.poisson_exponent = S(2.0 / 7.0) / pressure;
-  return air;
+  return {S(c::gas_constant_dry_air) * ratio, S(c::specific_heat_volume_dry_air) * ratio * volume,
+          S(c::specific_heat_pressure_dry_air) * ratio * pressure, S(7.0 / 5.0) * pressure / volume,
+          S(2.0 / 7.0) / pressure};
 }
 
-/// Constants of dry air: gamma = 7/5, R/c_p = 2/7.
+/// Constants of dry air: gamma = 7/5, R/c_p = 2/7. Nothing is computed, whatever the scalar.
 template <class S>
 constexpr MoistAir<S> dry_air() {
-  return moist_air(S(0.0));
+  constexpr MoistAir<double> dry = moist_air(0.0);
+  return {S(dry.gas_constant), S(dry.specific_heat_volume), S(dry.specific_heat_pressure),
+          S(dry.heat_capacity_ratio), S(dry.poisson_exponent)};
 }
 
 }  // namespace pcor

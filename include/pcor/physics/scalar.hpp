@@ -78,6 +78,12 @@ S power(const S& base, double exponent) {
   return exp(S(exponent) * log(base));
 }
 
+/// (1 + part/whole)^exponent - 1, for part/whole above -1.
+template <class S>
+S power_less_one(const S& part, const S& whole, const S& exponent) {
+  return power(S(1.0) + part / whole, exponent) - S(1.0);
+}
+
 /// Decimal logarithm, from the natural one: half the time of `std::log10`, within one part in 10^15 of it.
 template <class S>
 S decimal_logarithm(const S& x) {

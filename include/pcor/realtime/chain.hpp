@@ -109,7 +109,7 @@ class Chain {
 
   /// Delta-p of the model, hPa: the sum of the effects at the static ports, under the policy. NaN where a
   /// pressure or an input of an effect is missing. Where the dynamic pressure is zero or below, no airflow
-  /// causes a defect: zero under a taper, else NaN.
+  /// causes a defect: zero under a taper, else NaN. A defect above the dynamic pressure is impossible: NaN.
   template <class S, class P, class Flags>
   Promoted<S, P> static_defect(const State<S>& state, const P* parameters, Flags& flags) const {
     using R = Promoted<S, P>;
@@ -131,9 +131,12 @@ class Chain {
       const auto slow = q < S(policy_.taper_below);
       flags.set(slow, Quality::tapered);
       if (any(slow)) defect = select(slow, taper(defect, q), defect);
-      return select(p > S(0.0) && !is_missing(q), defect, missing<R>());
     }
-    return select(flowing, defect, missing<R>());
+    const auto exceeds = flowing && defect > R(q);
+    flags.set(exceeds, Quality::defect_exceeds_dynamic_pressure);
+    defect = select(exceeds, missing<R>(), defect);
+    const auto enough = policy_.taper_below > 0.0 ? p > S(0.0) && !is_missing(q) : flowing;
+    return select(enough, defect, missing<R>());
   }
 
   /// Corrected pressures: p = p_port + delta-p, q = q_port - delta-p (memo eq. 1-3). Their sum stays. A
@@ -333,7 +336,8 @@ class Chain {
     if (!moist_) return S(0.0);
     S e = recorded(Quantity::vapor_pressure) ? state[Quantity::vapor_pressure]
           : recorded(Quantity::dew_point)    ? vapor_pressure_from_dew_point(state[Quantity::dew_point], p)
-                                             : missing<S>();
+          : recorded(Quantity::frost_point) ? vapor_pressure_from_frost_point(state[Quantity::frost_point], p)
+                                            : missing<S>();
     e = e + sum<S>(Where::humidity, state, parameters);
     const auto unknown = !(e < p) && p > S(0.0);
     const auto negative = e < S(0.0);

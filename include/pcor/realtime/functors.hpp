@@ -64,8 +64,16 @@ class StaticDefect final : public Functor {
 /// `inputs` and what is recorded of temperature and humidity.
 inline std::vector<Quantity> with_air_inputs(const Chain& chain, std::vector<Quantity> inputs) {
   for (const Quantity input : {Quantity::recovery_temperature, Quantity::ambient_temperature,
-                               Quantity::vapor_pressure, Quantity::dew_point}) {
+                               Quantity::vapor_pressure, Quantity::dew_point, Quantity::frost_point}) {
     if (chain.recorded(input)) inputs.push_back(input);
+  }
+  return inputs;
+}
+
+/// `inputs`, the speed along the beam, and the angles that turn it into an airspeed.
+inline std::vector<Quantity> with_beam_inputs(const Chain& chain, std::vector<Quantity> inputs) {
+  for (const Quantity input : {Quantity::lams_airspeed, Quantity::attack, Quantity::sideslip}) {
+    if (chain.needs(input) || chain.recorded(input)) inputs.push_back(input);
   }
   return inputs;
 }
@@ -74,7 +82,7 @@ inline std::vector<Quantity> with_air_inputs(const Chain& chain, std::vector<Qua
 class LamsStaticDefect final : public Functor {
  public:
   explicit LamsStaticDefect(std::shared_ptr<const Chain> chain)
-      : Functor(with_air_inputs(*chain, {Quantity::port_static_pressure, Quantity::lams_airspeed}),
+      : Functor(with_air_inputs(*chain, with_beam_inputs(*chain, {Quantity::port_static_pressure})),
                 {Quantity::lams_static_defect}),
         chain_(std::move(chain)) {}
 
@@ -146,7 +154,7 @@ class AirState final : public Functor {
 class LamsAir final : public Functor {
  public:
   explicit LamsAir(std::shared_ptr<const Chain> chain)
-      : Functor({Quantity::corrected_mach, Quantity::lams_airspeed},
+      : Functor(with_beam_inputs(*chain, {Quantity::corrected_mach}),
                 {Quantity::lams_temperature, Quantity::lams_dynamic_pressure}),
         chain_(std::move(chain)) {}
 

@@ -35,6 +35,10 @@ class Loop {
   static std::optional<Loop> build(const Model& model, const std::vector<Quantity>& recorded, double rate,
                                    std::string* error, CorrectWith with = CorrectWith::model);
 
+  /// The same for a chain that is built already.
+  static std::optional<Loop> build(std::shared_ptr<const Chain> chain, double rate, std::string* error,
+                                   CorrectWith with = CorrectWith::model);
+
   /// The place of the variable `name` for functors of the user's own: the one it has already, as a quantity
   /// of the library or in a formula, else a new one. Nothing where the room is used up.
   std::optional<Quantity> add_variable(const std::string& name) {
@@ -151,12 +155,20 @@ inline bool Loop::order(std::string* error) {
 
 inline std::optional<Loop> Loop::build(const Model& model, const std::vector<Quantity>& recorded, double rate,
                                        std::string* error, CorrectWith with) {
-  std::optional<Chain> built = Chain::build(model, recorded, error);
-  if (!built) return std::nullopt;
-  const auto chain = std::make_shared<const Chain>(std::move(*built));
-  if (with == CorrectWith::lams && !chain->has_lams()) {
-    if (error != nullptr) *error = "correction with LAMS needs the role 'lams_airspeed'";
+  std::optional<Chain> chain = Chain::build(model, recorded, error);
+  if (!chain) return std::nullopt;
+  return build(std::make_shared<const Chain>(std::move(*chain)), rate, error, with);
+}
+
+inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, double rate, std::string* error,
+                                       CorrectWith with) {
+  const auto fail = [error](const char* why) {
+    if (error != nullptr) *error = why;
     return std::nullopt;
+  };
+  if (!(rate > 0.0)) return fail("the rate of a loop is above zero samples in a second");
+  if (with == CorrectWith::lams && !chain->has_lams()) {
+    return fail("correction with LAMS needs the role 'lams_airspeed'");
   }
   Loop loop(rate);
   for (const std::string& name : chain->extra_names()) loop.add_variable(name);

@@ -23,6 +23,7 @@ enum class Quality : std::uint32_t {
   outside_domain = 1U << 12,
   after_gap = 1U << 13,
   corrected_with_lams = 1U << 14,
+  defect_exceeds_dynamic_pressure = 1U << 15,
 };
 
 /// A quality bit and what it means.
@@ -32,7 +33,7 @@ struct QualityFacts {
   std::string_view meaning;
 };
 
-inline constexpr std::array<QualityFacts, 15> quality_facts{{
+inline constexpr std::array<QualityFacts, 16> quality_facts{{
     {Quality::static_pressure_missing, "static_pressure_missing", "no static pressure: nothing is derived"},
     {Quality::dynamic_pressure_missing, "dynamic_pressure_missing",
      "no dynamic pressure: nothing is derived"},
@@ -41,7 +42,7 @@ inline constexpr std::array<QualityFacts, 15> quality_facts{{
     {Quality::impossible_dynamic_pressure, "impossible_dynamic_pressure",
      "dynamic pressure zero or below, as on the ground: no Mach number, no airspeed"},
     {Quality::effect_input_missing, "effect_input_missing",
-     "an input of the model's effects is missing: no delta-p"},
+     "an input of the model's effects is missing: no delta-p, or no pressure to correct"},
     {Quality::impossible_radome_pressure, "impossible_radome_pressure",
      "radome dynamic pressure zero or below: no flow angles from the radome"},
     {Quality::temperature_missing, "temperature_missing", "no temperature: no airspeed"},
@@ -52,9 +53,11 @@ inline constexpr std::array<QualityFacts, 15> quality_facts{{
     {Quality::tapered, "tapered", "delta-p tapered at low dynamic pressure"},
     {Quality::minimum_applied, "minimum_applied", "delta-p raised to the minimum of the law"},
     {Quality::outside_domain, "outside_domain", "an input lies outside the domain of the law: extrapolated"},
-    {Quality::after_gap, "after_gap", "first samples after a gap: rates of change start anew"},
+    {Quality::after_gap, "after_gap", "first sample after a gap: effects of rates of change have none"},
     {Quality::corrected_with_lams, "corrected_with_lams",
      "pressures corrected with LAMS, not with the model"},
+    {Quality::defect_exceeds_dynamic_pressure, "defect_exceeds_dynamic_pressure",
+     "delta-p of the law above the dynamic pressure, as on the ramp: no delta-p"},
 }};
 
 /// The quality bits of one sample.
