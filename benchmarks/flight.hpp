@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "pcor/offline/batch.hpp"
+#include "pcor/realtime/model.hpp"
+
+namespace pcor::benchmarks {
+
+/// A made-up jet flight, sample after sample: take-off, climb to 200 hPa, level legs and descent, through
+/// clear air and cloud, with turbulence and noise.
+struct Flight {
+  std::vector<double> static_pressure;       // hPa
+  std::vector<double> dynamic_pressure;      // hPa
+  std::vector<double> recovery_temperature;  // K
+  std::vector<double> vapor_pressure;        // hPa
+  std::vector<double> attack;                // deg
+  std::vector<double> lams_airspeed;         // m/s
+
+  std::size_t size() const { return static_pressure.size(); }
+
+  /// The arrays of `recorded_roles`.
+  std::vector<Batch::Input> inputs() const;
+};
+
+Flight make_flight(std::size_t samples);
+
+/// The roles of the flight's arrays, without LAMS.
+std::vector<Quantity> recorded_roles();
+
+/// The static defect of the GV of 2014 with an unheated Rosemount thermometer, in moist air.
+Model gv_2014();
+
+}  // namespace pcor::benchmarks

@@ -1,0 +1,46 @@
+#include <benchmark/benchmark.h>
+
+#include <optional>
+#include <string>
+
+#include "flight.hpp"
+#include "pcor/realtime/chain.hpp"
+
+namespace pcor::benchmarks {
+namespace {
+
+/// Delta-p of one sample by a model of one effect.
+void static_defect(benchmark::State& timing, const ModelEffect& effect) {
+  Model model;
+  model.effects = {effect};
+  std::string error;
+  const std::optional<Chain> chain = Chain::build(model, recorded_roles(), &error);
+  if (!chain) return timing.SkipWithError(error.c_str());
+  State<double> state;
+  state[Quantity::static_pressure] = 250.0;
+  state[Quantity::dynamic_pressure] = 120.0;
+  state[Quantity::mach] = 0.78;
+  QualityFlags flags;
+  for (auto _ : timing) {
+    benchmark::DoNotOptimize(state);
+    benchmark::DoNotOptimize(chain->static_defect(state, chain->parameters().data(), flags));
+  }
+}
+
+void effect_of_the_catalogue(benchmark::State& timing) {
+  static_defect(timing, {"static-mach3", {-0.087508}});
+}
+BENCHMARK(effect_of_the_catalogue);
+
+void effect_by_formula(benchmark::State& timing) {
+  ModelEffect effect;
+  effect.id = "mach-cubed";
+  effect.parameters = {-0.087508};
+  effect.parameter_names = {"m3"};
+  effect.formula = "m3 * mach^3 * static_pressure";
+  static_defect(timing, effect);
+}
+BENCHMARK(effect_by_formula);
+
+}  // namespace
+}  // namespace pcor::benchmarks
