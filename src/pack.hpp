@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <xsimd/xsimd.hpp>
 
 #include "pack_math.hpp"
@@ -57,11 +56,11 @@ class Pack {
   Pack(double every_lane) : first_(every_lane), second_(every_lane) {}
   Pack(const Register& first, const Register& second) : first_(first), second_(second) {}
 
-  /// The `count` values from `values` on, NaN in the lanes beyond.
+  /// The `count` values from `values` on, at least one; the last of them again in the lanes beyond.
   static Pack load(const double* values, std::size_t count) {
     std::array<double, size> padded;
     if (count < size) {
-      padded.fill(std::numeric_limits<double>::quiet_NaN());
+      padded.fill(values[count - 1]);
       std::copy_n(values, count, padded.begin());
       values = padded.data();
     }
