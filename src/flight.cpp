@@ -116,6 +116,17 @@ bool is_convertible(const std::string& unit, const std::string& wanted) {
   }
 }
 
+// To UDUNITS an angle is a number like any other, and a count could take its place.
+bool is_angle(const std::string& unit) {
+  const std::string standard = standard_unit(unit);
+  return (standard.rfind("deg", 0) == 0 || standard.rfind("rad", 0) == 0) && is_convertible(unit, "radian");
+}
+
+bool begins_alike(const std::string& a, const std::string& b) {
+  constexpr std::size_t letters = 2;
+  return a.compare(0, letters, b, 0, letters) == 0;
+}
+
 bool is_same(const UnitConversion& a, const UnitConversion& b) {
   constexpr double rounding = 1e-9;
   return std::abs(a.scale() - b.scale()) <= rounding * std::abs(a.scale()) &&
@@ -238,13 +249,15 @@ struct Flight::Implementation {
   [[noreturn]] void refuse_absent(const std::string& name, const std::string& wanted,
                                   const std::string& role) const {
     std::vector<const VariableInfo*> fitting;
-    std::vector<std::string> fitting_names;
+    std::vector<std::string> namesakes;
     for (const Variable& variable : variables) {
-      if (!variable.info.is_series || !is_convertible(variable.info.units, wanted)) continue;
+      if (!variable.info.is_series || !is_convertible(variable.info.units, wanted) ||
+          is_angle(variable.info.units) != is_angle(wanted))
+        continue;
       fitting.push_back(&variable.info);
-      fitting_names.push_back(variable.info.name);
+      if (begins_alike(variable.info.name, name)) namesakes.push_back(variable.info.name);
     }
-    const std::vector<std::string> alike = suggest(name, fitting_names);
+    const std::vector<std::string> alike = suggest(name, namesakes);
     if (!alike.empty())
       throw Error(
           fmt::format("{}: {} is not in this file; it has {}; change {} in the [variables] of the model",
@@ -258,8 +271,10 @@ struct Flight::Implementation {
           absent, wanted, path()));
 
     constexpr std::size_t most_named = 6;
+    // What a probe recovers files call total.
+    const std::string words = role == "recovery_temperature" ? role + "_total" : role;
     std::stable_sort(fitting.begin(), fitting.end(), [&](const VariableInfo* a, const VariableInfo* b) {
-      return shared_words(role, a->long_name) > shared_words(role, b->long_name);
+      return shared_words(words, a->long_name) > shared_words(words, b->long_name);
     });
     const std::size_t others = fitting.size() - std::min(fitting.size(), most_named);
     fitting.resize(fitting.size() - others);

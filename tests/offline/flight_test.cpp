@@ -372,9 +372,10 @@ TEST_F(FlightTest, AMissingVariableOfTheModelNamesItsRoleAndWhatFits) {
     maker.series("QCX", "hPa", {1});
     maker.series("QCFK", "K", {1});
     maker.text(maker.series("ATX", "degC", {1}), "long_name", "Ambient");
-    maker.series("RSTB1", "m/s", {1});
+    maker.series("RSTB1", "degC", {1});
+    maker.series("COUNTS", "cnts", {1});
     for (const char* name : {"TTRR", "TTRL", "TTWH"})
-      maker.text(maker.series(name, "C", {1}), "long_name", "Recovery Air Temperature");
+      maker.text(maker.series(name, "C", {1}), "long_name", "Total Temperature");
   }
   const Flight flight(path());
   const auto refusal_of = [&](const char* name, const char* unit, const char* role) {
@@ -388,11 +389,11 @@ TEST_F(FlightTest, AMissingVariableOfTheModelNamesItsRoleAndWhatFits) {
   EXPECT_EQ(refusal_of("RTF1", "K", "recovery_temperature"),
             path().string() +
                 ": RTF1 (recovery_temperature of the model) is not in this file; it has TTRR, TTRL, TTWH in "
-                "degC, QCFK in K, ATX in degC (units that fit); change [variables] of the model")
+                "degC, QCFK in K, ATX, RSTB1 in degC (units that fit); change [variables] of the model")
       << "the words of the role first";
-  EXPECT_THAT(refusal_of("ALT", "radian", "attack"),
+  EXPECT_THAT(refusal_of("ALT", "degree", "attack"),
               AllOf(HasSubstr("ALT (attack of the model) is not in this file"),
-                    HasSubstr("no time series in radian"), HasSubstr("[variables]")));
+                    HasSubstr("no time series in degree"), HasSubstr("[variables]")));
   EXPECT_EQ(pcor::test::message_of<Error>([&] { flight.conversion("QCF", "hPa"); }),
             pcor::test::message_of<Error>([&] { flight.variable("QCF"); }))
       << "without a role there is no model to change";

@@ -115,8 +115,8 @@ class Flight {
   /// that the model file states; it counts where the file states none, or one that is not known.
   ///
   /// @throws Error as UnitConversion::between, or if the file's unit is known and is not the one stated, or
-  /// if the variable is absent: with a role, the message has the names that look like it among the time
-  /// series whose unit fits, or else up to six of these time series.
+  /// if the variable is absent: with a role, the message has the names that begin and look like it among the
+  /// time series whose unit fits, or else up to six of these time series.
   UnitConversion conversion(const std::string& name, const std::string& wanted, const std::string& role = "",
                             const std::string& stated = "") const;
 
