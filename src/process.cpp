@@ -126,8 +126,8 @@ void Processing::check_law() {
   const bool early = !law.valid_from.empty() && day < law.valid_from;
   const bool late = !law.valid_to.empty() && day > law.valid_to;
   if (early || late) {
-    note("the law holds {} {}, the flight is of {}: is there a model of its time?", early ? "from" : "until",
-         early ? law.valid_from : law.valid_to, day);
+    note("the law holds {} {}, the flight is of {}; look for a model of its time in data/models",
+         early ? "from" : "until", early ? law.valid_from : law.valid_to, day);
   }
   const std::string& expected = file_.model.aircraft;
   if (!expected.empty() && !summary_.aircraft.empty() &&

@@ -99,9 +99,9 @@ void print(const ProcessSummary& summary, const Options& options) {
   bool flagged = false;
   for (std::size_t i = 0; i < quality_facts.size(); ++i) {
     if (summary.flagged[i] == 0) continue;
-    if (!flagged) fmt::print("\n{:>9}  {:<28} {}\n", "samples", "quality bit", "meaning");
+    if (!flagged) fmt::print("\n{:>9}  {:<32} {}\n", "samples", "quality bit", "meaning");
     flagged = true;
-    fmt::print("{:>9}  {:<28} {}\n", summary.flagged[i], quality_facts[i].name, quality_facts[i].meaning);
+    fmt::print("{:>9}  {:<32} {}\n", summary.flagged[i], quality_facts[i].name, quality_facts[i].meaning);
   }
   for (const std::string& note : summary.notes) fmt::print("\nNote: {}.\n", note);
   fmt::print("\nwrote {} to {}\n", fmt::join(summary.outputs, " "), options.output);
