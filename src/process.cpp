@@ -9,9 +9,9 @@
 #include <optional>
 #include <utility>
 
+#include "model_inputs.hpp"
 #include "pcor/offline/error.hpp"
 #include "pcor/offline/flight_writer.hpp"
-#include "pcor/offline/suggest.hpp"
 #include "pcor/offline/utc.hpp"
 #include "pcor/realtime/loop.hpp"
 
@@ -19,10 +19,7 @@ namespace pcor {
 namespace {
 
 /// A variable of the file that the loop reads.
-struct Input {
-  std::string variable;
-  Quantity quantity = Quantity::count;
-  UnitConversion conversion;
+struct Input : ModelInput {
   std::vector<double> values;  // of one block
 };
 
@@ -72,7 +69,6 @@ class Processing {
   Names variables_for(const Chain& chain, const std::vector<Quantity>& quantities) const;
   Names variables_of_law() const;
   void choose_roles();
-  void check_law();
   void choose_inputs();
   void choose_rate();
   void choose_outputs();
@@ -119,59 +115,10 @@ void Processing::choose_roles() {
   chain_ = std::make_shared<const Chain>(std::move(*chain));
 }
 
-/// What a user should know of a law that was made for another time or aircraft.
-void Processing::check_law() {
-  const std::string day = utc_text(summary_.first_time, "%Y-%m-%d");
-  const LawFacts& law = file_.law;
-  const bool early = !law.valid_from.empty() && day < law.valid_from;
-  const bool late = !law.valid_to.empty() && day > law.valid_to;
-  if (early || late) {
-    note("the law holds {} {}, the flight is of {}; look for a model of its time in data/models",
-         early ? "from" : "until", early ? law.valid_from : law.valid_to, day);
-  }
-  const std::string& expected = file_.model.aircraft;
-  if (!expected.empty() && !summary_.aircraft.empty() &&
-      expected.find(summary_.aircraft) == std::string::npos) {
-    note("the model is of the aircraft '{}', the flight of '{}'", expected, summary_.aircraft);
-  }
-}
-
 void Processing::choose_inputs() {
-  const auto conversion_of = [this](Quantity role) {
-    const QuantityFacts& facts = facts_of(role);
-    const auto stated = file_.units.find(role);
-    return flight_.conversion(variable_of(role), std::string(facts.unit), std::string(facts.name),
-                              stated == file_.units.end() ? std::string() : stated->second);
-  };
-  const auto always = {Quantity::recovery_temperature, Quantity::ambient_temperature,
-                       Quantity::vapor_pressure,       Quantity::dew_point,
-                       Quantity::frost_point,          Quantity::lams_airspeed};
-  for (const Quantity role : roles_) {
-    if (!chain_->needs(role) && std::find(always.begin(), always.end(), role) == always.end()) continue;
-    inputs_.push_back({variable_of(role), role, conversion_of(role), {}});
+  for (ModelInput& input : model_inputs(flight_, file_, *chain_, roles_, summary_.notes)) {
+    inputs_.push_back({std::move(input), {}});
   }
-  // A formula that names the variable of a role means that role; other variables it takes as the file has
-  // them.
-  const std::vector<std::string>& extras = chain_->extra_names();
-  for (std::size_t i = 0; i < extras.size(); ++i) {
-    const std::string& name = extras[i];
-    const auto role = std::find_if(file_.variables.begin(), file_.variables.end(),
-                                   [&name](const auto& entry) { return entry.second == name; });
-    if (role != file_.variables.end()) {
-      inputs_.push_back({name, extra_quantity(i), conversion_of(role->first), {}});
-      continue;
-    }
-    if (!flight_.has(name)) {
-      const std::string meant = did_you_mean(name, flight_.variables());
-      fail(fmt::format(
-          "{}, which a formula of the model names, is neither a variable of this file nor a quantity{}", name,
-          meant.empty() ? "" : "; " + meant));
-    }
-    const std::string unit = flight_.variable(name).units;
-    note("a formula takes {} in {}", name, unit.empty() ? "no unit: the file gives none" : unit);
-    inputs_.push_back({name, extra_quantity(i), UnitConversion(), {}});
-  }
-  for (const Input& input : inputs_) flight_.require_values(input.variable);
 }
 
 void Processing::choose_rate() {
@@ -400,7 +347,7 @@ ProcessSummary Processing::run(const std::filesystem::path& output) {
   summary_.greatest_defect = -std::numeric_limits<double>::infinity();
 
   choose_roles();
-  check_law();
+  for (std::string& each : notes_on_law(flight_, file_)) summary_.notes.push_back(std::move(each));
   choose_inputs();
   choose_rate();
   choose_outputs();
