@@ -1,0 +1,198 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "search.hpp"
+
+namespace pcor {
+namespace {
+
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+
+struct Band {
+  double variance;  // deg2
+  double time;      // s
+  std::size_t shortest_period, longest_period;
+  double periodicity;
+};
+
+struct Oscillation {
+  Run run;
+  double period = 0.0;     // s
+  double amplitude = 0.0;  // deg
+};
+
+std::vector<double> product(const std::vector<double>& a, const std::vector<double>& b, std::size_t lag = 0) {
+  std::vector<double> result(a.size(), missing);
+  for (std::size_t i = 0; i + lag < a.size(); ++i) result[i] = a[i] * b[i + lag];
+  return result;
+}
+
+// What remains without changes slower than the band, and quicker ones than a third of its shortest period.
+std::vector<double> in_band(const std::vector<double>& values, const Band& band) {
+  const std::vector<double> trend = smoothed_twice(values, band.longest_period);
+  const std::vector<double> smooth = running_mean(values, band.shortest_period / 3);
+  std::vector<double> result(values.size(), missing);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isnan(values[i])) result[i] = smooth[i] - trend[i];
+  }
+  return result;
+}
+
+// How well each cell's surroundings, three of the longest periods, repeat after the best period of the band:
+// 1 for a pure oscillation, about 0 for turbulence.
+std::vector<double> local_periodicity(const std::vector<double>& values, const Band& band) {
+  const std::size_t window = 3 * band.longest_period;
+  const std::vector<double> variance = running_mean(product(values, values), window);
+  std::vector<double> best(values.size(), 0.0);
+  for (std::size_t lag = band.shortest_period; lag <= band.longest_period; ++lag) {
+    const std::vector<double> covariance = running_mean(product(values, values, lag), window);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (covariance[i] > best[i] * variance[i]) best[i] = covariance[i] / variance[i];
+    }
+  }
+  return best;
+}
+
+// The autocorrelation of a run `lag` later.
+double autocorrelation(const std::vector<double>& values, Run run, std::size_t lag) {
+  double covariance = 0.0, variance = 0.0;
+  for (std::size_t i = run.first; i + lag < run.end; ++i) {
+    const double pair = values[i] * values[i + lag];
+    if (std::isnan(pair)) continue;
+    covariance += pair;
+    variance += (values[i] * values[i] + values[i + lag] * values[i + lag]) / 2.0;
+  }
+  return variance > 0.0 ? covariance / variance : 0.0;
+}
+
+// The vertex of the parabola through three values one apart, from the middle one.
+double vertex(double left, double middle, double right) {
+  const double curvature = left - 2.0 * middle + right;
+  return curvature < 0.0 ? std::clamp((left - right) / (2.0 * curvature), -0.5, 0.5) : 0.0;
+}
+
+// The first period at which a run repeats best; 0 if nowhere well enough.
+double period_of(const std::vector<double>& values, Run run, const Band& band) {
+  std::vector<double> correlation;
+  for (std::size_t lag = band.shortest_period - 1; lag <= band.longest_period + 1; ++lag) {
+    correlation.push_back(autocorrelation(values, run, lag));
+  }
+  std::size_t best = 0;
+  for (std::size_t i = 1; i + 1 < correlation.size(); ++i) {
+    const bool peak = correlation[i] >= correlation[i - 1] && correlation[i] >= correlation[i + 1];
+    if (peak && (best == 0 || correlation[i] > correlation[best] + 0.1)) best = i;
+  }
+  if (best == 0 || correlation[best] < band.periodicity) return 0.0;
+  return static_cast<double>(band.shortest_period - 1 + best) +
+         vertex(correlation[best - 1], correlation[best], correlation[best + 1]);
+}
+
+// From the zero before the first swing of half the amplitude to the zero after the last one, at most a
+// period outside the run.
+Run whole_swings(const std::vector<double>& values, Run run, double amplitude, std::size_t margin) {
+  const std::size_t earliest = run.first - std::min(run.first, margin);
+  const std::size_t latest = std::min(run.end + margin, values.size());
+  const auto swings = [&](std::size_t i) { return std::abs(values[i]) >= amplitude / 2.0; };
+  Run whole{earliest, latest};
+  while (whole.first < whole.end && !swings(whole.first)) ++whole.first;
+  while (whole.end > whole.first && !swings(whole.end - 1)) --whole.end;
+  if (whole.length() == 0) return run;
+  while (whole.first > earliest && values[whole.first - 1] * values[whole.first] > 0.0) --whole.first;
+  while (whole.end < latest && values[whole.end] * values[whole.end - 1] > 0.0) ++whole.end;
+  return whole;
+}
+
+std::vector<Oscillation> find_oscillations(const std::vector<double>& values, const std::vector<bool>& usable,
+                                           const Band& band) {
+  std::vector<Oscillation> found;
+  const std::vector<double> variance = running_mean(product(values, values), band.longest_period);
+  const std::vector<double> periodicity = local_periodicity(values, band);
+  const std::vector<Run> strong = runs_where(values.size(), [&](std::size_t i) {
+    return usable[i] && !std::isnan(values[i]) && variance[i] > band.variance &&
+           periodicity[i] >= band.periodicity;
+  });
+  for (const Run& run : bridged(strong, band.shortest_period)) {
+    const double amplitude = std::sqrt(2.0 * mean(product(values, values), run));
+    const Run whole = whole_swings(values, run, amplitude, band.longest_period);
+    if (whole.length() < cells_in(band.time)) continue;
+    const double period = period_of(values, whole, band);
+    if (period > 0.0) found.push_back({whole, period, amplitude});
+  }
+  return found;
+}
+
+std::string described(const Oscillation& oscillation) {
+  const double cycles = static_cast<double>(oscillation.run.length()) / oscillation.period;
+  return fmt::format("{:.0f} cycles of {:.3g} s, +-{:.1f} deg", cycles, oscillation.period,
+                     oscillation.amplitude);
+}
+
+// The cells in flight without net climb.
+std::vector<bool> about_level(const Cells& cells, const std::vector<bool>& flying,
+                              const RegimeCriteria& criteria) {
+  const std::vector<double> climb = smoothed_twice(cells.vertical_speed, cells_in(criteria.climb_smoothing));
+  std::vector<bool> level(flying);
+  for (std::size_t i = 0; i < level.size(); ++i) {
+    if (std::abs(climb[i]) > criteria.manoeuvre_climb) level[i] = false;
+  }
+  return level;
+}
+
+bool wings_level(const Cells& cells, Run run, const RegimeCriteria& criteria) {
+  double sum = 0.0, known = 0.0;
+  for (std::size_t i = run.first; i < run.end; ++i) {
+    if (std::isnan(cells.roll[i])) continue;
+    sum += std::abs(cells.roll[i]);
+    known += 1.0;
+  }
+  return sum <= known * criteria.manoeuvre_roll;
+}
+
+double correlation(const std::vector<double>& a, const std::vector<double>& b, Run run) {
+  return mean(product(a, b), run) / std::sqrt(mean(product(a, a), run) * mean(product(b, b), run));
+}
+
+}  // namespace
+
+std::vector<Found> find_pitch_manoeuvres(const Cells& cells, const std::vector<bool>& flying,
+                                         const RegimeCriteria& criteria) {
+  std::vector<Found> found;
+  if (!is_known(cells.pitch)) return found;
+  const Band band{criteria.pitch_variance, criteria.pitch_time, cells_in(criteria.pitch_shortest_period),
+                  cells_in(criteria.pitch_longest_period), criteria.periodicity};
+  const std::vector<double> pitch = in_band(cells.pitch, band);
+  const std::vector<double> vertical_speed = in_band(cells.vertical_speed, band);
+  for (const Oscillation& oscillation :
+       find_oscillations(pitch, about_level(cells, flying, criteria), band)) {
+    const double rms = std::sqrt(mean(product(vertical_speed, vertical_speed), oscillation.run));
+    if (rms < criteria.pitch_vertical_speed || !wings_level(cells, oscillation.run, criteria)) continue;
+    found.push_back({Regime::pitch_manoeuvre, oscillation.run, 0, described(oscillation)});
+  }
+  return found;
+}
+
+std::vector<Found> find_yaw_manoeuvres(const Cells& cells, const std::vector<bool>& flying,
+                                       const RegimeCriteria& criteria) {
+  std::vector<Found> found;
+  if (!is_known(cells.sideslip)) return found;
+  const Band band{criteria.yaw_variance, criteria.yaw_time, cells_in(criteria.yaw_shortest_period),
+                  cells_in(criteria.yaw_longest_period), criteria.periodicity};
+  const std::vector<double> sideslip = in_band(cells.sideslip, band);
+  const std::vector<double> heading = in_band(cells.heading, band);
+  const std::vector<double> heading_variance = running_mean(product(heading, heading), band.longest_period);
+  std::vector<bool> usable = about_level(cells, flying, criteria);
+  for (std::size_t i = 0; i < usable.size(); ++i) {
+    if (heading_variance[i] < criteria.yaw_variance / 2.0) usable[i] = false;
+  }
+  for (const Oscillation& oscillation : find_oscillations(sideslip, usable, band)) {
+    const double swing = std::abs(correlation(sideslip, heading, oscillation.run));
+    if (swing < criteria.yaw_heading_correlation || !wings_level(cells, oscillation.run, criteria)) continue;
+    found.push_back({Regime::yaw_manoeuvre, oscillation.run, 0, described(oscillation)});
+  }
+  return found;
+}
+
+}  // namespace pcor

@@ -1,0 +1,166 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "search.hpp"
+
+namespace pcor {
+namespace {
+
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+
+// A shorter time above or below the flying speed is noise, s.
+constexpr std::size_t shortest_flight = 30;
+
+// How far from where the smoothed vertical speed says a phase may begin, s.
+constexpr std::size_t reach = 90;
+constexpr std::size_t shortest_side = 15;
+
+struct PhaseRun {
+  Regime phase;
+  Run run;
+};
+
+// Which cells are in the air: faster than the flying speed. Where the speed is not known the last known one
+// counts, before the first the next one.
+std::vector<bool> airborne(const Cells& cells, const RegimeCriteria& criteria) {
+  std::vector<bool> flying(cells.count());
+  const auto first_known = std::find_if(cells.airspeed.begin(), cells.airspeed.end(),
+                                        [](double speed) { return !std::isnan(speed); });
+  bool fast = first_known != cells.airspeed.end() && *first_known > criteria.flying_speed;
+  for (std::size_t i = 0; i < flying.size(); ++i) {
+    if (!std::isnan(cells.airspeed[i])) fast = cells.airspeed[i] > criteria.flying_speed;
+    flying[i] = fast;
+  }
+  for (const bool state : {true, false}) {
+    for (const Run& run : runs_where(flying.size(), [&](std::size_t i) { return flying[i] == state; })) {
+      const bool whole_record = run.length() == flying.size();
+      if (run.length() >= shortest_flight || whole_record) continue;
+      for (std::size_t i = run.first; i < run.end; ++i) flying[i] = !state;
+    }
+  }
+  return flying;
+}
+
+// Where the roll began that reached the flying speed at `fast`.
+std::size_t begin_of_roll(const Cells& cells, std::size_t fast, const RegimeCriteria& criteria) {
+  const std::size_t earliest = fast - std::min(fast, cells_in(criteria.take_off_time));
+  std::size_t begin = fast;
+  while (begin > earliest && cells.airspeed[begin - 1] > criteria.roll_speed) --begin;
+  return begin;
+}
+
+std::size_t end_of_take_off(const Cells& cells, Run flight, std::size_t roll,
+                            const RegimeCriteria& criteria) {
+  const double field = mean(cells.altitude, {roll, flight.first});
+  const std::size_t latest = std::min(flight.end, flight.first + cells_in(criteria.take_off_time));
+  std::size_t end = flight.first;
+  while (end < latest && !(cells.altitude[end] - field >= criteria.take_off_height)) ++end;
+  return end;
+}
+
+Regime phase_at(double climb, const RegimeCriteria& criteria) {
+  if (climb > criteria.climb_rate) return Regime::climb;
+  if (climb < -criteria.climb_rate) return Regime::descent;
+  return Regime::level;
+}
+
+// Where the climb is not known the phase before goes on; at first it is level.
+std::vector<PhaseRun> runs_of_phase(const std::vector<double>& climb, Run flight,
+                                    const RegimeCriteria& criteria) {
+  std::vector<PhaseRun> runs;
+  for (std::size_t i = flight.first; i < flight.end; ++i) {
+    const bool told = !std::isnan(climb[i]);
+    if (runs.empty()) {
+      runs.push_back({phase_at(told ? climb[i] : 0.0, criteria), {i, i + 1}});
+    } else if (const Regime phase = phase_at(climb[i], criteria); told && phase != runs.back().phase) {
+      runs.push_back({phase, {i, i + 1}});
+    } else {
+      runs.back().run.end = i + 1;
+    }
+  }
+  return runs;
+}
+
+// Makes the shortest run part of the neighbour whose vertical speed is more like its own, until all are long
+// enough.
+void join_short(std::vector<PhaseRun>& runs, const std::vector<double>& climb, std::size_t shortest) {
+  const auto length = [](const PhaseRun& a, const PhaseRun& b) { return a.run.length() < b.run.length(); };
+  while (runs.size() > 1) {
+    const auto shorter = std::min_element(runs.begin(), runs.end(), length);
+    if (shorter->run.length() >= shortest) return;
+    const auto unlike = [&](const PhaseRun& other) {
+      const double difference = std::abs(mean(climb, other.run) - mean(climb, shorter->run));
+      return std::isnan(difference) ? std::numeric_limits<double>::infinity() : difference;
+    };
+    const bool joins_next = shorter == runs.begin() ||
+                            (shorter + 1 != runs.end() && unlike(*(shorter + 1)) < unlike(*(shorter - 1)));
+    if (joins_next) {
+      (shorter + 1)->run.first = shorter->run.first;
+    } else {
+      (shorter - 1)->run.end = shorter->run.end;
+    }
+    auto next = runs.erase(shorter);
+    if (!joins_next && next != runs.end() && next->phase == (next - 1)->phase) {
+      (next - 1)->run.end = next->run.end;
+      runs.erase(next);
+    } else if (joins_next && next != runs.begin() && next->phase == (next - 1)->phase) {
+      (next - 1)->run.end = next->run.end;
+      runs.erase(next);
+    }
+  }
+}
+
+// Puts each boundary where a step fits the vertical speed itself best; the smoothed one has it too early or
+// too late.
+void sharpen(std::vector<PhaseRun>& runs, const std::vector<double>& vertical_speed) {
+  for (std::size_t i = 1; i < runs.size(); ++i) {
+    Run& before = runs[i - 1].run;
+    Run& after = runs[i].run;
+    const std::size_t boundary = after.first;
+    const Run around{boundary - std::min(reach, before.length() / 2),
+                     boundary + std::min(reach, after.length() / 2)};
+    before.end = after.first = best_step(vertical_speed, around, shortest_side, boundary);
+  }
+}
+
+}  // namespace
+
+std::vector<Regime> phases_of(const Cells& cells, const RegimeCriteria& criteria) {
+  std::vector<Regime> phases(cells.count(), Regime::count);
+  if (!is_known(cells.airspeed)) return phases;
+  const std::vector<bool> flying = airborne(cells, criteria);
+  std::fill(phases.begin(), phases.end(), Regime::ground);
+  const auto put = [&](Run run, Regime phase) {
+    for (std::size_t i = run.first; i < run.end; ++i) phases[i] = phase;
+  };
+  for (const Run& flight : runs_where(flying.size(), [&](std::size_t i) { return flying[i]; })) {
+    Run rest = flight;
+    if (flight.first > 0) {
+      const std::size_t roll = begin_of_roll(cells, flight.first, criteria);
+      rest.first = end_of_take_off(cells, flight, roll, criteria);
+      put({roll, rest.first}, Regime::take_off);
+    }
+    std::vector<double> vertical_speed(cells.count(), missing);
+    std::copy(cells.vertical_speed.begin() + static_cast<std::ptrdiff_t>(flight.first),
+              cells.vertical_speed.begin() + static_cast<std::ptrdiff_t>(flight.end),
+              vertical_speed.begin() + static_cast<std::ptrdiff_t>(flight.first));
+    put(rest, Regime::count);
+    if (!is_known(cells.vertical_speed)) continue;
+    const std::vector<double> climb = smoothed_twice(vertical_speed, cells_in(criteria.climb_smoothing));
+    std::vector<PhaseRun> runs = runs_of_phase(climb, rest, criteria);
+    join_short(runs, climb, cells_in(criteria.phase_time));
+    sharpen(runs, vertical_speed);
+    for (const PhaseRun& run : runs) put(run.run, run.phase);
+  }
+  return phases;
+}
+
+std::vector<bool> in_flight(const std::vector<Regime>& phases) {
+  std::vector<bool> flying;
+  for (const Regime phase : phases) flying.push_back(phase == Regime::count || is_airborne(phase));
+  return flying;
+}
+
+}  // namespace pcor
