@@ -1,0 +1,142 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace pcor {
+
+/// A quantity that the pictures of a report show, one value per sample, NaN where missing. A report keeps
+/// 16 bits of a value: it is off by at most half of (greatest - least) / 65534.
+struct ReportColumn {
+  std::string name;   ///< by which panels name it; unique in a report
+  std::string title;  ///< on axes and in legends, e.g. "Mach number"; the name if empty
+  std::string unit;   ///< e.g. "hPa"; empty for a pure number
+  std::vector<double> values;
+};
+
+/// A stretch of a flight, shaded in the time panels. All intervals of one name can be selected together.
+struct ReportInterval {
+  std::string name;  ///< e.g. "climb"
+  double begin = 0.0;
+  double end = 0.0;  ///< both in seconds since 1970 UTC
+};
+
+/// Lines over time. Dragging over one selects a time range for the whole report.
+struct TimePanel {
+  std::string title;
+  std::string caption;
+  std::vector<std::string> columns;
+  std::string axis{};  ///< what the vertical axis says, without the unit; made from the columns if empty
+};
+
+/// Columns against one that the reader chooses: the samples faintly, and the mean of each bin with its
+/// standard error.
+struct BinnedPanel {
+  std::string title;
+  std::string caption;
+  std::vector<std::string> y;
+  std::vector<std::string> x_choices;
+  std::size_t bins = 12;
+  /// How many samples count as one independent sample, because neighbours in time err alike; at least 1.
+  double samples_per_independent = 1.0;
+  std::string axis{};  ///< as for TimePanel
+};
+
+/// One column in the plane of two others, by colour.
+struct PlanePanel {
+  std::string title;
+  std::string caption;
+  std::string x;
+  std::string y;
+  std::string colour;
+  bool reverse_y = false;  ///< the least at the top, as for pressure
+  bool diverging = true;   ///< colours meet at zero, as for a residual; else from the least to the greatest
+};
+
+/// A line y = offset + slope * x.
+struct ReportLine {
+  double slope = 1.0;
+  double offset = 0.0;
+  std::string label;
+};
+
+/// Two columns against each other, with lines; below it, what each sample differs from the first line (from
+/// y = x if there is none).
+struct PairPanel {
+  std::string title;
+  std::string caption;
+  std::string x;
+  std::string y;
+  std::vector<ReportLine> lines{};
+};
+
+/// Samples, bias and rms of columns for each name of the intervals, and for all.
+struct RegimeTable {
+  std::string title;
+  std::string caption;
+  std::vector<std::string> columns;
+};
+
+struct ReportBar {
+  std::string label;
+  double value = 0.0;
+  double error = 0.0;  ///< half the length of the error bar; 0 for none
+};
+
+/// Numbers that do not belong to samples, as bars, in the order given.
+struct BarPanel {
+  std::string title;
+  std::string caption;
+  std::vector<ReportBar> bars;
+  std::string axis{};  ///< what the axis says, e.g. "rms"
+  std::string unit{};
+};
+
+/// A table of words and numbers; cells that are numbers are aligned.
+struct ReportTable {
+  std::string title;
+  std::string caption;
+  std::vector<std::string> headers;
+  std::vector<std::vector<std::string>> rows;
+};
+
+struct ReportText {
+  std::string title;
+  std::vector<std::string> paragraphs;
+};
+
+using ReportItem = std::variant<TimePanel, BinnedPanel, PlanePanel, PairPanel, RegimeTable, BarPanel,
+                                ReportTable, ReportText>;
+
+/// What a report says, in the order in which the reader meets it: the title, the summary, the facts, the
+/// items. All texts are plain text in UTF-8.
+struct Report {
+  std::string title;
+  std::string subtitle;
+  std::vector<std::string> summary;                        ///< sentences
+  std::vector<std::pair<std::string, std::string>> facts;  ///< a name and what it is, e.g. "Model"
+  std::vector<double> time;                                ///< of the samples, s since 1970 UTC
+  std::vector<std::size_t> flight_starts;                  ///< first sample of each flight; {0} if empty
+  std::vector<std::string> flight_names;                   ///< as many as flights, or none
+  std::vector<ReportColumn> columns;
+  std::vector<ReportInterval> intervals;
+  std::vector<ReportItem> items;
+};
+
+/// One HTML page that needs nothing else: no network, no other file. A browser draws its panels from the
+/// columns; the reader selects samples by time or interval, and saves panels as SVG or PNG.
+///
+/// @throws Error if the time of a flight does not increase, a column is not of its length, two columns have
+/// one name, a panel names a column that is not there, or a panel would be empty: no sample has a value in
+/// all the columns of a picture.
+std::string report_html(const Report& report);
+
+/// Writes `report_html` to the file `path`, whole or not at all.
+/// @throws Error as `report_html`, or if the file cannot be written.
+void write_report(const Report& report, const std::filesystem::path& path);
+
+}  // namespace pcor

@@ -1,0 +1,280 @@
+#include "fit_flights.hpp"
+
+#include <ceres/loss_function.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <thread>
+
+#include "pcor/offline/compare.hpp"
+#include "pcor/offline/error.hpp"
+
+namespace pcor {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t chunk = 1024;
+
+Eigen::Index as_index(std::size_t n) { return static_cast<Eigen::Index>(n); }
+
+std::size_t bytes_of(const FlightSamples& samples) {
+  const std::size_t columns = samples.model.columns.size() + samples.reference.columns.size() + 12;
+  return columns * samples.time.size() * sizeof(double);
+}
+
+}  // namespace
+
+FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitSetup& setup)
+    : setup_(&setup),
+      residuals_(std::move(samples), *setup.model, *setup.reference, setup.mask),
+      static_pressure_(*residuals_.samples().model.find(Quantity::static_pressure)) {
+  const FlightSamples& flight = residuals_.samples();
+  const std::vector<Mask>& mask = residuals_.mask();
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    if (mask[i] == Mask::none) kept_.push_back(i);
+  }
+  const auto training =
+      static_cast<std::size_t>(std::llround(setup.training_share * static_cast<double>(kept_.size())));
+  held_out_ = kept_.size() - training;
+  kept_.resize(training);
+  if (!setup.regimes.empty()) {
+    std::vector<std::size_t> inside;
+    for (const Interval& interval : flight.intervals) {
+      if (std::find(setup.regimes.begin(), setup.regimes.end(), interval.regime) == setup.regimes.end())
+        continue;
+      const std::size_t before = inside.size();
+      for (const std::size_t i : kept_) {
+        if (flight.time[i] >= interval.begin && flight.time[i] < interval.end) inside.push_back(i);
+      }
+      if (inside.size() == before) continue;
+      if (setup.with_offsets) offset_.resize(inside.size(), static_cast<int>(offset_count_));
+      ++offset_count_;
+    }
+    if (!setup.with_offsets) offset_count_ = 0;
+    kept_ = std::move(inside);
+  }
+  linear_ = std::all_of(setup.wanted.begin(), setup.wanted.end(),
+                        [this](std::size_t parameter) { return residuals_.is_linear()[parameter]; });
+}
+
+std::size_t FitFlight::keep_derivatives(const Eigen::VectorXd& parameters) {
+  if (!linear_) return 0;
+  kept_residual_.clear();
+  kept_parameters_ = parameters;
+  const std::size_t count = kept_.size();
+  std::vector<double> residual(count);
+  std::vector<double> derivatives(setup_->wanted.size() * count);
+  std::vector<double> part(setup_->wanted.size() * chunk);
+  for (std::size_t first = 0; first < count; first += chunk) {
+    const std::size_t length = std::min(chunk, count - first);
+    residuals_.evaluate(kept_.data() + first, length, parameters.data(), setup_->wanted,
+                        residual.data() + first, part.data());
+    for (std::size_t k = 0; k < setup_->wanted.size(); ++k)
+      std::copy_n(part.data() + k * length, length, derivatives.data() + k * count + first);
+  }
+  kept_residual_ = std::move(residual);
+  kept_derivatives_ = std::move(derivatives);
+  return (kept_residual_.size() + kept_derivatives_.size()) * sizeof(double);
+}
+
+void FitFlight::evaluate(std::size_t first, std::size_t count, const Eigen::VectorXd& parameters,
+                         const double* offsets, double* residual, double* derivatives) const {
+  const std::vector<std::size_t>& wanted = setup_->wanted;
+  if (kept_residual_.empty()) {
+    const std::vector<std::size_t> none;
+    residuals_.evaluate(kept_.data() + first, count, parameters.data(),
+                        derivatives == nullptr ? none : wanted, residual, derivatives);
+  } else {
+    std::copy_n(kept_residual_.data() + first, count, residual);
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      const double step = parameters[as_index(wanted[k])] - kept_parameters_[as_index(wanted[k])];
+      const double* const column = kept_derivatives_.data() + k * kept_.size() + first;
+      if (derivatives != nullptr) std::copy_n(column, count, derivatives + k * count);
+      for (std::size_t i = 0; i < count; ++i) residual[i] += step * column[i];
+    }
+  }
+  if (offset_.empty()) return;
+  for (std::size_t i = 0; i < count; ++i)
+    residual[i] -= offsets[offset_[first + i]] * static_pressure(first + i);
+}
+
+std::vector<double> FitFlight::values(const Eigen::VectorXd& parameters, const double* offsets) const {
+  std::vector<double> result(kept_.size());
+  for (std::size_t first = 0; first < kept_.size(); first += chunk) {
+    evaluate(first, std::min(chunk, kept_.size() - first), parameters, offsets, result.data() + first,
+             nullptr);
+  }
+  return result;
+}
+
+void FitFlight::measure_noise(const Eigen::VectorXd& parameters, const double* offsets) {
+  const FlightSamples& flight = residuals_.samples();
+  const std::vector<double> residual = values(parameters, offsets);
+  std::vector<double> series(flight.time.size(), nan);
+  for (std::size_t i = 0; i < kept_.size(); ++i) series[kept_[i]] = residual[i];
+  const NoiseFloor floor = noise_floor(series, stretches_of(series, flight.time, flight.step), flight.step);
+  noise_.assign(kept_.size(), 1.0);
+  // Without noise (data that a formula made) all samples count alike.
+  if (!(floor.rms > 0.0)) return;
+  for (std::size_t i = 0; i < kept_.size(); ++i) noise_[i] = floor.local_rms[kept_[i]];
+  samples_per_independent_ = floor.samples_per_independent;
+}
+
+FitFlights::FitFlights(std::vector<FlightSource> sources, const FitSetup& setup)
+    : sources_(std::move(sources)),
+      setup_(setup),
+      cache_(sources_.size()),
+      first_offset_(sources_.size(), 0) {
+  std::vector<std::pair<std::string, std::string>> aircraft(sources_.size());
+  std::vector<std::size_t> kept(sources_.size());
+  std::vector<std::array<std::size_t, mask_count>> masks(sources_.size());
+  std::vector<Eigen::VectorXd> starts(sources_.size());
+  std::vector<std::vector<bool>> linear(sources_.size());
+  std::vector<std::size_t> offsets(sources_.size());
+  visit([&](std::size_t number, std::size_t, FitFlight& fit) {
+    const FlightSamples& samples = fit.residuals().samples();
+    aircraft[number] = {samples.name, samples.aircraft};
+    kept[number] = fit.kept().size();
+    masks[number] = fit.residuals().mask_counts();
+    offsets[number] = fit.offsets();
+    const std::vector<double>& parameters = fit.residuals().parameters();
+    linear[number] = fit.residuals().is_linear();
+    starts[number] = Eigen::Map<const Eigen::VectorXd>(parameters.data(), as_index(parameters.size()));
+  });
+  require_one_aircraft(aircraft);
+  start_ = starts.front();
+  linear_ = linear.front();
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    samples_ += kept[i];
+    first_offset_[i] = offsets_;
+    offsets_ += offsets[i];
+    for (std::size_t m = 0; m < mask_count; ++m) masks_[m] += masks[i][m];
+  }
+}
+
+std::shared_ptr<FitFlight> FitFlights::flight(std::size_t number) {
+  if (cache_[number]) return cache_[number];
+  std::shared_ptr<const FlightSamples> samples = sources_[number].samples;
+  {
+    const std::lock_guard lock(reading_);  // netCDF is not made for several threads
+    if (!samples) {
+      const Flight file(sources_[number].path, setup_.time_stamp);
+      samples = std::make_shared<const FlightSamples>(
+          read_samples(file, *setup_.model, *setup_.reference, setup_.mask));
+    }
+  }
+  auto fit = std::make_shared<FitFlight>(samples, setup_);
+  if (noise_parameters_.size() > 0)
+    fit->measure_noise(noise_parameters_, noise_offsets_.data() + first_offset_[number]);
+  const std::vector<double>& parameters = fit->residuals().parameters();
+  const std::size_t derivatives = fit->kept().size() * (setup_.wanted.size() + 1) * sizeof(double);
+  const std::size_t bytes = derivatives + (sources_[number].samples ? 0 : bytes_of(*samples));
+  bool keep = false;
+  {
+    const std::lock_guard lock(reading_);
+    keep = cached_bytes_ + bytes <= setup_.memory;
+    if (keep) cached_bytes_ += bytes;
+  }
+  fit->keep_derivatives(Eigen::Map<const Eigen::VectorXd>(parameters.data(), as_index(parameters.size())));
+  if (keep) cache_[number] = fit;
+  return fit;
+}
+
+void FitFlights::visit(const std::function<void(std::size_t, std::size_t, FitFlight&)>& visit) {
+  std::atomic<std::size_t> next{0};
+  std::vector<std::exception_ptr> failures(count());
+  const auto work = [&] {
+    for (std::size_t number = next++; number < count(); number = next++) {
+      try {
+        visit(number, first_offset_[number], *flight(number));
+      } catch (...) {
+        failures[number] = std::current_exception();
+      }
+    }
+  };
+  std::vector<std::thread> helpers;
+  for (std::size_t i = 1; i < std::min(setup_.threads, count()); ++i) helpers.emplace_back(work);
+  work();
+  for (std::thread& helper : helpers) helper.join();
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
+}
+
+Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets,
+                             const ceres::LossFunction* loss) {
+  const std::size_t fitted = setup_.wanted.size();
+  const Eigen::Index columns = as_index(fitted + offsets_ + 1);
+  std::vector<Reduction> parts(count());
+  visit([&](std::size_t number, std::size_t first_offset, FitFlight& fit) {
+    Reduction& part = parts[number];
+    TriangularFactor factor(columns);
+    std::vector<double> residual(chunk);
+    std::vector<double> derivatives(fitted * chunk);
+    for (std::size_t first = 0; first < fit.kept().size(); first += chunk) {
+      const std::size_t length = std::min(chunk, fit.kept().size() - first);
+      fit.evaluate(first, length, parameters, offsets.data() + first_offset, residual.data(),
+                   derivatives.data());
+      for (std::size_t i = 0; i < length; ++i) {
+        const double weight = 1.0 / fit.noise(first + i);
+        const double normal = weight * residual[i];
+        std::array<double, 3> rho{normal * normal, 1.0, 0.0};
+        if (loss != nullptr) loss->Evaluate(rho[0], rho.data());
+        if (!std::isfinite(normal)) part.valid = false;
+        part.cost += 0.5 * rho[0];
+        const double root = std::sqrt(rho[1]);
+        if (root == 0.0) continue;
+        auto row = factor.next_row();
+        if (offsets_ > 0) row.setZero();
+        for (std::size_t k = 0; k < fitted; ++k)
+          row[as_index(k)] = root * weight * derivatives[k * length + i];
+        if (const int offset = fit.offset_of(first + i); offset >= 0) {
+          row[as_index(fitted + first_offset) + offset] = -root * weight * fit.static_pressure(first + i);
+        }
+        row[columns - 1] = root * normal;
+      }
+    }
+    part.samples = fit.kept().size();
+    part.factor = factor.factor();
+  });
+  Reduction whole;
+  TriangularFactor sum(columns);
+  for (const Reduction& part : parts) {
+    for (Eigen::Index i = 0; i < columns; ++i) sum.next_row() = part.factor.row(i);
+    whole.cost += part.cost;
+    whole.samples += part.samples;
+    whole.valid &= part.valid;
+  }
+  whole.factor = sum.factor();
+  return whole;
+}
+
+void FitFlights::measure_noise(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) {
+  // Flights that are read again measure it again, at the same parameters.
+  noise_parameters_ = parameters;
+  noise_offsets_ = offsets;
+  visit([&](std::size_t number, std::size_t first_offset, FitFlight& fit) {
+    if (cache_[number]) fit.measure_noise(parameters, offsets.data() + first_offset);
+  });
+}
+
+double FitFlights::deviation(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) {
+  std::vector<double> squares(count(), 0.0);
+  visit([&](std::size_t number, std::size_t first_offset, FitFlight& fit) {
+    std::vector<double> normal = fit.values(parameters, offsets.data() + first_offset);
+    for (std::size_t i = 0; i < normal.size(); ++i) normal[i] /= fit.noise(i);
+    if (normal.empty()) return;
+    const auto samples = static_cast<double>(normal.size());
+    const double deviation = robust_deviation(std::move(normal));
+    squares[number] = samples * deviation * deviation;
+  });
+  double sum = 0.0;
+  for (const double square : squares) sum += square;
+  return std::sqrt(sum / static_cast<double>(samples_));
+}
+
+}  // namespace pcor

@@ -1,0 +1,145 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "pcor/offline/noise.hpp"
+#include "pcor/offline/residuals.hpp"
+#include "triangular_factor.hpp"
+
+namespace ceres {
+class LossFunction;
+}
+
+namespace pcor {
+
+/// Where a flight of a fit comes from: a file, or memory.
+struct FlightSource {
+  std::filesystem::path path{};
+  std::shared_ptr<const FlightSamples> samples{};
+};
+
+/// What a fit is made of, beside the flights.
+struct FitSetup {
+  const ModelFile* model = nullptr;
+  const Reference* reference = nullptr;
+  MaskOptions mask;
+  TimeStamp time_stamp = TimeStamp::begin;
+  double training_share = 1.0;
+  std::vector<Regime> regimes{};      ///< only samples of these take part, where there are any
+  bool with_offsets = false;          ///< every interval of these regimes has its own offset of delta-p/p
+  std::vector<std::size_t> wanted{};  ///< the parameters that are fitted
+  std::size_t threads = 1;
+  std::size_t memory = 0;
+};
+
+/// One flight of a fit: the samples that take part, their weights, and their residuals and derivatives.
+class FitFlight {
+ public:
+  FitFlight(std::shared_ptr<const FlightSamples> samples, const FitSetup& setup);
+
+  const Residuals& residuals() const { return residuals_; }
+  const std::vector<std::size_t>& kept() const { return kept_; }
+  std::size_t held_out() const { return held_out_; }
+  std::size_t offsets() const { return offset_count_; }
+
+  /// The residuals of the samples that take part. @param offsets those of this flight
+  std::vector<double> values(const Eigen::VectorXd& parameters, const double* offsets) const;
+
+  /// Residuals and derivatives of `count` of the kept samples from `first` on; columns of `count` values.
+  /// `derivatives` may be null.
+  void evaluate(std::size_t first, std::size_t count, const Eigen::VectorXd& parameters,
+                const double* offsets, double* residual, double* derivatives) const;
+
+  /// The place of a kept sample's offset among those of this flight; -1 without one.
+  int offset_of(std::size_t kept) const { return offset_.empty() ? -1 : offset_[kept]; }
+  double static_pressure(std::size_t kept) const { return static_pressure_[kept_[kept]]; }
+
+  /// Measures the noise of the residuals at `parameters`, which becomes the weight of the samples.
+  void measure_noise(const Eigen::VectorXd& parameters, const double* offsets);
+  double noise(std::size_t kept) const { return noise_.empty() ? 1.0 : noise_[kept]; }
+  double samples_per_independent() const { return samples_per_independent_; }
+  bool has_noise() const { return !noise_.empty(); }
+
+  /// Keeps derivatives, where the residual is linear in all that is wanted. @return the bytes that it takes
+  std::size_t keep_derivatives(const Eigen::VectorXd& parameters);
+
+ private:
+  const FitSetup* setup_;
+  Residuals residuals_;
+  std::vector<double> static_pressure_;
+  std::vector<std::size_t> kept_;
+  std::size_t held_out_ = 0;
+  std::vector<int> offset_;
+  std::size_t offset_count_ = 0;
+  std::vector<double> noise_;
+  double samples_per_independent_ = 1.0;
+  bool linear_ = false;
+  std::vector<double> kept_residual_;     // at `kept_parameters_`
+  std::vector<double> kept_derivatives_;  // columns
+  Eigen::VectorXd kept_parameters_;
+};
+
+/// What a pass over all flights gives.
+struct Reduction {
+  Eigen::MatrixXd factor;  ///< of rows (derivatives by wanted parameters and offsets, residual), weighted
+  double cost = 0.0;       ///< half the sum of the loss
+  std::size_t samples = 0;
+  bool valid = true;  ///< false where some residual is not a number at these parameters
+};
+
+/// The flights of a fit. Passes over them run several flights at a time; their results are added in the order
+/// of the flights, so they do not depend on the number of threads.
+class FitFlights {
+ public:
+  FitFlights(std::vector<FlightSource> sources, const FitSetup& setup);
+
+  std::size_t count() const { return sources_.size(); }
+
+  /// The parameters of the models' files.
+  const Eigen::VectorXd& start() const { return start_; }
+  /// For each of them whether the residual is linear in it.
+  const std::vector<bool>& is_linear() const { return linear_; }
+  std::size_t samples() const { return samples_; }
+  std::size_t offsets() const { return offsets_; }
+  const std::array<std::size_t, mask_count>& masks() const { return masks_; }
+
+  /// Visits every flight; `visit` is called by several threads, with the number of the flight and of its
+  /// first offset.
+  void visit(const std::function<void(std::size_t flight, std::size_t first_offset, FitFlight& fit)>& visit);
+
+  Reduction reduce(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets,
+                   const ceres::LossFunction* loss);
+
+  /// Measures the noise of every flight, which weights its samples from now on.
+  void measure_noise(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets);
+
+  /// The robust deviation of the weighted residuals.
+  double deviation(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets);
+
+ private:
+  std::shared_ptr<FitFlight> flight(std::size_t number);
+
+  std::vector<FlightSource> sources_;
+  const FitSetup& setup_;
+  std::vector<std::shared_ptr<FitFlight>> cache_;
+  std::vector<std::size_t> first_offset_;
+  std::mutex reading_;
+  std::size_t cached_bytes_ = 0;
+  Eigen::VectorXd start_;
+  std::vector<bool> linear_;
+  std::size_t samples_ = 0;
+  std::size_t offsets_ = 0;
+  std::array<std::size_t, mask_count> masks_{};
+  Eigen::VectorXd noise_parameters_;
+  Eigen::VectorXd noise_offsets_;
+};
+
+}  // namespace pcor

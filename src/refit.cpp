@@ -1,0 +1,1020 @@
+#include "pcor/offline/refit.hpp"
+
+#include <ceres/cost_function.h>
+#include <ceres/loss_function.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <thread>
+
+#include "fit_flights.hpp"
+#include "global_search.hpp"
+#include "pcor/effects/catalogue.hpp"
+#include "pcor/offline/error.hpp"
+#include "pcor/offline/suggest.hpp"
+#include "pcor/offline/utc.hpp"
+
+namespace pcor {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Tuning for 95 % efficiency on normal noise, in robust deviations (Huber and Ronchetti 2009, Robust
+// Statistics; Holland and Welsch 1977).
+constexpr double tukey_width = 4.685;
+constexpr double huber_width = 1.345;
+constexpr double cauchy_width = 2.385;
+
+// Flights hold 32-bit floats: columns that agree to better than their rounding, 6e-8, are one column.
+constexpr double hopeless_condition = 1e7;
+constexpr int passes_expected = 40;
+
+Eigen::Index as_index(std::size_t n) { return static_cast<Eigen::Index>(n); }
+
+std::unique_ptr<ceres::LossFunction> loss_function(Loss loss, double deviation) {
+  switch (loss) {
+    case Loss::tukey:
+      return std::make_unique<ceres::TukeyLoss>(tukey_width * deviation);
+    case Loss::huber:
+      return std::make_unique<ceres::HuberLoss>(huber_width * deviation);
+    case Loss::soft_l1:
+      return std::make_unique<ceres::SoftLOneLoss>(deviation);
+    case Loss::cauchy:
+      return std::make_unique<ceres::CauchyLoss>(cauchy_width * deviation);
+    case Loss::none:
+      break;
+  }
+  return nullptr;
+}
+
+/// What a fit knows of one parameter beside its value.
+struct ParameterState {
+  std::string name;
+  std::string effect;  // with the prefix of the reference
+  std::string unit;
+  double neutral = 0.0;
+  double typical = 0.0;
+  std::string_view manoeuvre{};
+  Bounds bounds;
+  bool fixed = false;
+};
+
+/// All flights as one residual block of a few rows: the triangular factor of the weighted derivatives and
+/// residuals has the same gradient and the same normal matrix as all samples, and the last row brings the
+/// cost to that of the loss.
+class ReducedCost final : public ceres::CostFunction {
+ public:
+  ReducedCost(FitFlights& flights, const FitSetup& setup, const Eigen::VectorXd& parameters,
+              const ceres::LossFunction* loss, std::function<void()> tell)
+      : flights_(flights), setup_(setup), parameters_(parameters), loss_(loss), tell_(std::move(tell)) {
+    size_ = as_index(setup.wanted.size() + flights.offsets());
+    set_num_residuals(static_cast<int>(size_) + 1);
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(size_));
+  }
+
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    const Eigen::Map<const Eigen::VectorXd> x(blocks[0], size_);
+    if (last_.size() == 0 || last_ != x) {
+      for (std::size_t k = 0; k < setup_.wanted.size(); ++k)
+        parameters_[as_index(setup_.wanted[k])] = x[as_index(k)];
+      reduction_ = flights_.reduce(parameters_, x.tail(as_index(flights_.offsets())), loss_);
+      last_ = x;
+      tell_();
+    }
+    if (!reduction_.valid) return false;
+    Eigen::Map<Eigen::VectorXd> all(residuals, size_ + 1);
+    all.head(size_) = reduction_.factor.col(size_).head(size_);
+    const double rest = 2.0 * reduction_.cost - all.head(size_).squaredNorm();
+    all[size_] = std::sqrt(std::max(rest, 0.0));
+    if (jacobians != nullptr && jacobians[0] != nullptr) {
+      Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> jacobian(
+          jacobians[0], size_ + 1, size_);
+      jacobian.setZero();
+      jacobian.topRows(size_) = reduction_.factor.topLeftCorner(size_, size_);
+    }
+    return true;
+  }
+
+ private:
+  FitFlights& flights_;
+  const FitSetup& setup_;
+  mutable Eigen::VectorXd parameters_;
+  const ceres::LossFunction* loss_;
+  std::function<void()> tell_;
+  Eigen::Index size_ = 0;
+  mutable Eigen::VectorXd last_;
+  mutable Reduction reduction_;
+};
+
+/// Draws every parameter to its start: (x - start) / deviation.
+class PriorCost final : public ceres::CostFunction {
+ public:
+  PriorCost(Eigen::VectorXd start, Eigen::VectorXd weight)
+      : start_(std::move(start)), weight_(std::move(weight)) {
+    set_num_residuals(static_cast<int>(start_.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(start_.size()));
+  }
+
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    for (Eigen::Index k = 0; k < start_.size(); ++k) residuals[k] = weight_[k] * (blocks[0][k] - start_[k]);
+    if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> jacobian(
+        jacobians[0], start_.size(), start_.size());
+    jacobian = weight_.asDiagonal();
+    return true;
+  }
+
+ private:
+  Eigen::VectorXd start_;
+  Eigen::VectorXd weight_;
+};
+
+/// The sums behind rms and R^2 of the samples of a fit.
+struct FitSums {
+  double squares = 0.0;
+  double bulk_squares = 0.0;  // of the robust deviation
+  double relative_squares = 0.0;
+  double wanted = 0.0;
+  double wanted_squares = 0.0;
+  std::size_t samples = 0;
+  std::size_t outliers = 0;
+
+  void add(const FitSums& other) {
+    squares += other.squares;
+    bulk_squares += other.bulk_squares;
+    relative_squares += other.relative_squares;
+    wanted += other.wanted;
+    wanted_squares += other.wanted_squares;
+    samples += other.samples;
+    outliers += other.outliers;
+  }
+  double bulk_rms() const { return std::sqrt(bulk_squares / static_cast<double>(samples)); }
+  double rms() const { return std::sqrt(squares / static_cast<double>(samples)); }
+  double r_squared() const {
+    return 1.0 - squares / (wanted_squares - wanted * wanted / static_cast<double>(samples));
+  }
+};
+
+class Refit {
+ public:
+  Refit(std::vector<FlightSource> sources, const ModelFile& model, const Reference& reference,
+        const RefitOptions& options)
+      : sources_(std::move(sources)), model_(model), reference_(reference), options_(options) {}
+
+  RefitResult run();
+
+ private:
+  struct Solution {
+    double deviation = 1.0;
+    Eigen::VectorXd offsets;
+    std::vector<bool> at_bound;  // of the wanted parameters
+  };
+
+  void list_parameters();
+  std::vector<std::size_t> parameters_named(const std::string& name, const char* option) const;
+  std::vector<std::vector<std::size_t>> stages();
+  FitSetup setup_for(std::vector<std::size_t> wanted) const;
+  void require_samples(const FitFlights& flights, const FitSetup& setup) const;
+  Solution solve(FitFlights& flights, const FitSetup& setup);
+  double memory_of(FitFlights& flights, const Eigen::VectorXd& offsets);
+  void minimise(FitFlights& flights, const FitSetup& setup, const ceres::LossFunction* loss,
+                Eigen::VectorXd& x);
+  Eigen::MatrixXd covariance(FitFlights& flights, const FitSetup& setup, const Solution& solution,
+                             const Eigen::MatrixXd& earlier, std::size_t earlier_count);
+  Eigen::MatrixXd parameter_factor(const Reduction& reduction, std::size_t wanted) const;
+  void require_rank(const Eigen::MatrixXd& factor, const std::vector<std::size_t>& wanted);
+  FitSums sums_at(FitFlights& flights, const Eigen::VectorXd& parameters, double deviation);
+  void find_omissions(FitFlights& flights, const FitSetup& setup, const Solution& solution);
+  void compare_flights(FitFlights& flights);
+  void compare_flight(const Residuals& residuals, bool holdout);
+  void explain_errors(const Eigen::MatrixXd& covariance, const std::vector<std::size_t>& wanted);
+  void write_models(const Eigen::MatrixXd& covariance, const std::vector<std::size_t>& fitted);
+  void tell();
+
+  bool uses_prior() const { return options_.use_prior || options_.fit_reference; }
+
+  /// The weight of a parameter's starting value; zero without a prior.
+  double prior_weight_of(std::size_t parameter) const {
+    const double typical = parameters_[parameter].typical;
+    return typical > 0.0 ? prior_strength_ / typical : 0.0;
+  }
+
+  std::vector<FlightSource> sources_;
+  const ModelFile& model_;
+  const Reference& reference_;
+  const RefitOptions& options_;
+  std::vector<ParameterState> parameters_;
+  std::size_t own_parameters_ = 0;
+  Eigen::VectorXd start_;
+  Eigen::VectorXd values_;
+  RefitResult result_;
+  double prior_strength_ = 0.0;  // weight of a starting value that is off by its typical size
+  std::size_t passes_ = 0;
+};
+
+void Refit::tell() {
+  ++passes_;
+  if (options_.progress)
+    options_.progress(std::min<std::size_t>(passes_, passes_expected - 1), passes_expected);
+}
+
+void Refit::list_parameters() {
+  const auto add = [this](const ModelFile& file, const std::string& prefix, bool fitted) {
+    for (std::size_t e = 0; e < file.model.effects.size(); ++e) {
+      const ModelEffect& effect = file.model.effects[e];
+      const std::vector<std::string> names = parameter_names(effect);
+      for (std::size_t p = 0; p < names.size(); ++p) {
+        ParameterState state;
+        state.effect = prefix + effect.id;
+        state.name = state.effect + "." + names[p];
+        state.bounds = file.bounds(e, p);
+        state.fixed = !fitted || file.fit(e, p).fixed;
+        if (!effect.is_formula()) {
+          const EffectFacts& facts = effect_facts[effect_named(effect.id)];
+          state.unit = facts.parameters[p].unit;
+          state.neutral = facts.parameters[p].neutral;
+          state.typical = std::abs(facts.parameters[p].typical);
+          state.manoeuvre = facts.manoeuvre;
+        }
+        parameters_.push_back(std::move(state));
+      }
+    }
+  };
+  add(model_, "", true);
+  own_parameters_ = parameters_.size();
+  if (reference_.kind == Reference::Kind::static_system)
+    add(*reference_.system, "reference:", options_.fit_reference);
+  for (const std::string& name : options_.free) {
+    for (const std::size_t p : parameters_named(name, "--free")) parameters_[p].fixed = false;
+  }
+  for (const std::string& name : options_.fix) {
+    for (const std::size_t p : parameters_named(name, "--fix")) parameters_[p].fixed = true;
+  }
+}
+
+std::vector<std::size_t> Refit::parameters_named(const std::string& name, const char* option) const {
+  std::vector<std::size_t> found;
+  std::vector<std::string> known;
+  for (std::size_t p = 0; p < parameters_.size(); ++p) {
+    if (parameters_[p].name == name || parameters_[p].effect == name) found.push_back(p);
+    known.push_back(parameters_[p].name);
+  }
+  if (!found.empty()) return found;
+  const std::string meant = did_you_mean(name, known);
+  throw Error(fmt::format("{} {}: the model has no such parameter or effect; {}", option, name,
+                          meant.empty() ? fmt::format("it has {}", fmt::join(known, ", ")) : meant));
+}
+
+/// The parameters that each stage fits, the last one what is left.
+std::vector<std::vector<std::size_t>> Refit::stages() {
+  std::vector<std::vector<std::size_t>> result;
+  std::vector<bool> left(parameters_.size());
+  for (std::size_t p = 0; p < parameters_.size(); ++p) left[p] = !parameters_[p].fixed;
+  if (std::none_of(left.begin(), left.end(), [](bool free) { return free; })) {
+    throw Error(
+        fmt::format("model '{}': no coefficient is free; add an effect, or free one with --free EFFECT",
+                    model_.model.name));
+  }
+  for (const FitStage& stage : options_.stages) {
+    std::vector<std::size_t> wanted;
+    for (const std::string& name : stage.parameters) {
+      for (const std::size_t p : parameters_named(name, "--stage")) {
+        if (!left[p])
+          throw Error(fmt::format("--stage: {} is fixed, or fitted in a stage before", parameters_[p].name));
+        left[p] = false;
+        wanted.push_back(p);
+      }
+    }
+    result.push_back(std::move(wanted));
+  }
+  std::vector<std::size_t> rest;
+  for (std::size_t p = 0; p < left.size(); ++p) {
+    if (left[p]) rest.push_back(p);
+  }
+  result.push_back(std::move(rest));
+  return result;
+}
+
+FitSetup Refit::setup_for(std::vector<std::size_t> wanted) const {
+  FitSetup setup;
+  setup.model = &model_;
+  setup.reference = &reference_;
+  setup.mask = options_.mask;
+  setup.time_stamp = options_.time_stamp;
+  setup.training_share = options_.training_share;
+  setup.wanted = std::move(wanted);
+  setup.threads =
+      options_.threads != 0 ? options_.threads : std::max(1U, std::thread::hardware_concurrency());
+  setup.memory = options_.memory;
+  return setup;
+}
+
+void Refit::require_samples(const FitFlights& flights, const FitSetup& setup) const {
+  if (flights.samples() == 0 && !setup.regimes.empty()) {
+    std::vector<std::string_view> names;
+    for (const Regime regime : setup.regimes) names.push_back(facts_of(regime).name);
+    throw Error(
+        fmt::format("--stage: the flights have no {}; fit without the stage, or give the intervals in a file "
+                    "with --intervals",
+                    fmt::join(names, " or ")));
+  }
+  if (flights.samples() == 0) {
+    throw Error(fmt::format(
+        "no sample is left for the fit: {}; see the variables of the model and the options of the "
+        "masks",
+        mask_text(flights.masks())));
+  }
+  const std::size_t unknown = setup.wanted.size() + flights.offsets();
+  if (flights.samples() <= unknown) {
+    throw Error(
+        fmt::format("{} samples are too few for {} coefficients (not used: {}); give more flights or fix "
+                    "coefficients",
+                    flights.samples(), unknown, mask_text(flights.masks())));
+  }
+}
+
+void Refit::minimise(FitFlights& flights, const FitSetup& setup, const ceres::LossFunction* loss,
+                     Eigen::VectorXd& x) {
+  ceres::Problem::Options ownership;
+  ceres::Problem problem(ownership);
+  problem.AddParameterBlock(x.data(), static_cast<int>(x.size()));
+  problem.AddResidualBlock(new ReducedCost(flights, setup, values_, loss, [this] { tell(); }), nullptr,
+                           x.data());
+  if (prior_strength_ > 0.0) {
+    Eigen::VectorXd start = x;
+    Eigen::VectorXd weight = Eigen::VectorXd::Zero(x.size());
+    for (std::size_t k = 0; k < setup.wanted.size(); ++k) {
+      start[as_index(k)] = start_[as_index(setup.wanted[k])];
+      weight[as_index(k)] = prior_weight_of(setup.wanted[k]);
+    }
+    problem.AddResidualBlock(new PriorCost(std::move(start), std::move(weight)), nullptr, x.data());
+  }
+  for (std::size_t k = 0; k < setup.wanted.size(); ++k) {
+    const Bounds& bounds = parameters_[setup.wanted[k]].bounds;
+    if (std::isfinite(bounds.lower))
+      problem.SetParameterLowerBound(x.data(), static_cast<int>(k), bounds.lower);
+    if (std::isfinite(bounds.upper))
+      problem.SetParameterUpperBound(x.data(), static_cast<int>(k), bounds.upper);
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = 200;
+  options.function_tolerance = 1e-12;
+  options.parameter_tolerance = 1e-9;
+  options.gradient_tolerance = 1e-14;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  if (!summary.IsSolutionUsable() || !x.allFinite()) {
+    throw Error(
+        "the fit found no coefficients: from their values in the model the residuals are not numbers; give "
+        "other "
+        "starting values, or look for them with --search");
+  }
+}
+
+/// For how many samples one independent one stands in the residuals at hand: what a starting value is weighed
+/// against.
+double Refit::memory_of(FitFlights& flights, const Eigen::VectorXd& offsets) {
+  std::vector<double> memory(flights.count(), 0.0);
+  flights.visit([&](std::size_t number, std::size_t first_offset, FitFlight& fit) {
+    const FlightSamples& samples = fit.residuals().samples();
+    const std::vector<double> values = fit.values(values_, offsets.data() + first_offset);
+    if (values.empty()) return;
+    std::vector<double> series(samples.time.size(), nan);
+    double squares = 0.0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      series[fit.kept()[i]] = values[i] / fit.noise(i);
+      squares += series[fit.kept()[i]] * series[fit.kept()[i]];
+    }
+    const auto count = static_cast<double>(values.size());
+    const Autoregression noise = autoregression(series, stretches_of(series, samples.time, samples.step));
+    memory[number] = count * noise.samples_per_independent(std::sqrt(squares / count));
+  });
+  const double sum = std::accumulate(memory.begin(), memory.end(), 0.0);
+  return std::max(sum / static_cast<double>(flights.samples()), 1.0);
+}
+
+Refit::Solution Refit::solve(FitFlights& flights, const FitSetup& setup) {
+  require_samples(flights, setup);
+  const std::size_t fitted = setup.wanted.size();
+  Solution solution;
+  solution.offsets = Eigen::VectorXd::Zero(as_index(flights.offsets()));
+  const auto clamped = [&](std::size_t k, double value) {
+    const Bounds& bounds = parameters_[setup.wanted[k]].bounds;
+    return std::clamp(value, bounds.lower, bounds.upper);
+  };
+  Eigen::VectorXd x(as_index(fitted + flights.offsets()));
+  const auto spread = [&] {
+    for (std::size_t k = 0; k < fitted; ++k) values_[as_index(setup.wanted[k])] = x[as_index(k)];
+    solution.offsets = x.tail(as_index(flights.offsets()));
+  };
+  x.setZero();
+  for (std::size_t k = 0; k < fitted; ++k) x[as_index(k)] = clamped(k, values_[as_index(setup.wanted[k])]);
+  spread();
+
+  if (options_.search) {
+    std::vector<SearchRange> ranges;
+    for (const std::size_t p : setup.wanted)
+      ranges.push_back({parameters_[p].name, parameters_[p].bounds.lower, parameters_[p].bounds.upper});
+    x = global_search(flights, setup, values_, flights.is_linear(), ranges, [this] { tell(); });
+    spread();
+  }
+  // The linear problem, in closed form: where derivatives do not depend on the coefficients, its solution.
+  const auto linear_step = [&] {
+    const Reduction reduction = flights.reduce(values_, solution.offsets, nullptr);
+    tell();
+    const Eigen::Index size = x.size();
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2 * size, size);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(2 * size);
+    rows.topRows(size) = reduction.factor.topLeftCorner(size, size);
+    right.head(size) = -reduction.factor.col(size).head(size);
+    for (std::size_t k = 0; k < fitted; ++k) {
+      const double weight = prior_weight_of(setup.wanted[k]);
+      rows(size + as_index(k), as_index(k)) = weight;
+      right[size + as_index(k)] = weight * (start_[as_index(setup.wanted[k])] - x[as_index(k)]);
+    }
+    if (!rows.allFinite() || !right.allFinite()) return;
+    x += rows.completeOrthogonalDecomposition().solve(right);
+    for (std::size_t k = 0; k < fitted; ++k) x[as_index(k)] = clamped(k, x[as_index(k)]);
+    spread();
+  };
+  if (!uses_prior()) linear_step();
+  flights.measure_noise(values_, solution.offsets);
+  solution.deviation = flights.deviation(values_, solution.offsets);
+
+  if (uses_prior()) {
+    prior_strength_ = std::sqrt(memory_of(flights, solution.offsets)) * solution.deviation;
+    linear_step();
+    solution.deviation = flights.deviation(values_, solution.offsets);
+  }
+  const auto fit_with = [&](Loss loss) {
+    const std::unique_ptr<ceres::LossFunction> function =
+        solution.deviation > 0.0 ? loss_function(loss, solution.deviation) : nullptr;
+    minimise(flights, setup, function.get(), x);
+    spread();
+    const double before = solution.deviation;
+    solution.deviation = flights.deviation(values_, solution.offsets);
+    tell();
+    return std::abs(solution.deviation - before) < 1e-4 * before;
+  };
+  if (options_.loss == Loss::none) {
+    fit_with(Loss::none);
+  } else {
+    // The solution of Huber's loss is unique; from there the others find the minimum of the bulk.
+    fit_with(Loss::huber);
+    for (int round = 0; round < 5 && !fit_with(options_.loss); ++round) {
+    }
+  }
+  solution.at_bound.resize(fitted);
+  for (std::size_t k = 0; k < fitted; ++k) {
+    const Bounds& bounds = parameters_[setup.wanted[k]].bounds;
+    const double near = 1e-9 * std::max(std::abs(x[as_index(k)]), 1e-12);
+    solution.at_bound[k] = x[as_index(k)] <= bounds.lower + near || x[as_index(k)] >= bounds.upper - near;
+  }
+  return solution;
+}
+
+/// The factor of the wanted parameters alone, with what the offsets explain taken out.
+Eigen::MatrixXd Refit::parameter_factor(const Reduction& reduction, std::size_t wanted) const {
+  const Eigen::Index size = reduction.factor.cols() - 1;
+  const Eigen::Index count = as_index(wanted);
+  Eigen::MatrixXd turned(size, size);
+  turned.leftCols(size - count) = reduction.factor.block(0, count, size, size - count);
+  turned.rightCols(count) = reduction.factor.block(0, 0, size, count);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> decomposition(turned);
+  const Eigen::MatrixXd upper = decomposition.matrixQR().triangularView<Eigen::Upper>();
+  return upper.bottomRightCorner(count, count);
+}
+
+void Refit::require_rank(const Eigen::MatrixXd& factor, const std::vector<std::size_t>& wanted) {
+  Eigen::MatrixXd scaled = factor;
+  for (Eigen::Index k = 0; k < scaled.cols(); ++k) {
+    const double length = scaled.col(k).norm();
+    if (!(length > 0.0)) {
+      throw Error(fmt::format(
+          "{} changes nothing on these flights, so it cannot be found; leave it as it is: --fix {}",
+          parameters_[wanted[static_cast<std::size_t>(k)]].name,
+          parameters_[wanted[static_cast<std::size_t>(k)]].name));
+    }
+    scaled.col(k) /= length;
+  }
+  const Eigen::JacobiSVD<Eigen::MatrixXd> decomposition(scaled, Eigen::ComputeFullV);
+  const Eigen::VectorXd& singular = decomposition.singularValues();
+  const double condition = singular[0] / singular[singular.size() - 1];
+  result_.condition_number = std::isfinite(condition) ? condition : infinity;
+  if (condition < hopeless_condition || uses_prior()) return;
+  const Eigen::VectorXd weak = decomposition.matrixV().col(singular.size() - 1).cwiseAbs();
+  std::vector<std::string> names;
+  for (Eigen::Index k = 0; k < weak.size(); ++k) {
+    if (weak[k] > 0.1 * weak.maxCoeff())
+      names.push_back(parameters_[wanted[static_cast<std::size_t>(k)]].name);
+  }
+  throw Error(
+      fmt::format("{} cannot all be free on these flights: what one does the others undo (condition number "
+                  "{:.0e}); hold one of them, e.g. --fix {}",
+                  fmt::join(names, ", "), result_.condition_number, names.back()));
+}
+
+/// The covariance of the wanted parameters: of the estimate that the loss makes from noise with the memory
+/// that the residuals have. The first `earlier_count` of them were found in earlier stages with the
+/// covariance `earlier`, and what they err by goes on to the others.
+Eigen::MatrixXd Refit::covariance(FitFlights& flights, const FitSetup& setup, const Solution& solution,
+                                  const Eigen::MatrixXd& earlier, std::size_t earlier_count) {
+  const Eigen::Index size = as_index(setup.wanted.size() + flights.offsets());
+  const std::unique_ptr<ceres::LossFunction> loss =
+      solution.deviation > 0.0 ? loss_function(options_.loss, solution.deviation) : nullptr;
+  std::vector<Eigen::MatrixXd> curvatures(flights.count(), Eigen::MatrixXd::Zero(size, size));
+  std::vector<Eigen::MatrixXd> scores(flights.count(), Eigen::MatrixXd::Zero(size, size));
+  std::vector<double> memories(flights.count(), 0.0);
+  flights.visit([&](std::size_t number, std::size_t first_offset, FitFlight& fit) {
+    const std::size_t kept = fit.kept().size();
+    if (kept == 0) return;
+    const FlightSamples& samples = fit.residuals().samples();
+    const std::size_t length = samples.time.size();
+    std::vector<std::vector<double>> columns(static_cast<std::size_t>(size),
+                                             std::vector<double>(length, 0.0));
+    std::vector<double> influence(length, nan);
+    constexpr std::size_t chunk = 1024;
+    std::vector<double> residual(chunk);
+    std::vector<double> derivatives(setup.wanted.size() * chunk);
+    double slope = 0.0;
+    double squares = 0.0;
+    for (std::size_t first = 0; first < kept; first += chunk) {
+      const std::size_t count = std::min(chunk, kept - first);
+      fit.evaluate(first, count, values_, solution.offsets.data() + first_offset, residual.data(),
+                   derivatives.data());
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t place = fit.kept()[first + i];
+        const double weight = 1.0 / fit.noise(first + i);
+        const double normal = weight * residual[i];
+        std::array<double, 3> rho{normal * normal, 1.0, 0.0};
+        if (loss) loss->Evaluate(rho[0], rho.data());
+        influence[place] = rho[1] * normal;
+        squares += influence[place] * influence[place];
+        slope += rho[1] + 2.0 * normal * normal * rho[2];
+        for (std::size_t k = 0; k < setup.wanted.size(); ++k)
+          columns[k][place] = weight * derivatives[k * count + i];
+        if (const int offset = fit.offset_of(first + i); offset >= 0) {
+          columns[setup.wanted.size() + first_offset + static_cast<std::size_t>(offset)][place] =
+              -weight * fit.static_pressure(first + i);
+        }
+      }
+    }
+    slope /= static_cast<double>(kept);
+    const Autoregression noise =
+        autoregression(influence, stretches_of(influence, samples.time, samples.step), infinity);
+    memories[number] = noise.samples_per_independent(std::sqrt(squares / static_cast<double>(kept))) *
+                       static_cast<double>(kept);
+    const std::vector<double> present(length, 0.0);
+    std::vector<const double*> pointers;
+    for (const std::vector<double>& column : columns) pointers.push_back(column.data());
+    const std::vector<double> sums =
+        covariance_of_sums(noise, pointers, stretches_of(present, samples.time, samples.step));
+    scores[number] = Eigen::Map<const Eigen::MatrixXd>(sums.data(), size, size);
+    for (Eigen::Index a = 0; a < size; ++a) {
+      const Eigen::Map<const Eigen::VectorXd> left(columns[static_cast<std::size_t>(a)].data(),
+                                                   as_index(length));
+      for (Eigen::Index b = 0; b <= a; ++b) {
+        const Eigen::Map<const Eigen::VectorXd> right(columns[static_cast<std::size_t>(b)].data(),
+                                                      as_index(length));
+        curvatures[number](a, b) = curvatures[number](b, a) = slope * left.dot(right);
+      }
+    }
+  });
+  Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(size, size);
+  Eigen::MatrixXd score = Eigen::MatrixXd::Zero(size, size);
+  double memory = 0.0;
+  for (std::size_t i = 0; i < flights.count(); ++i) {
+    curvature += curvatures[i];
+    score += scores[i];
+    memory += memories[i];
+  }
+  result_.samples_per_independent = std::max(memory / static_cast<double>(flights.samples()), 1.0);
+  for (std::size_t k = 0; k < setup.wanted.size(); ++k) {
+    const double weight = prior_weight_of(setup.wanted[k]);
+    curvature(as_index(k), as_index(k)) += weight * weight;
+    score(as_index(k), as_index(k)) += weight * weight * prior_strength_ * prior_strength_;
+  }
+  // What is at a bound does not vary.
+  std::vector<Eigen::Index> varying;
+  for (Eigen::Index k = as_index(earlier_count); k < size; ++k) {
+    const auto own = static_cast<std::size_t>(k) - earlier_count;
+    if (own >= solution.at_bound.size() || !solution.at_bound[own]) varying.push_back(k);
+  }
+  Eigen::MatrixXd result = Eigen::MatrixXd::Constant(size, size, 0.0);
+  const Eigen::Index early = as_index(earlier_count);
+  const Eigen::MatrixXd inner = curvature(varying, varying);
+  const Eigen::VectorXd lengths = inner.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd inverse = lengths.asDiagonal() *
+                                  (lengths.asDiagonal() * inner * lengths.asDiagonal())
+                                      .completeOrthogonalDecomposition()
+                                      .pseudoInverse() *
+                                  lengths.asDiagonal();
+  Eigen::MatrixXd own = inverse * score(varying, varying) * inverse.transpose();
+  if (early > 0) {
+    std::vector<Eigen::Index> before(earlier_count);
+    std::iota(before.begin(), before.end(), 0);
+    const Eigen::MatrixXd carried = -inverse * curvature(varying, before);
+    own += carried * earlier * carried.transpose();
+    const Eigen::MatrixXd across = carried * earlier;
+    result.topLeftCorner(early, early) = earlier;
+    for (std::size_t a = 0; a < varying.size(); ++a) {
+      for (Eigen::Index b = 0; b < early; ++b)
+        result(varying[a], b) = result(b, varying[a]) = across(as_index(a), b);
+    }
+  }
+  for (std::size_t a = 0; a < varying.size(); ++a) {
+    for (std::size_t b = 0; b < varying.size(); ++b)
+      result(varying[a], varying[b]) = own(as_index(a), as_index(b));
+  }
+  const Eigen::Index wanted = as_index(setup.wanted.size());
+  const Eigen::MatrixXd corner = result.topLeftCorner(wanted, wanted);
+  return 0.5 * (corner + corner.transpose());
+}
+
+FitSums Refit::sums_at(FitFlights& flights, const Eigen::VectorXd& parameters, double deviation) {
+  std::vector<FitSums> parts(flights.count());
+  flights.visit([&](std::size_t number, std::size_t, FitFlight& fit) {
+    const std::vector<double> wanted = fit.residuals().wanted_defect(values_.data());
+    const std::vector<double> residual = fit.values(parameters, nullptr);
+    FitSums& sums = parts[number];
+    sums.samples = fit.kept().size();
+    for (std::size_t i = 0; i < residual.size(); ++i) {
+      const double relative = residual[i] / fit.static_pressure(i);
+      const double defect = wanted[fit.kept()[i]];
+      sums.squares += residual[i] * residual[i];
+      sums.relative_squares += relative * relative;
+      sums.wanted += defect;
+      sums.wanted_squares += defect * defect;
+      if (std::abs(residual[i]) > tukey_width * deviation * fit.noise(i)) ++sums.outliers;
+    }
+    const double bulk = robust_deviation(residual);
+    if (sums.samples > 0) sums.bulk_squares = bulk * bulk * static_cast<double>(sums.samples);
+  });
+  FitSums whole;
+  for (const FitSums& part : parts) whole.add(part);
+  tell();
+  return whole;
+}
+
+/// What the fit becomes without each effect: its parameters go to their neutral values and the others follow,
+/// with the weights that the samples have.
+void Refit::find_omissions(FitFlights& flights, const FitSetup& setup, const Solution& solution) {
+  const std::unique_ptr<ceres::LossFunction> loss =
+      solution.deviation > 0.0 ? loss_function(options_.loss, solution.deviation) : nullptr;
+  const Reduction reduction = flights.reduce(values_, Eigen::VectorXd(), loss.get());
+  tell();
+  const Eigen::Index size = as_index(setup.wanted.size());
+  Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(2 * size, size + 1);
+  factor.topRows(size) = reduction.factor.topRows(size);
+  for (std::size_t k = 0; k < setup.wanted.size(); ++k) {
+    const double weight = prior_weight_of(setup.wanted[k]);
+    factor(size + as_index(k), as_index(k)) = weight;
+    factor(size + as_index(k), size) =
+        weight * (values_[as_index(setup.wanted[k])] - start_[as_index(setup.wanted[k])]);
+  }
+  std::vector<std::string> effects;
+  for (const std::size_t p : setup.wanted) {
+    const std::string& effect = parameters_[p].effect;
+    if (std::find(effects.begin(), effects.end(), effect) == effects.end()) effects.push_back(effect);
+  }
+  for (const std::string& effect : effects) {
+    std::vector<Eigen::Index> others;
+    Eigen::VectorXd right = -factor.col(size);
+    Eigen::VectorXd changed = values_;
+    for (Eigen::Index k = 0; k < size; ++k) {
+      const std::size_t p = setup.wanted[static_cast<std::size_t>(k)];
+      if (parameters_[p].effect != effect) {
+        others.push_back(k);
+        continue;
+      }
+      const double step = parameters_[p].neutral - values_[as_index(p)];
+      right -= step * factor.col(k);
+      changed[as_index(p)] += step;
+    }
+    if (!others.empty()) {
+      const Eigen::MatrixXd rows = factor(Eigen::all, others);
+      const Eigen::VectorXd step = rows.colPivHouseholderQr().solve(right);
+      for (std::size_t k = 0; k < others.size(); ++k)
+        changed[as_index(setup.wanted[static_cast<std::size_t>(others[k])])] += step[as_index(k)];
+    }
+    const FitSums sums = sums_at(flights, changed, solution.deviation);
+    result_.omissions.push_back({effect, sums.rms(), sums.r_squared()});
+  }
+}
+
+void Refit::compare_flight(const Residuals& residuals, bool holdout) {
+  const FlightSamples& samples = residuals.samples();
+  const std::vector<double> before = residuals.values(start_.data());
+  const std::vector<double> after = residuals.values(values_.data());
+  std::vector<std::size_t> used;
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    if (residuals.mask()[i] == Mask::none) used.push_back(i);
+  }
+  const auto training = static_cast<std::size_t>(
+      std::llround((holdout ? 0.0 : options_.training_share) * static_cast<double>(used.size())));
+  std::vector<bool> first(after.size(), false);
+  std::vector<bool> second(after.size(), false);
+  std::vector<double> series(after.size(), nan);
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    (i < training ? first : second)[used[i]] = true;
+    series[used[i]] = after[used[i]];
+  }
+  const NoiseFloor noise =
+      noise_floor(series, stretches_of(series, samples.time, samples.step), samples.step);
+  const auto add = [&](const std::vector<bool>& part, bool held) {
+    result_.flights.push_back(
+        {samples.name, held, statistics_of(before, noise, part), statistics_of(after, noise, part)});
+  };
+  if (training > 0) add(first, false);
+  if (training < used.size()) add(second, true);
+}
+
+void Refit::compare_flights(FitFlights& flights) {
+  std::vector<std::vector<FlightFit>> parts(flights.count());
+  for (std::size_t number = 0; number < flights.count(); ++number) {
+    std::shared_ptr<const FlightSamples> samples = sources_[number].samples;
+    if (!samples) {
+      const Flight file(sources_[number].path, options_.time_stamp);
+      samples = std::make_shared<const FlightSamples>(read_samples(file, model_, reference_, options_.mask));
+      for (const std::string& note : samples->notes) result_.notes.push_back(samples->name + ": " + note);
+    }
+    compare_flight(Residuals(samples, model_, reference_, options_.mask), false);
+  }
+  for (const std::filesystem::path& path : options_.holdout) {
+    const Flight file(path, options_.time_stamp);
+    const auto samples =
+        std::make_shared<const FlightSamples>(read_samples(file, model_, reference_, options_.mask));
+    compare_flight(Residuals(samples, model_, reference_, options_.mask), true);
+  }
+}
+
+/// In words: which coefficients these flights do not determine, and what would.
+void Refit::explain_errors(const Eigen::MatrixXd& covariance, const std::vector<std::size_t>& wanted) {
+  const Eigen::Index size = covariance.rows();
+  std::vector<std::string> grave;
+  for (Eigen::Index a = 0; a < size; ++a) {
+    const ParameterState& state = parameters_[wanted[static_cast<std::size_t>(a)]];
+    const double error = std::sqrt(covariance(a, a));
+    if (!(state.typical > 0.0) || !(error > state.typical)) continue;
+    std::string partners;
+    for (Eigen::Index b = 0; b < size; ++b) {
+      const double correlation = covariance(a, b) / std::sqrt(covariance(a, a) * covariance(b, b));
+      if (a == b || !(std::abs(correlation) > 0.9)) continue;
+      partners += fmt::format("{}{} ({:+.3f})", partners.empty() ? "" : ", ",
+                              parameters_[wanted[static_cast<std::size_t>(b)]].name, correlation);
+    }
+    grave.push_back(
+        fmt::format("{} is not determined: its standard error {:.2g} is above the typical size {:.2g}{}{}; "
+                    "hold it with --fix {}, or fit a flight with: {}",
+                    state.name, error, state.typical, partners.empty() ? "" : ", and it goes with ", partners,
+                    state.name, state.manoeuvre));
+  }
+  if (grave.empty() && result_.condition_number > 1000.0) {
+    grave.push_back(
+        fmt::format("the coefficients are nearly collinear (condition number {:.0f}): their sum is known "
+                    "better than each; do not read meaning into one alone",
+                    result_.condition_number));
+  }
+  result_.notes.insert(result_.notes.begin(), grave.begin(), grave.end());
+}
+
+void Refit::write_models(const Eigen::MatrixXd& covariance, const std::vector<std::size_t>& fitted) {
+  const auto place_of = [&](std::size_t parameter) {
+    return static_cast<std::size_t>(std::find(fitted.begin(), fitted.end(), parameter) - fitted.begin());
+  };
+  const auto write = [&](ModelFile& file, std::size_t first) {
+    std::size_t p = first;
+    std::vector<std::size_t> inside;
+    for (std::size_t e = 0; e < file.model.effects.size(); ++e) {
+      ModelEffect& effect = file.model.effects[e];
+      if (file.fits.size() <= e) file.fits.resize(e + 1);
+      file.fits[e].resize(effect.parameters.size());
+      for (std::size_t i = 0; i < effect.parameters.size(); ++i, ++p) {
+        effect.parameters[i] = values_[as_index(p)];
+        ParameterFit& fit = file.fits[e][i];
+        const std::size_t place = place_of(p);
+        if (place == fitted.size()) continue;
+        fit.standard_error.reset();
+        const double error = result_.parameters[p].standard_error;
+        if (!std::isfinite(error)) continue;
+        fit.standard_error = error;
+        inside.push_back(place);
+      }
+    }
+    file.covariance = {};
+    for (const std::size_t a : inside) {
+      std::string name = parameters_[fitted[a]].name;
+      if (name.rfind("reference:", 0) == 0) name.erase(0, std::string("reference:").size());
+      file.covariance.parameters.push_back(std::move(name));
+      std::vector<double> row;
+      for (const std::size_t b : inside) row.push_back(covariance(as_index(a), as_index(b)));
+      file.covariance.matrix.push_back(std::move(row));
+    }
+    Provenance provenance;
+    provenance.emplace_back("program", ProvenanceValue{std::string("pcor " PCOR_VERSION)});
+    provenance.emplace_back(
+        "date", ProvenanceValue{utc_text(static_cast<double>(std::time(nullptr)), "%Y-%m-%dT%H:%M:%SZ")});
+    provenance.emplace_back("reference", ProvenanceValue{result_.reference_text});
+    provenance.emplace_back("loss", ProvenanceValue{std::string(name_of(options_.loss))});
+    ProvenanceList flights;
+    for (const FlightFit& flight : result_.flights) {
+      if (!flight.holdout) flights.emplace_back(ProvenanceValue{flight.flight});
+    }
+    provenance.emplace_back("flights", ProvenanceValue{std::move(flights)});
+    provenance.emplace_back("samples", ProvenanceValue{static_cast<std::int64_t>(result_.samples)});
+    Provenance masks;
+    for (std::size_t m = 1; m < mask_count; ++m) {
+      if (result_.masks[m] > 0)
+        masks.emplace_back(std::string(mask_facts[m].name),
+                           ProvenanceValue{static_cast<std::int64_t>(result_.masks[m])});
+    }
+    provenance.emplace_back("samples_not_used", ProvenanceValue{std::move(masks)});
+    provenance.emplace_back("rms_hpa", ProvenanceValue{result_.rms});
+    provenance.emplace_back("r2", ProvenanceValue{result_.r_squared});
+    file.provenance = std::move(provenance);
+    LawFacts law;
+    law.source = fmt::format("refit by pcor to {}{}", result_.reference_text,
+                             file.law.source.empty() ? "" : "; before: " + file.law.source);
+    law.rms_hpa = result_.rms;
+    file.law = std::move(law);
+  };
+  result_.model = model_;
+  write(result_.model, 0);
+  if (options_.fit_reference) {
+    result_.reference = *reference_.system;
+    write(*result_.reference, own_parameters_);
+  }
+}
+
+RefitResult Refit::run() {
+  if (sources_.empty()) throw Error("no flight to fit; give at least one");
+  if (options_.fit_reference && reference_.kind != Reference::Kind::static_system) {
+    throw Error(
+        "only a static system can be fitted together with the model; give --reference static:OTHER.toml");
+  }
+  if (!(options_.training_share > 0.0 && options_.training_share <= 1.0)) {
+    throw Error("the share of samples that is fitted has to be above 0 and at most 1");
+  }
+  list_parameters();
+  for (const ParameterState& state : parameters_) {
+    if (!(state.bounds.lower < state.bounds.upper)) {
+      throw Error(fmt::format("{}: its bounds [{}, {}] leave nothing; give them in order", state.name,
+                              state.bounds.lower, state.bounds.upper));
+    }
+  }
+  const std::vector<std::vector<std::size_t>> stage_parameters = stages();
+  result_.reference_text = reference_.description();
+
+  std::vector<std::size_t> fitted;
+  std::vector<int> stage_of(parameters_.size(), 0);
+  std::vector<bool> at_bound(parameters_.size(), false);
+  Eigen::MatrixXd covariances(0, 0);
+  Solution solution;
+  for (std::size_t s = 0; s < stage_parameters.size(); ++s) {
+    const bool last = s + 1 == stage_parameters.size();
+    if (!last) {
+      FitSetup setup = setup_for(stage_parameters[s]);
+      setup.regimes = options_.stages[s].regimes;
+      setup.with_offsets = true;
+      FitFlights flights(sources_, setup);
+      if (start_.size() == 0) start_ = values_ = flights.start();
+      solution = solve(flights, setup);
+      require_rank(parameter_factor(flights.reduce(values_, solution.offsets, nullptr), setup.wanted.size()),
+                   setup.wanted);
+      const Eigen::MatrixXd own = covariance(flights, setup, solution, Eigen::MatrixXd(0, 0), 0);
+      const Eigen::Index before = covariances.rows();
+      Eigen::MatrixXd grown = Eigen::MatrixXd::Zero(before + own.rows(), before + own.rows());
+      grown.topLeftCorner(before, before) = covariances;
+      grown.bottomRightCorner(own.rows(), own.rows()) = own;
+      covariances = std::move(grown);
+    } else if (!stage_parameters[s].empty()) {
+      const FitSetup setup = setup_for(stage_parameters[s]);
+      FitFlights flights(sources_, setup);
+      if (start_.size() == 0) start_ = values_ = flights.start();
+      solution = solve(flights, setup);
+      result_.masks = flights.masks();
+    }
+    for (std::size_t k = 0; k < stage_parameters[s].size(); ++k) {
+      fitted.push_back(stage_parameters[s][k]);
+      stage_of[stage_parameters[s][k]] = static_cast<int>(s) + 1;
+      at_bound[stage_parameters[s][k]] = solution.at_bound[k];
+    }
+  }
+  // Everything that was fitted, over all samples: errors, what can be told apart, and what each effect does.
+  const FitSetup setup = setup_for(fitted);
+  FitFlights flights(sources_, setup);
+  flights.measure_noise(values_, Eigen::VectorXd());
+  if (stage_parameters.back().empty()) solution = {};
+  solution.deviation = flights.deviation(values_, Eigen::VectorXd());
+  solution.offsets = Eigen::VectorXd();
+  result_.masks = flights.masks();
+  require_rank(parameter_factor(flights.reduce(values_, Eigen::VectorXd(), nullptr), fitted.size()), fitted);
+  const std::size_t earlier = fitted.size() - stage_parameters.back().size();
+  const Eigen::MatrixXd errors = covariance(flights, setup, solution, covariances, earlier);
+
+  const FitSums sums = sums_at(flights, values_, solution.deviation);
+  result_.samples = sums.samples;
+  result_.rms = sums.rms();
+  result_.rms_over_pressure = std::sqrt(sums.relative_squares / static_cast<double>(sums.samples));
+  result_.r_squared = sums.r_squared();
+  result_.outliers = sums.outliers;
+  result_.rms_before = sums_at(flights, start_, solution.deviation).rms();
+  find_omissions(flights, setup, solution);
+  compare_flights(flights);
+  double noise = 0.0;
+  for (const FlightFit& flight : result_.flights) {
+    if (!flight.holdout)
+      noise += flight.after.noise_rms * flight.after.noise_rms * static_cast<double>(flight.after.samples);
+  }
+  result_.noise_rms = std::sqrt(noise / static_cast<double>(result_.samples));
+  result_.bulk_rms = sums.bulk_rms();
+
+  for (std::size_t p = 0; p < parameters_.size(); ++p) {
+    FittedParameter parameter;
+    parameter.name = parameters_[p].name;
+    parameter.unit = parameters_[p].unit;
+    parameter.start = start_[as_index(p)];
+    parameter.value = values_[as_index(p)];
+    parameter.standard_error = nan;
+    parameter.stage = stage_of[p];
+    parameter.fitted = parameter.stage > 0;
+    parameter.at_bound = at_bound[p];
+    const auto place = std::find(fitted.begin(), fitted.end(), p);
+    if (place != fitted.end() && !parameter.at_bound) {
+      const auto k = as_index(static_cast<std::size_t>(place - fitted.begin()));
+      parameter.standard_error = std::sqrt(errors(k, k));
+    }
+    if (parameter.at_bound) {
+      result_.notes.push_back(
+          fmt::format("{} is held at its bound {:.6g}: the flights want it beyond; if that bound is "
+                      "not meant, widen it in the model file",
+                      parameter.name, parameter.value));
+    }
+    result_.parameters.push_back(std::move(parameter));
+  }
+  for (Eigen::Index a = 0; a < errors.rows(); ++a) {
+    result_.covariance_names.push_back(parameters_[fitted[static_cast<std::size_t>(a)]].name);
+    result_.covariance.emplace_back();
+    for (Eigen::Index b = 0; b < errors.cols(); ++b) result_.covariance.back().push_back(errors(a, b));
+  }
+  explain_errors(errors, fitted);
+  if (uses_prior()) {
+    result_.notes.push_back(
+        "every coefficient was drawn to its starting value by the typical size of its effect: the "
+        "flights alone do not fix each");
+  }
+  write_models(errors, fitted);
+  return std::move(result_);
+}
+
+}  // namespace
+
+std::string_view name_of(Loss loss) {
+  switch (loss) {
+    case Loss::tukey:
+      return "tukey";
+    case Loss::huber:
+      return "huber";
+    case Loss::soft_l1:
+      return "soft-l1";
+    case Loss::cauchy:
+      return "cauchy";
+    case Loss::none:
+      return "none";
+  }
+  return "none";
+}
+
+std::optional<Loss> loss_named(std::string_view name) {
+  for (const Loss loss : {Loss::tukey, Loss::huber, Loss::soft_l1, Loss::cauchy, Loss::none}) {
+    if (name_of(loss) == name) return loss;
+  }
+  return std::nullopt;
+}
+
+RefitResult refit(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
+                  const Reference& reference, const RefitOptions& options) {
+  std::vector<FlightSource> sources;
+  for (const std::filesystem::path& path : flights) sources.push_back({path, nullptr});
+  return Refit(std::move(sources), model, reference, options).run();
+}
+
+RefitResult refit(const std::vector<std::shared_ptr<const FlightSamples>>& flights, const ModelFile& model,
+                  const Reference& reference, const RefitOptions& options) {
+  std::vector<FlightSource> sources;
+  for (const std::shared_ptr<const FlightSamples>& samples : flights) sources.push_back({{}, samples});
+  return Refit(std::move(sources), model, reference, options).run();
+}
+
+}  // namespace pcor

@@ -1,0 +1,189 @@
+// Colours, scales, ticks and the frame of a plot.
+
+// Series after Okabe and Ito, whose colours the colour-blind can tell apart; lighter on a dark page.
+const palettes = {
+  light: {
+    paper: '#ffffff', ink: '#1c2126', quiet: '#5c6670', grid: '#e8eaec', frame: '#9aa3ab',
+    series: ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#b8860b', '#56b4e9'],
+    regimes: ['#56b4e9', '#8a9299', '#e69f00', '#009e73', '#cc79a7', '#0072b2'],
+    diverging: ['#053f73', '#2f7ebc', '#d2d4d3', '#e08214', '#8c3a04'],
+    sequential: ['#440154', '#3b528b', '#21918c', '#5ec962', '#d9c71e'],
+  },
+  dark: {
+    paper: '#171b1f', ink: '#e6e9ec', quiet: '#9ba5ae', grid: '#282e34', frame: '#5b656e',
+    series: ['#5cb3f0', '#f08a4b', '#35c498', '#e39cc4', '#e0b440', '#a8d8f5'],
+    regimes: ['#56b4e9', '#8a9299', '#e69f00', '#35c498', '#e39cc4', '#5cb3f0'],
+    diverging: ['#9fd4ff', '#3f8fd0', '#4a5157', '#d98324', '#ffd29a'],
+    sequential: ['#7a5bb8', '#4f7fc4', '#2fa8a0', '#6fce70', '#f3e45a'],
+  },
+};
+
+// The colour at `part`, from 0 to 1, of colours at equal distances.
+function mixed(colours, part) {
+  const place = Math.min(Math.max(part, 0), 1) * (colours.length - 1);
+  const below = Math.min(Math.floor(place), colours.length - 2);
+  const channel = (colour, i) => parseInt(colour.slice(1 + 2 * i, 3 + 2 * i), 16);
+  const hex = [0, 1, 2].map((i) => {
+    const from = channel(colours[below], i), to = channel(colours[below + 1], i);
+    return Math.round(from + (to - from) * (place - below)).toString(16).padStart(2, '0');
+  });
+  return `#${hex.join('')}`;
+}
+
+function scale(from, to, begin, end) {
+  const factor = (end - begin) / (to - from);
+  return (value) => begin + (value - from) * factor;
+}
+
+// From the least to the greatest with a little room. Where a few values lie far out, the limits leave them out:
+// `beyond` is how many. `always` lies within.
+function limits(values, always = []) {
+  const sorted = Float64Array.from(values).sort();
+  const last = sorted.length - 1;
+  if (last < 0 && !always.length) return {from: 0, to: 1, beyond: 0};
+  let from = sorted[0] ?? Infinity, to = sorted[last] ?? -Infinity;
+  const low = sorted[Math.floor(0.005 * last)], high = sorted[Math.ceil(0.995 * last)];
+  if (to - from > 2.5 * (high - low) && high > low) {
+    from = Math.max(from, low - 0.25 * (high - low));
+    to = Math.min(to, high + 0.25 * (high - low));
+  }
+  from = Math.min(from, ...always);
+  to = Math.max(to, ...always);
+  const beyond = sorted.filter((value) => value < from || value > to).length;
+  const room = to > from ? 0.04 * (to - from) : Math.max(0.5 * Math.abs(to), 1e-3);
+  return {from: from - room, to: to + room, beyond};
+}
+
+function ticks(from, to, about) {
+  const raw = (to - from) / Math.max(about, 1);
+  const power = 10 ** Math.floor(Math.log10(raw));
+  const step = power * [1, 2, 5, 10].find((factor) => factor * power >= raw * 0.999);
+  const all = [];
+  for (let n = Math.ceil(from / step - 1e-9); n * step <= to + 1e-9 * step; ++n) all.push(n * step);
+  return {step, all};
+}
+
+// A number as exact as a step asks for, with a true minus.
+function number(value, step) {
+  if (!Number.isFinite(value)) return '–';
+  const large = Math.max(Math.abs(value), step);
+  if (large >= 1e6 || step < 1e-5) return value === 0 ? '0' : value.toExponential(1).replaceAll('-', '−');
+  const digits = Math.max(0, Math.ceil(-Math.log10(step) - 1e-6));
+  const text = value.toFixed(digits);
+  return (Number(text) === 0 ? text.replace('-', '') : text).replace('-', '−');
+}
+
+// A number with three significant digits.
+function brief(value) {
+  const step = value === 0 || !Number.isFinite(value) ? 1 : 10 ** (Math.floor(Math.log10(Math.abs(value))) - 2);
+  return number(value, Math.min(step, 1));
+}
+
+// A mean as exact as its error is known.
+function withError(mean, error) {
+  const step = error > 0 ? 10 ** Math.min(Math.floor(Math.log10(error)) - 1, 0) : 1e-3;
+  return `${number(mean, step)} ± ${number(error, step)}`;
+}
+
+const countText = (count) => count.toLocaleString('en-GB').replaceAll(',', '\u202f');
+
+const plural = (count, one) => `${countText(count)} ${one}${count === 1 ? '' : 's'}`;
+
+function clock(time, seconds = true) {
+  return new Date(Math.round(time * 1000)).toISOString().slice(11, seconds ? 19 : 16);
+}
+
+const day = (time) => new Date(time * 1000).toISOString().slice(0, 10);
+
+const timeSteps = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 10800, 21600, 43200, 86400];
+
+// Round times of day on the time axis, flight by flight.
+function timeTicks(samples, [from, to], about) {
+  const step = timeSteps.find((one) => one * about >= to - from) ?? 86400;
+  const all = [];
+  for (const {start, offset, duration} of samples.flights) {
+    const end = start + duration;
+    for (let time = Math.ceil(start / step) * step; time <= end; time += step) {
+      const place = offset + time - start;
+      if (place >= from && place <= to) all.push({place, label: clock(time, step < 60)});
+    }
+  }
+  return all;
+}
+
+const fontSize = 11.5;
+
+const margin = 68;  // at the left, for the numbers and what the axis says
+
+const small = (theme, align = 'start') => ({fill: theme.quiet, size: fontSize, align});
+
+// Where the plot lies in a picture: margins for the axes, and for a legend of `lines`.
+function plotBox(width, height, {left = margin, right = 14, top = 12, bottom = 44} = {}) {
+  return {x: left, y: top, width: width - left - right, height: height - top - bottom};
+}
+
+function numberTicks(from, to, length, distance) {
+  const {step, all} = ticks(from, to, length / distance);
+  return all.map((value) => ({value, label: number(value, step)}));
+}
+
+// The grid and the numbers of the vertical axis; what it says is turned along it.
+function verticalAxis(pen, box, y, {from, to}, label, theme) {
+  for (const tick of numberTicks(from, to, box.height, 30)) {
+    const at = Math.round(y(tick.value)) + 0.5;
+    pen.lines([[box.x, at, box.x + box.width, at]], theme.grid);
+    pen.text(box.x - 7, at + 4, tick.label, small(theme, 'end'));
+  }
+  pen.text(13, box.y + box.height / 2, shortened(label, box.height + 24, fontSize), {...small(theme, 'middle'), turn: -90});
+}
+
+function horizontalTicks(pen, box, placed, label, theme) {
+  const base = box.y + box.height;
+  for (const {at, label: words} of placed) {
+    const x = Math.round(at) + 0.5;
+    pen.lines([[x, box.y, x, base]], theme.grid);
+    pen.text(x, base + 17, words, small(theme, 'middle'));
+  }
+  pen.text(box.x + box.width / 2, base + 36, label, small(theme, 'middle'));
+}
+
+function horizontalAxis(pen, box, x, {from, to}, label, theme) {
+  const placed = numberTicks(from, to, box.width, 76).map((tick) => ({at: x(tick.value), label: tick.label}));
+  horizontalTicks(pen, box, placed, label, theme);
+}
+
+// Lines along the left and the bottom of the plot, and along zero.
+function frame(pen, box, theme, zero) {
+  const base = Math.round(box.y + box.height) + 0.5;
+  pen.lines([[box.x, base, box.x + box.width, base]], theme.frame);
+  if (zero > box.y && zero < base) pen.lines([[box.x, zero, box.x + box.width, zero]], theme.frame, 1, [4, 3]);
+}
+
+function shortened(words, width, size) {
+  if (textWidth(words, size) <= width) return words;
+  let end = words.length;
+  while (end > 1 && textWidth(`${words.slice(0, end)}…`, size) > width) --end;
+  return `${words.slice(0, end)}…`;
+}
+
+// Marks and names in lines above the plot; returns the height they take.
+function legend(pen, entries, left, right, theme) {
+  let x = left, y = 13;
+  for (const {label, colour, dash} of entries) {
+    const width = 24 + textWidth(label, fontSize);
+    if (x > left && x + width > right) { x = left; y += 17; }
+    if (pen) {
+      pen.lines([[x, y - 4, x + 16, y - 4]], colour, 2.5, dash);
+      pen.text(x + 21, y, label, {...small(theme), fill: theme.ink});
+    }
+    x += width + 16;
+  }
+  return y + 9;
+}
+
+// Says at the lower right of the plot how many samples lie outside of it.
+function tellBeyond(pen, box, beyond, theme) {
+  if (beyond > 0)
+    pen.text(box.x + box.width - 4, box.y + box.height - 6, `${countText(beyond)} beyond the axis`,
+      {...small(theme, 'end'), size: 10.5});
+}

@@ -1,0 +1,337 @@
+// The pictures. Each draws an item with a pen on width x height and returns what it drew:
+// {points: samples drawn, plot: where, alternative: a sentence, table: {headers, rows}}.
+
+const columnsOf = (samples, names) => names.map((name) => samples.columns.get(name));
+
+const listText = (labels) => labels.length > 1 ? `${labels.slice(0, -1).join(', ')} and ${labels.at(-1)}` : labels[0];
+
+// What an axis says of several columns: the words given or the titles, and the unit if they share it.
+function sharedLabel(columns, words) {
+  const units = new Set(columns.map(({unit}) => unit));
+  const unit = units.size === 1 && columns[0].unit ? ` (${columns[0].unit})` : '';
+  return `${words || columns.map(({title}) => title).join(', ')}${unit}`;
+}
+
+function statisticsTable(samples, columns) {
+  return {
+    headers: ['', 'Samples', 'Least', 'Mean', 'Greatest', 'Rms'],
+    rows: columns.map((column) => {
+      const {count, least, mean, greatest, rms} = statistics(column.values, samples.indices([column]));
+      return [column.label, countText(count), ...[least, mean, greatest, rms].map(brief)];
+    }),
+  };
+}
+
+// Where samples lie in a picture: x, y, x, y, ...
+function places(indices, xs, ys, x, y) {
+  const xy = new Float64Array(2 * indices.length);
+  indices.forEach((i, n) => {
+    xy[2 * n] = x(xs[i]);
+    xy[2 * n + 1] = y(ys[i]);
+  });
+  return xy;
+}
+
+const cover = (pen, width, height, theme) => pen.rect(0, 0, width, height, theme.paper);
+
+function shadeIntervals(pen, box, x, samples, theme) {
+  const names = [...samples.regimes.keys()];
+  for (const {name, begin, end} of samples.intervals) {
+    const left = Math.floor(Math.max(x(begin), box.x)), right = Math.ceil(Math.min(x(end), box.x + box.width));
+    if (right <= left) continue;
+    const chosen = !samples.names.size || samples.names.has(name);
+    const colour = theme.regimes[names.indexOf(name) % theme.regimes.length];
+    pen.rect(left, box.y, right - left, box.height, colour, chosen ? 0.08 : 0.02);
+    pen.rect(left, box.y, right - left, 4, colour, chosen ? 0.8 : 0.2);
+    if (textWidth(name, 10) < right - left - 6)
+      pen.text((left + right) / 2, box.y + 15, name, {fill: theme.quiet, size: 10, align: 'middle'});
+  }
+}
+
+// The lines of a column: within a pixel only the first, least, greatest and last value.
+function linePaths(samples, values, x, y) {
+  const paths = [];
+  let path = null, pixel = null;
+  const flush = () => {
+    if (!pixel) return;
+    const inOrder = [pixel.first, ...[pixel.least, pixel.greatest].sort((a, b) => a - b), pixel.last];
+    inOrder.forEach((i, k) => { if (k === 0 || i !== inOrder[k - 1]) path.push(x(samples.position[i]), y(values[i])); });
+    pixel = null;
+  };
+  for (let i = 0; i < samples.count; ++i) {
+    if (samples.breaks[i] || !samples.selected[i] || Number.isNaN(values[i])) {
+      flush();
+      path = null;
+      if (!samples.selected[i] || Number.isNaN(values[i])) continue;
+    }
+    if (!path) paths.push(path = []);
+    const place = Math.floor(x(samples.position[i]));
+    if (pixel && pixel.place !== place) flush();
+    pixel ??= {place, first: i, least: i, greatest: i};
+    if (values[i] < values[pixel.least]) pixel.least = i;
+    if (values[i] > values[pixel.greatest]) pixel.greatest = i;
+    pixel.last = i;
+  }
+  flush();
+  // A sample alone is a short stroke.
+  return paths.map((one) => one.length > 2 ? one : [one[0] - 1.5, one[1], one[0] + 1.5, one[1]]);
+}
+
+function drawTime(pen, width, height, item, samples, theme) {
+  const columns = columnsOf(samples, item.columns);
+  const entries = columns.map(({title}, i) => ({label: title, colour: theme.series[i % theme.series.length]}));
+  const key = columns.length > 1;
+  cover(pen, width, height, theme);
+  const named = samples.flights.length > 1 ? 15 : 0;
+  const top = (key ? legend(pen, entries, margin, width - 14, theme) : 10) + named;
+  const box = plotBox(width, height, {top});
+  const [from, to] = samples.view;
+  const x = scale(from, to, box.x, box.x + box.width);
+  const found = columns.map((column) => samples.indices([column]));
+  const shown = columns.flatMap(({values}, c) => found[c].map((i) => values[i]));
+  const range = limits(shown);
+  range.to += samples.intervals.length ? 0.09 * (range.to - range.from) : 0;
+  const y = scale(range.from, range.to, box.y + box.height, box.y);
+
+  verticalAxis(pen, box, y, range, sharedLabel(columns, item.axis), theme);
+  const placed = timeTicks(samples, samples.view, box.width / 64).map(({place, label}) => ({at: x(place), label}));
+  const begin = samples.at(from).time, end = samples.at(to).time;
+  horizontalTicks(pen, box, placed, `UTC, ${day(begin)}${day(end) === day(begin) ? '' : ` to ${day(end)}`}`, theme);
+  shadeIntervals(pen, box, x, samples, theme);
+  frame(pen, box, theme, shown.some((value) => value < 0) ? y(0) : NaN);
+  if (named)
+    for (const flight of samples.flights) {
+      const left = Math.max(x(flight.offset), box.x);
+      const right = Math.min(x(flight.offset + flight.duration), box.x + box.width);
+      if (textWidth(flight.name, fontSize) < right - left) pen.text(left + 2, box.y - 5, flight.name, small(theme));
+    }
+  pen.clip(box, () => columns.forEach(({values}, c) => {
+    pen.lines(linePaths(samples, values, x, y), theme.series[c % theme.series.length], 1.25);
+  }));
+  tellBeyond(pen, box, range.beyond, theme);
+  return {
+    points: found.reduce((sum, indices) => sum + indices.length, 0),
+    plot: box,
+    alternative: `Lines over time, from ${clock(begin)} to ${clock(end)} UTC: ${listText(columns.map(({label}) => label))}`,
+    table: statisticsTable(samples, columns),
+  };
+}
+
+// The mean of y in bins of x, with its standard error.
+function binned(xs, ys, indices, {from, to}, bins, samplesPerIndependent) {
+  const all = Array.from({length: bins}, (_, b) =>
+    ({middle: from + (b + 0.5) * (to - from) / bins, count: 0, sum: 0, squares: 0}));
+  for (const i of indices) {
+    const bin = all[Math.min(Math.floor((xs[i] - from) / (to - from) * bins), bins - 1)];
+    if (!bin) continue;
+    bin.count += 1;
+    bin.sum += ys[i];
+    bin.squares += ys[i] * ys[i];
+  }
+  return all.map(({middle, count, sum, squares}) => {
+    const mean = sum / count;
+    const variance = Math.max(squares / count - mean * mean, 0) * count / Math.max(count - 1, 1);
+    return {middle, count, mean, error: Math.sqrt(variance / Math.max(count / samplesPerIndependent, 1))};
+  });
+}
+
+const fewest = 5;  // samples in a bin that is shown
+
+// The bins that are shown, in runs without a gap.
+function neighbours(bins) {
+  const runs = [[]];
+  for (const bin of bins) {
+    if (bin.count >= fewest) runs.at(-1).push(bin);
+    else runs.push([]);
+  }
+  return runs.filter((run) => run.length);
+}
+
+function drawBinned(pen, width, height, item, samples, theme) {
+  const columns = columnsOf(samples, item.columns);
+  const abscissa = samples.columns.get(item.choice ?? item.choices[0]);
+  const found = columns.map((column) => samples.indices([abscissa, column]));
+  const entries = columns.map(({title}, i) => ({label: title, colour: theme.series[i % theme.series.length]}));
+  cover(pen, width, height, theme);
+  const box = plotBox(width, height, {top: legend(pen, entries, margin, width - 14, theme)});
+  const across = limits(found.flatMap((indices) => indices.map((i) => abscissa.values[i])));
+  const bins = columns.map(({values}, c) =>
+    binned(abscissa.values, values, found[c], across, item.bins, item.samplesPerIndependent));
+  const shown = bins.map((all) => all.filter(({count}) => count >= fewest));
+  const up = limits(columns.flatMap(({values}, c) => found[c].map((i) => values[i])),
+    shown.flat().flatMap(({mean, error}) => [mean - error, mean + error]));
+  const x = scale(across.from, across.to, box.x, box.x + box.width);
+  const y = scale(up.from, up.to, box.y + box.height, box.y);
+  verticalAxis(pen, box, y, up, sharedLabel(columns, item.axis), theme);
+  horizontalAxis(pen, box, x, across, abscissa.label, theme);
+  frame(pen, box, theme, y(0));
+  pen.clip(box, () => {
+    columns.forEach(({values}, c) =>
+      pen.dots(places(found[c], abscissa.values, values, x, y), 2, entries[c].colour, 0.2));
+    shown.forEach((all, c) => {
+      const aside = (c - (columns.length - 1) / 2) * 5;
+      const marks = all.flatMap(({middle, mean}) => [x(middle) + aside, y(mean)]);
+      const paths = neighbours(bins[c]).map((run) => run.flatMap(({middle, mean}) => [x(middle) + aside, y(mean)]));
+      const bars = all.map(({middle, mean, error}) =>
+        [x(middle) + aside, y(mean - error), x(middle) + aside, y(mean + error)]);
+      const caps = all.flatMap(({middle, mean, error}) => [mean - error, mean + error].map((end) =>
+        [x(middle) + aside - 3.5, y(end), x(middle) + aside + 3.5, y(end)]));
+      pen.lines(paths, theme.paper, 4);
+      pen.lines([...bars, ...caps], theme.paper, 3.5);
+      pen.lines(paths, entries[c].colour, 1.75);
+      pen.lines([...bars, ...caps], entries[c].colour, 1.5);
+      pen.dots(marks, 7, entries[c].colour);
+    });
+  });
+  tellBeyond(pen, box, across.beyond + up.beyond, theme);
+  return {
+    points: found.reduce((sum, indices) => sum + indices.length, 0),
+    plot: box,
+    alternative: `Mean and standard error of ${listText(columns.map(({label}) => label))} in bins of ${abscissa.label}`,
+    table: {
+      headers: [abscissa.label, ...columns.flatMap(({title}) => ['Samples', title])],
+      rows: bins[0].map(({middle}, b) => [brief(middle), ...bins.flatMap((all) => {
+        const {count, mean, error} = all[b];
+        return [countText(count), count >= fewest ? withError(mean, error) : '–'];
+      })]),
+    },
+  };
+}
+
+const levels = 48;  // of colour
+
+function colourBar(pen, box, colours, {from, to}, label, theme) {
+  const x = box.x + box.width + 14, width = 11;
+  const part = box.height / levels;
+  for (let i = 0; i < levels; ++i)
+    pen.rect(x, box.y + box.height - (i + 1) * part, width, part + 0.5, mixed(colours, i / (levels - 1)));
+  const y = scale(from, to, box.y + box.height, box.y);
+  for (const tick of numberTicks(from, to, box.height, 30))
+    pen.text(x + width + 5, y(tick.value) + 4, tick.label, small(theme));
+  pen.text(x + width + 50, box.y + box.height / 2, label, {...small(theme, 'middle'), turn: -90});
+}
+
+function drawPlane(pen, width, height, item, samples, theme) {
+  const [across, up, shade] = columnsOf(samples, [item.x, item.y, item.colour]);
+  const found = samples.indices([across, up, shade]);
+  cover(pen, width, height, theme);
+  const box = plotBox(width, height, {right: 84});
+  const xs = limits(found.map((i) => across.values[i])), ys = limits(found.map((i) => up.values[i]));
+  const sorted = Float64Array.from(found, (i) => item.diverging ? Math.abs(shade.values[i]) : shade.values[i]).sort();
+  const greatest = sorted[Math.floor(0.99 * (sorted.length - 1))] || 1;
+  const range = item.diverging ? {from: -greatest, to: greatest} : limits(sorted);
+  const colours = item.diverging ? theme.diverging : theme.sequential;
+  const x = scale(xs.from, xs.to, box.x, box.x + box.width);
+  const [bottom, top] = item.reverseY ? [box.y, box.y + box.height] : [box.y + box.height, box.y];
+  const y = scale(ys.from, ys.to, bottom, top);
+  verticalAxis(pen, box, y, ys, up.label, theme);
+  horizontalAxis(pen, box, x, xs, across.label, theme);
+  frame(pen, box, theme, NaN);
+  const dots = Array.from({length: levels}, () => []);
+  const level = scale(range.from, range.to, 0, levels - 1);
+  for (const i of found)
+    dots[Math.min(Math.max(Math.round(level(shade.values[i])), 0), levels - 1)].push(x(across.values[i]), y(up.values[i]));
+  // The strongest colours of either sign last, on top.
+  const order = [...dots.keys()];
+  if (item.diverging) order.sort((a, b) => Math.abs(a - levels / 2 + 0.5) - Math.abs(b - levels / 2 + 0.5));
+  pen.clip(box, () => { for (const l of order) pen.dots(dots[l], 3, mixed(colours, l / (levels - 1))); });
+  colourBar(pen, box, colours, range, shade.label, theme);
+  tellBeyond(pen, box, xs.beyond + ys.beyond, theme);
+  return {
+    points: found.length,
+    plot: box,
+    alternative: `${shade.label} by colour, in the plane of ${across.label} and ${up.label}`,
+    table: statisticsTable(samples, [across, up, shade]),
+  };
+}
+
+function drawPair(pen, width, height, item, samples, theme) {
+  const [across, up] = columnsOf(samples, [item.x, item.y]);
+  const found = samples.indices([across, up]);
+  const lines = item.lines.length ? item.lines : [{slope: 1, offset: 0, label: 'y = x'}];
+  const entries = lines.map(({label}, i) =>
+    ({label, colour: theme.series[(i + 1) % theme.series.length], dash: i ? [6, 4] : []}));
+  cover(pen, width, height, theme);
+  const whole = plotBox(width, height, {top: legend(pen, entries, margin, width - 14, theme)});
+  const upper = {...whole, height: Math.round(0.6 * whole.height)};
+  const lower = {...whole, y: upper.y + upper.height + 16, height: whole.height - upper.height - 16};
+  const xs = limits(found.map((i) => across.values[i])), ys = limits(found.map((i) => up.values[i]));
+  const differences = up.values.map((value, i) => value - lines[0].offset - lines[0].slope * across.values[i]);
+  const ds = limits(found.map((i) => differences[i]));
+  const x = scale(xs.from, xs.to, whole.x, whole.x + whole.width);
+  const y = scale(ys.from, ys.to, upper.y + upper.height, upper.y);
+  const d = scale(ds.from, ds.to, lower.y + lower.height, lower.y);
+  const sameUnit = up.unit ? ` (${up.unit})` : '';
+  verticalAxis(pen, upper, y, ys, up.label, theme);
+  for (const tick of numberTicks(xs.from, xs.to, upper.width, 76)) {
+    const at = Math.round(x(tick.value)) + 0.5;
+    pen.lines([[at, upper.y, at, upper.y + upper.height]], theme.grid);
+  }
+  frame(pen, upper, theme, NaN);
+  pen.clip(upper, () => {
+    pen.dots(places(found, across.values, up.values, x, y), 2.5, theme.series[0], 0.5);
+    lines.forEach(({slope, offset}, i) => {
+      const path = [xs.from, xs.to].flatMap((value) => [x(value), y(offset + slope * value)]);
+      pen.lines([path], entries[i].colour, 1.75, entries[i].dash);
+    });
+  });
+  verticalAxis(pen, lower, d, ds, `Difference${sameUnit}`, theme);
+  horizontalAxis(pen, lower, x, xs, across.label, theme);
+  frame(pen, lower, theme, d(0));
+  pen.clip(lower, () => pen.dots(places(found, across.values, differences, x, d), 2, theme.series[0], 0.35));
+  tellBeyond(pen, lower, ds.beyond, theme);
+  const residual = statistics(differences, found);
+  return {
+    points: found.length,
+    plot: whole,
+    alternative: `${up.label} against ${across.label}, and below it the difference from ${lines[0].label}: ` +
+        `bias ${brief(residual.mean)}, rms ${brief(residual.rms)}${up.unit ? ` ${up.unit}` : ''}`,
+    table: {
+      headers: ['Line', 'Slope', 'Offset', 'Bias', 'Rms'],
+      rows: lines.map(({slope, offset, label}) => {
+        const {mean, rms} = statistics(up.values.map((value, i) => value - offset - slope * across.values[i]), found);
+        return [label, number(slope, 1e-5), brief(offset), brief(mean), brief(rms)];
+      }),
+    },
+  };
+}
+
+function drawBars(pen, width, height, item, samples, theme) {
+  const bars = item.bars.map(({label, value, error}) => ({label, value: value ?? NaN, error: error ?? 0}));
+  const finite = bars.filter(({value}) => Number.isFinite(value));
+  cover(pen, width, height, theme);
+  const longest = Math.max(...bars.map(({label}) => textWidth(label, fontSize)));
+  const left = Math.min(longest + 22, 0.42 * width);
+  const box = plotBox(width, height, {left, right: 62, top: 8});
+  const range = limits(finite.flatMap(({value, error}) => [value - error, value + error]), [0]);
+  if (finite.every(({value, error}) => value - error >= 0)) range.from = 0;
+  const x = scale(range.from, range.to, box.x, box.x + box.width);
+  horizontalAxis(pen, box, x, range, `${item.axis}${item.unit ? ` (${item.unit})` : ''}`.trim(), theme);
+  const room = box.height / bars.length, thick = Math.min(0.5 * room, 18);
+  bars.forEach(({label, value, error}, i) => {
+    const middle = box.y + (i + 0.5) * room;
+    pen.text(box.x - 9, middle + 4, shortened(label, left - 18, fontSize), {...small(theme, 'end'), fill: theme.ink});
+    if (!Number.isFinite(value)) return;
+    const [begin, end] = [x(0), x(value)].sort((a, b) => a - b);
+    pen.rect(begin, middle - thick / 2, Math.max(end - begin, 1), thick, theme.series[0]);
+    if (error > 0) {
+      const [low, high] = [x(value - error), x(value + error)];
+      const caps = [low, high].map((end) => [end, middle - 4, end, middle + 4]);
+      pen.lines([[low, middle, high, middle], ...caps], theme.ink, 1.25);
+    }
+    pen.text(Math.max(x(value + error), x(0)) + 7, middle + 4, brief(value), small(theme));
+  });
+  pen.lines([[Math.round(x(0)) + 0.5, box.y, Math.round(x(0)) + 0.5, box.y + box.height]], theme.frame);
+  const unit = item.unit ? ` (${item.unit})` : '';
+  return {
+    points: finite.length,
+    plot: box,
+    alternative: `Bars of ${item.axis || 'values'}${unit}: ${plural(bars.length, 'bar')}`,
+    table: {
+      headers: ['', `${item.axis || 'Value'}${unit}`, 'Error'],
+      rows: bars.map(({label, value, error}) => [label, brief(value), error ? brief(error) : '–']),
+    },
+  };
+}
+
+const pictures = {time: drawTime, binned: drawBinned, plane: drawPlane, pair: drawPair, bars: drawBars};

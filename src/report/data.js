@@ -1,0 +1,134 @@
+'use strict';
+
+// The samples of the report, and which of them are selected.
+
+function decode(text, Numbers) {
+  const letters = atob(text);
+  const bytes = new Uint8Array(letters.length);
+  for (let i = 0; i < bytes.length; ++i) bytes[i] = letters.charCodeAt(i);
+  return new Numbers(bytes.buffer);
+}
+
+function decodeColumn({name, title, unit, least, step, values}) {
+  const missing = 65535;
+  const quantised = decode(values, Uint16Array);
+  const numbers = new Float64Array(quantised.length);
+  for (let i = 0; i < numbers.length; ++i) numbers[i] = quantised[i] === missing ? NaN : least + quantised[i] * step;
+  return {name, title, values: numbers, label: unit ? `${title} (${unit})` : title, unit};
+}
+
+function median(numbers) {
+  return numbers.slice().sort()[numbers.length >> 1];
+}
+
+// Flights stand one after another on the time axis: `position` is in seconds along it, with room between flights.
+class Samples {
+  constructor(data) {
+    this.columns = new Map(data.columns.map((column) => [column.name, decodeColumn(column)]));
+    this.flights = [];
+    const times = data.flights.map((flight) => decode(flight.milliseconds, Uint32Array));
+    this.count = times.reduce((sum, flight) => sum + flight.length, 0);
+    this.time = new Float64Array(this.count);
+    this.position = new Float64Array(this.count);
+    this.breaks = new Uint8Array(this.count);  // 1: no line leads here from the sample before
+    const room = 0.02 * times.reduce((sum, flight) => sum + flight[flight.length - 1] / 1000, 0);
+    let i = 0, offset = 0;
+    data.flights.forEach(({name, start}, number) => {
+      const after = times[number];
+      const steps = new Float64Array(after.length - 1);
+      for (let j = 0; j < steps.length; ++j) steps[j] = after[j + 1] - after[j];
+      const longest = steps.length ? 3 * median(steps) : 0;
+      const flight = {name, start, offset, first: i, duration: after[after.length - 1] / 1000};
+      for (let j = 0; j < after.length; ++j, ++i) {
+        this.time[i] = start + after[j] / 1000;
+        this.position[i] = offset + after[j] / 1000;
+        this.breaks[i] = j === 0 || steps[j - 1] > longest ? 1 : 0;
+      }
+      flight.end = i;
+      this.flights.push(flight);
+      offset += flight.duration + room;
+    });
+    this.length = Math.max(offset - room, 1e-3);
+    this.setIntervals(data.intervals);
+    this.clear();
+  }
+
+  setIntervals(intervals) {
+    this.intervals = [];  // on the time axis, once for each flight that they meet
+    this.regimes = new Map();  // name to the samples in it, 1 or 0
+    for (const {name, begin, end} of intervals) {
+      if (!this.regimes.has(name)) this.regimes.set(name, new Uint8Array(this.count));
+      for (const flight of this.flights) {
+        const from = Math.max(begin - flight.start, 0), to = Math.min(end - flight.start, flight.duration);
+        if (to < from) continue;
+        this.intervals.push({name, begin: flight.offset + from, end: flight.offset + to});
+        for (let i = flight.first; i < flight.end; ++i)
+          if (this.time[i] >= begin && this.time[i] <= end) this.regimes.get(name)[i] = 1;
+      }
+    }
+  }
+
+  // The flight and its time (s since 1970) at a place on the time axis.
+  at(position) {
+    const flight = this.flights.findLast(({offset}) => offset <= position) ?? this.flights[0];
+    return {flight, time: flight.start + Math.min(Math.max(position - flight.offset, 0), flight.duration)};
+  }
+
+  get view() { return this.range ?? [0, this.length]; }
+
+  // Selects by place on the time axis and by names of intervals; null and nothing are all.
+  choose(range, names = new Set()) {
+    this.range = range;
+    this.names = names;
+    this.selected = new Uint8Array(this.count).fill(1);
+    if (names.size) {
+      this.selected.fill(0);
+      for (const name of names) this.regimes.get(name).forEach((inside, i) => { this.selected[i] |= inside; });
+    }
+    if (range)
+      this.position.forEach((p, i) => { if (p < range[0] || p > range[1]) this.selected[i] = 0; });
+    this.selectedCount = countOf(this.selected);
+  }
+
+  clear() { this.choose(null); }
+
+  // Selects the samples from t0 to t1, in seconds since 1970; all that lies between on the time axis.
+  select(t0, t1) {
+    const inside = this.position.filter((p, i) => this.time[i] >= t0 && this.time[i] <= t1);
+    if (inside.length) this.choose([inside[0], inside[inside.length - 1]], this.names);
+  }
+
+  get isFiltered() { return this.range !== null || this.names.size > 0; }
+
+  // The indices of the selected samples that have a value in all the columns.
+  indices(columns, mask = this.selected) {
+    const found = [];
+    const all = columns.map(({values}) => values);
+    for (let i = 0; i < this.count; ++i) {
+      let has = mask[i] === 1;
+      for (let c = 0; has && c < all.length; ++c) has = !Number.isNaN(all[c][i]);
+      if (has) found.push(i);
+    }
+    return found;
+  }
+}
+
+// How many of a mask are 1.
+function countOf(mask) {
+  let count = 0;
+  for (let i = 0; i < mask.length; ++i) count += mask[i];
+  return count;
+}
+
+function statistics(values, indices) {
+  let least = Infinity, greatest = -Infinity, sum = 0, squares = 0;
+  for (const i of indices) {
+    const value = values[i];
+    least = Math.min(least, value);
+    greatest = Math.max(greatest, value);
+    sum += value;
+    squares += value * value;
+  }
+  const count = indices.length;
+  return {count, least, greatest, mean: sum / count, rms: Math.sqrt(squares / count)};
+}

@@ -1,0 +1,148 @@
+#include <fmt/format.h>
+#include <pcor/offline/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <initializer_list>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "report_data.hpp"
+
+namespace pcor::report {
+
+namespace {
+
+[[noreturn]] void fail(const std::string& what) { throw Error("report: " + what); }
+
+[[noreturn]] void fail_empty(const std::string& title) {
+  fail("panel '" + title + "' would be empty: no sample has a value there; leave the panel out");
+}
+
+class Columns {
+ public:
+  explicit Columns(const Report& report) : samples_(report.time.size()) {
+    for (const ReportColumn& column : report.columns) {
+      if (!by_name_.emplace(column.name, &column).second)
+        fail("two columns are named '" + column.name + "'; give each its own name");
+      if (column.values.size() != samples_)
+        fail("column '" + column.name + "' has " + std::to_string(column.values.size()) + " values for " +
+             std::to_string(samples_) + " samples; give one per sample, NaN where missing");
+    }
+  }
+
+  // Whether some sample has a value in every one of the columns that the panel names.
+  bool meet(const std::string& panel, std::initializer_list<std::string> names) const {
+    std::vector<const std::vector<double>*> all;
+    for (const std::string& name : names) {
+      const auto found = by_name_.find(name);
+      if (found == by_name_.end())
+        fail(fmt::format("panel '{}' shows column '{}', which is not in the report; add it", panel, name));
+      all.push_back(&found->second->values);
+    }
+    for (std::size_t i = 0; i < samples_; ++i)
+      if (std::all_of(all.begin(), all.end(),
+                      [i](const auto* values) { return std::isfinite((*values)[i]); }))
+        return true;
+    return false;
+  }
+
+  // Whether some sample has a value in one of the columns. All names are looked up.
+  bool any(const std::string& panel, const std::vector<std::string>& names) const {
+    bool found = false;
+    for (const std::string& name : names) found = meet(panel, {name}) || found;
+    return found;
+  }
+
+ private:
+  std::size_t samples_;
+  std::map<std::string, const ReportColumn*> by_name_;
+};
+
+struct CheckItem {
+  const Columns& columns;
+
+  void operator()(const TimePanel& panel) const {
+    if (!columns.any(panel.title, panel.columns)) fail_empty(panel.title);
+  }
+
+  void operator()(const BinnedPanel& panel) const {
+    if (panel.bins == 0) fail("panel '" + panel.title + "' has no bins; give at least one");
+    if (!(panel.samples_per_independent >= 1.0))
+      fail("panel '" + panel.title +
+           "': samples_per_independent is not a number from 1 on; 1 is for no memory");
+    if (panel.x_choices.empty()) fail_empty(panel.title);
+    for (const std::string& x : panel.x_choices) {
+      bool found = false;
+      for (const std::string& y : panel.y) found = columns.meet(panel.title, {x, y}) || found;
+      if (!found) fail_empty(panel.title);
+    }
+  }
+
+  void operator()(const PlanePanel& panel) const {
+    if (!columns.meet(panel.title, {panel.x, panel.y, panel.colour})) fail_empty(panel.title);
+  }
+
+  void operator()(const PairPanel& panel) const {
+    if (!columns.meet(panel.title, {panel.x, panel.y})) fail_empty(panel.title);
+  }
+
+  void operator()(const RegimeTable& table) const {
+    if (!columns.any(table.title, table.columns)) fail_empty(table.title);
+  }
+
+  void operator()(const BarPanel& panel) const {
+    if (std::none_of(panel.bars.begin(), panel.bars.end(),
+                     [](const ReportBar& bar) { return std::isfinite(bar.value); }))
+      fail_empty(panel.title);
+  }
+
+  void operator()(const ReportTable& table) const {
+    if (table.rows.empty()) fail("table '" + table.title + "' has no rows; leave it out");
+    for (const auto& row : table.rows)
+      if (row.size() != table.headers.size())
+        fail("table '" + table.title + "' has a row of " + std::to_string(row.size()) + " cells under " +
+             std::to_string(table.headers.size()) + " headers; give as many");
+  }
+
+  void operator()(const ReportText&) const {}
+};
+
+void check_flights(const Report& report) {
+  const auto& starts = report.flight_starts;
+  const std::size_t flights = std::max<std::size_t>(starts.size(), 1);
+  if (!report.flight_names.empty() && report.flight_names.size() != flights)
+    fail(std::to_string(report.flight_names.size()) + " names for " + std::to_string(flights) +
+         " flights; give as many, or none");
+  for (std::size_t i = 0; i < starts.size(); ++i)
+    if (i == 0 ? starts[0] != 0 : starts[i] <= starts[i - 1] || starts[i] >= report.time.size())
+      fail("the flights do not begin one after another at samples from 0 on; correct flight_starts");
+}
+
+void check_time(const Report& report) {
+  const auto& time = report.time;
+  const auto& starts = report.flight_starts;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    if (!std::isfinite(time[i])) fail("sample " + std::to_string(i) + " has no time; leave it out");
+    const bool first = i == 0 || std::binary_search(starts.begin(), starts.end(), i);
+    if (!first && time[i] <= time[i - 1])
+      fail("time does not increase at sample " + std::to_string(i) + "; sort the samples of each flight");
+  }
+}
+
+}  // namespace
+
+void check(const Report& report) {
+  check_flights(report);
+  check_time(report);
+  const Columns columns(report);
+  for (const ReportInterval& interval : report.intervals)
+    if (!(interval.begin <= interval.end))
+      fail("an interval '" + interval.name + "' ends before it begins; correct it");
+  for (const ReportItem& item : report.items) std::visit(CheckItem{columns}, item);
+}
+
+}  // namespace pcor::report

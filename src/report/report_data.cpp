@@ -1,0 +1,160 @@
+#include <pcor/offline/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "report_data.hpp"
+
+namespace pcor::report {
+
+namespace {
+
+using nlohmann::json;
+
+// The numbers, least significant byte first, in base64.
+template <typename Unsigned>
+std::string base64(const std::vector<Unsigned>& numbers) {
+  constexpr const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::vector<std::uint32_t> bytes;
+  bytes.reserve(numbers.size() * sizeof(Unsigned) + 2);
+  for (const Unsigned number : numbers)
+    for (std::size_t i = 0; i < sizeof(Unsigned); ++i) bytes.push_back((number >> (8 * i)) & 0xffU);
+  const std::size_t padding = (3 - bytes.size() % 3) % 3;
+  bytes.resize(bytes.size() + padding, 0);
+  std::string text;
+  text.reserve(bytes.size() / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::uint32_t three = bytes[i] << 16 | bytes[i + 1] << 8 | bytes[i + 2];
+    for (const int shift : {18, 12, 6, 0}) text += digits[three >> shift & 63U];
+  }
+  std::fill(text.end() - static_cast<std::ptrdiff_t>(padding), text.end(), '=');
+  return text;
+}
+
+// 65535 is missing; any other number n is `least` + n * `step`.
+json quantised(const ReportColumn& column) {
+  constexpr std::uint16_t missing = 65535;
+  constexpr double most = 65534.0;
+  double least = std::numeric_limits<double>::infinity(), greatest = -least;
+  for (const double value : column.values)
+    if (std::isfinite(value)) {
+      least = std::min(least, value);
+      greatest = std::max(greatest, value);
+    }
+  if (least > greatest) least = greatest = 0.0;
+  const double step = greatest > least ? (greatest - least) / most : 1.0;
+  std::vector<std::uint16_t> numbers;
+  numbers.reserve(column.values.size());
+  for (const double value : column.values)
+    numbers.push_back(std::isfinite(value) ? static_cast<std::uint16_t>(std::lround((value - least) / step))
+                                           : missing);
+  return {{"name", column.name}, {"title", column.title.empty() ? column.name : column.title},
+          {"unit", column.unit}, {"least", least},
+          {"step", step},        {"values", base64(numbers)}};
+}
+
+// Each flight with the time of its samples: `start` in seconds since 1970 and milliseconds after it.
+json flights(const Report& report) {
+  constexpr double most = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::size_t> bounds = report.flight_starts;
+  if (bounds.empty() && !report.time.empty()) bounds.push_back(0);
+  bounds.push_back(report.time.size());
+  json all = json::array();
+  for (std::size_t flight = 0; flight + 1 < bounds.size(); ++flight) {
+    const double start = report.time[bounds[flight]];
+    std::vector<std::uint32_t> after;
+    for (std::size_t i = bounds[flight]; i < bounds[flight + 1]; ++i) {
+      const double milliseconds = std::round((report.time[i] - start) * 1000.0);
+      if (milliseconds > most)
+        throw Error("report: flight " + std::to_string(flight + 1) +
+                    " lasts over 49 days; begin a new flight in flight_starts");
+      after.push_back(static_cast<std::uint32_t>(milliseconds));
+    }
+    all.push_back({{"name", report.flight_names.empty() ? "" : report.flight_names[flight]},
+                   {"start", start},
+                   {"milliseconds", base64(after)}});
+  }
+  return all;
+}
+
+struct ItemJson {
+  json operator()(const TimePanel& panel) const {
+    return {{"title", panel.title}, {"columns", panel.columns}, {"axis", panel.axis}};
+  }
+  json operator()(const BinnedPanel& panel) const {
+    return {{"title", panel.title},
+            {"columns", panel.y},
+            {"choices", panel.x_choices},
+            {"bins", panel.bins},
+            {"samplesPerIndependent", panel.samples_per_independent},
+            {"axis", panel.axis}};
+  }
+  json operator()(const PlanePanel& panel) const {
+    return {{"title", panel.title},
+            {"x", panel.x},
+            {"y", panel.y},
+            {"colour", panel.colour},
+            {"reverseY", panel.reverse_y},
+            {"diverging", panel.diverging}};
+  }
+  json operator()(const PairPanel& panel) const {
+    json lines = json::array();
+    for (const ReportLine& line : panel.lines)
+      lines.push_back({{"slope", line.slope}, {"offset", line.offset}, {"label", line.label}});
+    return {{"title", panel.title}, {"x", panel.x}, {"y", panel.y}, {"lines", lines}};
+  }
+  json operator()(const RegimeTable& table) const {
+    return {{"title", table.title}, {"columns", table.columns}};
+  }
+  json operator()(const BarPanel& panel) const {
+    json bars = json::array();
+    for (const ReportBar& bar : panel.bars)
+      bars.push_back({{"label", bar.label}, {"value", bar.value}, {"error", bar.error}});
+    return {{"title", panel.title}, {"bars", bars}, {"axis", panel.axis}, {"unit", panel.unit}};
+  }
+  json operator()(const ReportTable&) const { return json::object(); }
+  json operator()(const ReportText&) const { return json::object(); }
+};
+
+}  // namespace
+
+const char* kind_of(const ReportItem& item) {
+  constexpr const char* kinds[] = {"time", "binned", "plane", "pair", "regimes", "bars", "table", "text"};
+  static_assert(std::size(kinds) == std::variant_size_v<ReportItem>);
+  return kinds[item.index()];
+}
+
+std::string data_json(const Report& report) {
+  json data{{"flights", flights(report)},
+            {"columns", json::array()},
+            {"intervals", json::array()},
+            {"items", json::array()}};
+  for (const ReportColumn& column : report.columns) data["columns"].push_back(quantised(column));
+  for (const ReportInterval& interval : report.intervals)
+    data["intervals"].push_back({{"name", interval.name}, {"begin", interval.begin}, {"end", interval.end}});
+  for (const ReportItem& item : report.items) {
+    json one = std::visit(ItemJson{}, item);
+    one["kind"] = kind_of(item);
+    data["items"].push_back(std::move(one));
+  }
+  const std::string text = data.dump(-1, ' ', false, json::error_handler_t::replace);
+  std::string safe;
+  safe.reserve(text.size());
+  for (const char letter : text)
+    if (letter == '<')
+      safe += "\\u003c";
+    else
+      safe += letter;
+  return safe;
+}
+
+}  // namespace pcor::report

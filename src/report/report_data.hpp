@@ -1,0 +1,18 @@
+#pragma once
+
+#include <pcor/offline/report.hpp>
+
+#include <string>
+
+namespace pcor::report {
+
+// Throws Error if the report cannot be drawn: see report_html.
+void check(const Report& report);
+
+// What the browser draws from: the samples, the intervals and the panels, as JSON in which no '<' occurs.
+std::string data_json(const Report& report);
+
+// "time", "binned", ...: what the browser calls the kind of an item.
+const char* kind_of(const ReportItem& item);
+
+}  // namespace pcor::report

@@ -1,0 +1,176 @@
+#include <fmt/format.h>
+#include <pcor/offline/error.hpp>
+#include <pcor/offline/replacement_file.hpp>
+#include <pcor/offline/report.hpp>
+
+#include <cstddef>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "assets.hpp"
+#include "report_data.hpp"
+
+namespace pcor {
+
+namespace {
+
+std::string escaped(std::string_view text) {
+  std::string safe;
+  for (const char letter : text) switch (letter) {
+      case '&':
+        safe += "&amp;";
+        break;
+      case '<':
+        safe += "&lt;";
+        break;
+      case '>':
+        safe += "&gt;";
+        break;
+      case '"':
+        safe += "&quot;";
+        break;
+      case '\'':
+        safe += "&#39;";
+        break;
+      default:
+        safe += letter;
+    }
+  return safe;
+}
+
+// Nothing for no text.
+std::string element(std::string_view tag, std::string_view text) {
+  return text.empty() ? "" : fmt::format("<{0}>{1}</{0}>\n", tag, escaped(text));
+}
+
+std::string element(std::string_view tag, std::string_view kind, std::string_view text) {
+  return text.empty() ? "" : fmt::format(R"(<{0} class="{1}">{2}</{0}>)", tag, kind, escaped(text)) + "\n";
+}
+
+// Whether a cell is a number, perhaps with its error or unit: "-1.2e-3", "0.3 ± 0.1", "12 %".
+bool is_numeric(const std::string& cell) {
+  char* end = nullptr;
+  std::strtod(cell.c_str(), &end);
+  return end != cell.c_str() && (*end == '\0' || *end == ' ');
+}
+
+std::string table(const ReportTable& table) {
+  const auto kind = [](const std::string& cell) { return is_numeric(cell) ? R"( class="number")" : ""; };
+  std::string head, body;
+  for (std::size_t i = 0; i < table.headers.size(); ++i)
+    head +=
+        fmt::format(R"(<th scope="col"{}>{}</th>)", kind(table.rows.front()[i]), escaped(table.headers[i]));
+  for (const auto& row : table.rows) {
+    body += "<tr>";
+    for (const std::string& cell : row) body += fmt::format("<td{}>{}</td>", kind(cell), escaped(cell));
+    body += "</tr>\n";
+  }
+  return fmt::format(R"(<div class="scroll" tabindex="0" role="region" aria-label="{}"><table>
+<thead><tr>{}</tr></thead>
+<tbody>
+{}</tbody>
+</table></div>
+)",
+                     escaped(table.title), head, body);
+}
+
+// What an item says without the browser's script: its caption, its table, its text.
+struct ItemBody {
+  template <typename Panel>
+  std::string operator()(const Panel& panel) const {
+    return element("p", "caption", panel.caption);
+  }
+  std::string operator()(const ReportTable& item) const {
+    return table(item) + element("p", "caption", item.caption);
+  }
+  std::string operator()(const ReportText& item) const {
+    std::string html;
+    for (const std::string& paragraph : item.paragraphs) html += element("p", paragraph);
+    return html;
+  }
+};
+
+bool takes_half(const ReportItem& item) {
+  return std::holds_alternative<BinnedPanel>(item) || std::holds_alternative<PlanePanel>(item) ||
+         std::holds_alternative<PairPanel>(item) || std::holds_alternative<BarPanel>(item);
+}
+
+// Pictures that are not over time stand in pairs; one that is left over takes the whole width.
+std::string items(const Report& report) {
+  std::string html;
+  bool second = false;
+  for (std::size_t i = 0; i < report.items.size(); ++i) {
+    const ReportItem& item = report.items[i];
+    const bool paired =
+        takes_half(item) && (second || (i + 1 < report.items.size() && takes_half(report.items[i + 1])));
+    second = paired && !second;
+    html += fmt::format(R"(<section class="item {0}{1}" data-item="{2}" aria-labelledby="title-{2}">
+<h2 id="title-{2}">{3}</h2>
+{4}</section>
+)",
+                        report::kind_of(item), paired ? " half" : "", i,
+                        escaped(std::visit([](const auto& one) { return one.title; }, item)),
+                        std::visit(ItemBody{}, item));
+  }
+  return html;
+}
+
+std::string head(const Report& report) {
+  std::string html =
+      "<header>\n" + element("h1", report.title) + element("p", "subtitle", report.subtitle) + "</header>\n";
+  if (!report.summary.empty()) {
+    html += R"(<section class="summary" aria-label="Summary"><ul>)";
+    for (const std::string& sentence : report.summary) html += element("li", sentence);
+    html += "</ul></section>\n";
+  }
+  if (!report.facts.empty()) {
+    html += R"(<dl class="facts">)";
+    for (const auto& [name, fact] : report.facts)
+      html += fmt::format("<div>{}{}</div>\n", element("dt", name), element("dd", fact));
+    html += "</dl>\n";
+  }
+  return html;
+}
+
+}  // namespace
+
+std::string report_html(const Report& report) {
+  report::check(report);
+  std::string html = R"(<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:">
+<link rel="icon" href="data:,">
+)";
+  html += element("title", report.title);
+  html += "<style>\n";
+  html += report::style;
+  html += "</style>\n</head>\n<body>\n";
+  html += head(report);
+  html += "<noscript><p>The pictures need JavaScript, which is switched off here.</p></noscript>\n";
+  html += "<main>\n" + items(report) + "</main>\n";
+  html += R"(<script type="application/json" id="data">)";
+  html += report::data_json(report);
+  html += "</script>\n<script>\n";
+  html += report::script;
+  html += "</script>\n</body>\n</html>\n";
+  return html;
+}
+
+void write_report(const Report& report, const std::filesystem::path& path) {
+  const std::string html = report_html(report);
+  ReplacementFile file(path);
+  std::ofstream stream(file.path(), std::ios::binary);
+  stream << html;
+  stream.close();
+  if (!stream)
+    throw Error(path.string() + " cannot be written: check the space there, or choose another output");
+  file.commit();
+}
+
+}  // namespace pcor
