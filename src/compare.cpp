@@ -178,6 +178,33 @@ ModelComparison Gathering::finish() {
   return std::move(result_);
 }
 
+std::vector<double> total_pressure(const ModelSamples& samples) {
+  std::vector<double> total = *samples.find(Quantity::static_pressure);
+  const std::vector<double>& q = *samples.find(Quantity::dynamic_pressure);
+  for (std::size_t i = 0; i < q.size(); ++i) total[i] += q[i];
+  return total;
+}
+
+/// The systems against each other, over the samples that take part.
+void fit_lines(Comparison& comparison) {
+  std::vector<double> total;
+  std::vector<double> reference_total;
+  std::vector<double> pressure;
+  std::vector<double> reference_pressure;
+  for (const FlightResiduals& flight : comparison.flights) {
+    for (std::size_t i = 0; i < flight.mask.size(); ++i) {
+      if (flight.mask[i] != Mask::none) continue;
+      pressure.push_back(flight.corrected_pressure[i]);
+      reference_pressure.push_back(flight.corrected_pressure[i] + flight.values.front()[i]);
+      if (flight.reference_total_pressure.empty()) continue;
+      total.push_back(flight.total_pressure[i]);
+      reference_total.push_back(flight.reference_total_pressure[i]);
+    }
+  }
+  comparison.static_pressure = orthogonal_fit(pressure, reference_pressure);
+  if (!total.empty()) comparison.total_pressure = ordinary_fit(total, reference_total);
+}
+
 /// The residuals of all models on one flight, where all of them have one.
 FlightResiduals residuals_on(const Flight& flight, const std::vector<Contender>& contenders,
                              const MaskOptions& options, std::vector<std::string>& notes) {
@@ -188,17 +215,21 @@ FlightResiduals residuals_on(const Flight& flight, const std::vector<Contender>&
     const Residuals residuals(samples, model, reference, options);
     const double* const parameters = residuals.parameters().data();
     result.values.push_back(residuals.values(parameters));
+    result.model_defects.push_back(residuals.quantity(Quantity::static_defect, parameters));
     for (const std::string& note : samples->notes) notes.push_back(samples->name + ": " + note);
     if (!result.samples) {
       result.samples = samples;
       result.mask = residuals.mask();
       result.reference_defect = residuals.wanted_defect(parameters);
-      result.model_defect = residuals.quantity(Quantity::static_defect, parameters);
       result.static_pressure = residuals.quantity(Quantity::static_pressure, parameters);
+      result.corrected_pressure = residuals.quantity(Quantity::corrected_static_pressure, parameters);
       result.mach = residuals.quantity(Quantity::corrected_mach, parameters);
       const std::vector<double> q = residuals.quantity(Quantity::dynamic_pressure, parameters);
       result.dynamic_ratio.resize(q.size());
       for (std::size_t i = 0; i < q.size(); ++i) result.dynamic_ratio[i] = q[i] / result.static_pressure[i];
+      result.total_pressure = total_pressure(samples->model);
+      if (reference.kind == Reference::Kind::static_system)
+        result.reference_total_pressure = total_pressure(samples->reference);
     } else {
       for (std::size_t i = 0; i < result.mask.size(); ++i) {
         if (result.mask[i] == Mask::none) result.mask[i] = residuals.mask()[i];
@@ -277,6 +308,7 @@ Comparison compare(const std::vector<std::filesystem::path>& flights,
         flights.size() == 1 ? flights.front().string() : "the flights", mask_text(result.masks)));
   }
   for (Gathering& gathering : gatherings) result.models.push_back(gathering.finish());
+  fit_lines(result);
   std::sort(result.notes.begin(), result.notes.end());
   result.notes.erase(std::unique(result.notes.begin(), result.notes.end()), result.notes.end());
   return result;
@@ -304,9 +336,12 @@ void write_residuals(const Comparison& comparison, std::size_t flight, const std
            fmt::format("Static pressure of {} less that of the model {}", comparison.reference,
                        comparison.models[m].name),
            residuals.values[m]);
+    define(fmt::format("PCOR_{}", m + 1),
+           fmt::format("Static defect (delta-p) of the model {}", comparison.models[m].name),
+           residuals.model_defects[m]);
   }
   define("PCOR_REFERENCE", "Static defect (delta-p) that the reference asks for", residuals.reference_defect);
-  define("PCOR", "Static defect (delta-p) of the model", residuals.model_defect);
+
   const auto flags = [&](const std::string& name, const std::string& long_name, std::vector<Flag> meanings,
                          std::vector<double> values) {
     OutputVariable variable;

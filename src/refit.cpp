@@ -776,11 +776,11 @@ void Refit::explain_errors(const Eigen::MatrixXd& covariance, const std::vector<
     }
     grave.push_back(
         fmt::format("{} is not determined: its standard error {:.2g} is above the typical size {:.2g}{}{}; "
-                    "hold it with --fix {}, or fit a flight with: {}",
+                    "hold it with --fix {}; what would tell: {}",
                     state.name, error, state.typical, partners.empty() ? "" : ", and it goes with ", partners,
                     state.name, state.manoeuvre));
   }
-  if (grave.empty() && result_.condition_number > 1000.0) {
+  if (result_.condition_number > 1000.0) {
     grave.push_back(
         fmt::format("the coefficients are nearly collinear (condition number {:.0f}): their sum is known "
                     "better than each; do not read meaning into one alone",

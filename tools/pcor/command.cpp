@@ -26,9 +26,14 @@ bool same_place(const fs::path& a, const fs::path& b) {
 
 }  // namespace
 
-void add_common_options(CLI::App& command, CommonOptions& options) {
+void add_common_options(CLI::App& command, CommonOptions& options, bool has_report) {
   command.add_option("--json", options.json, "write the result as JSON to FILE, - for standard output")
       ->type_name("FILE");
+  if (has_report) {
+    command
+        .add_option("--report", options.report, "write a self-contained report with pictures to FILE.html")
+        ->type_name("FILE.html");
+  }
   command.add_flag("--quiet", options.quiet, "print no text");
 }
 
@@ -52,6 +57,22 @@ void JsonResult::write(const nlohmann::ordered_json& result) {
     throw Error(fmt::format("{}: cannot write the JSON result; check the space and the permissions", place_));
   }
   file_->commit();
+}
+
+std::string quoted(const std::string& word) {
+  const bool plain = !word.empty() && word.find_first_not_of(
+                                          "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+                                          "0123456789_-+./:,=@%") == std::string::npos;
+  if (plain) return word;
+  std::string text = "'";
+  for (const char letter : word) {
+    if (letter == '\'') {
+      text += "'\\''";
+    } else {
+      text += letter;
+    }
+  }
+  return text + "'";
 }
 
 void refuse_overwriting(const std::vector<fs::path>& outputs, const std::vector<fs::path>& inputs) {

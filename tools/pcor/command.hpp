@@ -15,11 +15,12 @@ namespace pcor::tool {
 /// The options that every sub-command has.
 struct CommonOptions {
   std::string json{};  ///< where the machine-readable result goes, `-` for standard output; empty for nowhere
-  bool quiet = false;  ///< no text for people
+  std::string report{};  ///< where the self-contained HTML report goes; empty for nowhere
+  bool quiet = false;    ///< no text for people
 };
 
-/// Adds the common options to a sub-command.
-void add_common_options(CLI::App& command, CommonOptions& options);
+/// Adds the common options to a sub-command; the report only where the sub-command has one.
+void add_common_options(CLI::App& command, CommonOptions& options, bool has_report = true);
 
 /// True where text for people is wanted on standard output.
 bool wants_text(const CommonOptions& options);
@@ -40,6 +41,9 @@ class JsonResult {
   std::optional<ReplacementFile> file_{};
 };
 
+/// A word of a command line as a shell takes it.
+std::string quoted(const std::string& word);
+
 /// Refuses outputs that are inputs, under whatever name, and two outputs in one place. Empty names and `-`
 /// are no files.
 /// @throws Error
@@ -50,6 +54,9 @@ void refuse_overwriting(const std::vector<std::filesystem::path>& outputs,
 using AddCommand = std::function<void()> (*)(CLI::App& program);
 
 std::function<void()> add_process(CLI::App& program);
+std::function<void()> add_compare(CLI::App& program);
+std::function<void()> add_refit(CLI::App& program);
+std::function<void()> add_simulate(CLI::App& program);
 std::function<void()> add_effects(CLI::App& program);
 
 }  // namespace pcor::tool

@@ -121,7 +121,7 @@ std::function<void()> add_effects(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("effects", "Print the catalogue of effects, or all that is known of one");
   command->add_option("id", options->id, "an effect")->type_name("ID");
-  add_common_options(*command, options->common);
+  add_common_options(*command, options->common, false);
   return [options] { run(*options); };
 }
 

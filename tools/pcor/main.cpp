@@ -84,7 +84,8 @@ int main(int argc, char** argv) {
   program.require_subcommand(1);
   program.footer("Exit status: 0 done, 1 the work could not be done, 2 usage.");
 
-  constexpr std::array<pcor::tool::AddCommand, 2> commands{&pcor::tool::add_process,
+  constexpr std::array<pcor::tool::AddCommand, 5> commands{&pcor::tool::add_process, &pcor::tool::add_compare,
+                                                           &pcor::tool::add_refit, &pcor::tool::add_simulate,
                                                            &pcor::tool::add_effects};
   std::vector<std::function<void()>> runs;
   runs.reserve(commands.size());

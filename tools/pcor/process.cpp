@@ -26,23 +26,6 @@ struct Options {
   bool copy_all = false;
 };
 
-/// A word of a command line as a shell takes it.
-std::string quoted(const std::string& word) {
-  const bool plain = !word.empty() && word.find_first_not_of(
-                                          "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
-                                          "0123456789_-+./:,=@%") == std::string::npos;
-  if (plain) return word;
-  std::string text = "'";
-  for (const char letter : word) {
-    if (letter == '\'') {
-      text += "'\\''";
-    } else {
-      text += letter;
-    }
-  }
-  return text + "'";
-}
-
 std::string command_line(const Options& options) {
   std::string line = fmt::format("pcor " PCOR_VERSION " process {} -m {} -o {}", quoted(options.input),
                                  quoted(options.model), quoted(options.output));
@@ -153,7 +136,7 @@ std::function<void()> add_process(CLI::App& program) {
   command->add_option("--suffix", options->suffix, "add S to the names of the derived variables")
       ->type_name("S");
   command->add_flag("--all", options->copy_all, "copy every variable of the input");
-  add_common_options(*command, options->common);
+  add_common_options(*command, options->common, false);
   return [options] { run(*options); };
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <pcor/offline/line_fit.hpp>
 #include <pcor/offline/noise.hpp>
 #include <pcor/offline/residuals.hpp>
 
@@ -7,6 +8,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -60,16 +62,26 @@ struct FlightResiduals {
   std::vector<Mask> mask;                   ///< of the first model; the samples used are those of all models
   std::vector<std::vector<double>> values;  ///< of each model, hPa; NaN where the sample is not used
   std::vector<double> reference_defect;     ///< delta-p that the reference asks of the first model, hPa
-  std::vector<double> model_defect;         ///< delta-p of the first model, hPa
-  std::vector<double> static_pressure;      ///< as measured, hPa
-  std::vector<double> mach;                 ///< of the first model's corrected pressures
-  std::vector<double> dynamic_ratio;        ///< q_m/p_m
+  std::vector<std::vector<double>> model_defects;  ///< delta-p of each model, hPa
+  std::vector<double> static_pressure;             ///< as measured, hPa
+  std::vector<double> corrected_pressure;          ///< static pressure of the first model, hPa
+  std::vector<double> total_pressure;              ///< p_m + q_m of the first model, hPa
+  /// p_m + q_m of the reference, hPa, where that is a static system; else empty.
+  std::vector<double> reference_total_pressure;
+  std::vector<double> mach;           ///< of the first model's corrected pressures
+  std::vector<double> dynamic_ratio;  ///< q_m/p_m
 };
 
 struct Comparison {
   std::string reference;  ///< in words
   std::vector<ModelComparison> models;
   std::vector<FlightResiduals> flights;
+  /// The total pressures of two systems, of the reference against that of the model: static defects cancel in
+  /// it (R6). Where the reference is a static system.
+  std::optional<LineFit> total_pressure{};
+  /// The corrected static pressures, of the reference against that of the first model, as distances from the
+  /// line (R54).
+  LineFit static_pressure;
   std::array<std::size_t, mask_count> masks{};  ///< samples with each reason, over all flights
   std::vector<std::string> notes;               ///< what a user should know, a sentence each
 };

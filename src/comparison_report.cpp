@@ -1,0 +1,394 @@
+#include "pcor/offline/comparison_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+
+#include "pcor/offline/utc.hpp"
+
+namespace pcor {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+std::string residual_column(std::size_t model) { return fmt::format("residual{}", model + 1); }
+
+/// One series of every flight, one after another; NaN for a flight that does not have it.
+template <class Series>
+std::vector<double> joined(const Comparison& comparison, const Series& series) {
+  std::vector<double> values;
+  for (const FlightResiduals& flight : comparison.flights) {
+    const std::vector<double>& part = series(flight);
+    if (part.empty()) {
+      values.insert(values.end(), flight.mask.size(), nan);
+    } else {
+      values.insert(values.end(), part.begin(), part.end());
+    }
+  }
+  return values;
+}
+
+/// With a capital letter and a full stop.
+std::string sentence(std::string text) {
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text + ".";
+}
+
+bool has_value(const std::vector<double>& values) {
+  return std::any_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+}
+
+/// The columns that all pictures share, and the panels of every comparison.
+class Builder {
+ public:
+  explicit Builder(const Comparison& comparison) : comparison_(comparison) {
+    for (const FlightResiduals& flight : comparison.flights) {
+      report_.flight_starts.push_back(report_.time.size());
+      report_.flight_names.push_back(flight.samples->name);
+      report_.time.insert(report_.time.end(), flight.samples->time.begin(), flight.samples->time.end());
+      for (const Interval& interval : flight.samples->intervals)
+        report_.intervals.push_back(
+            {std::string(facts_of(interval.regime).name), interval.begin, interval.end});
+    }
+    for (std::size_t m = 0; m < comparison.models.size(); ++m) {
+      const std::string& name = comparison.models[m].name;
+      const std::string title = comparison.models.size() == 1 ? "residual" : "residual, " + name;
+      add(residual_column(m), title, "hPa",
+          [m](const FlightResiduals& f) -> const std::vector<double>& { return f.values[m]; });
+      residuals_.push_back(residual_column(m));
+    }
+    // The pictures show the samples that take part.
+    const std::vector<double>& used = report_.columns.front().values;
+    const auto variable = [&](const char* name, const char* title, const char* unit, const auto& series) {
+      std::vector<double> values = joined(comparison_, series);
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        if (std::isnan(used[i])) values[i] = nan;
+      }
+      if (!has_value(values)) return;
+      report_.columns.push_back({name, title, unit, std::move(values)});
+      variables_.push_back(name);
+    };
+    using F = FlightResiduals;
+    using V = std::vector<double>;
+    variable("mach", "Mach number", "", [](const F& f) -> const V& { return f.mach; });
+    variable("pressure", "static pressure as measured", "hPa",
+             [](const F& f) -> const V& { return f.static_pressure; });
+    variable("attack", "angle of attack", "deg",
+             [](const F& f) -> const V& { return f.samples->motion.attack; });
+    variable("sideslip", "sideslip", "deg",
+             [](const F& f) -> const V& { return f.samples->motion.sideslip; });
+    variable("ratio", "q/p as measured", "", [](const F& f) -> const V& { return f.dynamic_ratio; });
+    variable("airspeed", "true airspeed", "m/s",
+             [](const F& f) -> const V& { return f.samples->motion.airspeed; });
+    variable("altitude", "altitude", "m", [](const F& f) -> const V& { return f.samples->motion.altitude; });
+    variable("vertical_speed", "vertical speed", "m/s",
+             [](const F& f) -> const V& { return f.samples->motion.vertical_speed; });
+    variable("roll", "roll", "deg", [](const F& f) -> const V& { return f.samples->motion.roll; });
+    variable("wanted", "delta-p, reference", "hPa",
+             [](const F& f) -> const V& { return f.reference_defect; });
+    defects_.emplace_back("wanted");
+    for (std::size_t m = 0; m < comparison.models.size(); ++m) {
+      const std::string name = fmt::format("model{}", m + 1);
+      const std::string title = comparison.models.size() == 1 ? "the model" : comparison.models[m].name;
+      variable(name.c_str(), ("delta-p, " + title).c_str(), "hPa",
+               [m](const F& f) -> const V& { return f.model_defects[m]; });
+      if (!variables_.empty() && variables_.back() == name) defects_.push_back(name);
+    }
+  }
+
+  Report& report() { return report_; }
+
+  void add_panels() {
+    const double memory = comparison_.models.back().samples_per_independent;
+    TimePanel time;
+    time.title = "Residual in time";
+    time.caption =
+        "Static pressure of the reference less that of the model; regimes are shaded. Drag over a time "
+        "range, or choose "
+        "a regime, and every picture shows its samples alone.";
+    time.columns = residuals_;
+    time.axis = "residual";
+    report_.items.emplace_back(std::move(time));
+    RegimeTable regimes;
+    regimes.title = "By regime";
+    regimes.caption = "Bias and rms of the residual in each regime of the selected samples.";
+    regimes.columns = residuals_;
+    report_.items.emplace_back(std::move(regimes));
+    BinnedPanel binned;
+    binned.title = "Residual against a variable";
+    binned.caption =
+        "A slope or a bend that is more than the error bars is an effect that the model does not have, or "
+        "has with a "
+        "wrong coefficient.";
+    binned.y = residuals_;
+    binned.axis = "residual";
+    binned.x_choices = variables_;
+    binned.samples_per_independent = std::max(1.0, memory);
+    report_.items.emplace_back(std::move(binned));
+    PlanePanel plane;
+    plane.title = comparison_.models.size() == 1 ? "Residual over Mach number and pressure"
+                                                 : fmt::format("Residual over Mach number and pressure, {}",
+                                                               comparison_.models.back().name);
+    plane.caption = "Where in the envelope the model fails: one colour over a region is a bias there.";
+    plane.x = "mach";
+    plane.y = "pressure";
+    plane.colour = residuals_.back();
+    plane.reverse_y = true;
+    report_.items.emplace_back(std::move(plane));
+    TimePanel defect;
+    defect.title = comparison_.models.size() == 1 ? "Delta-p of the reference and of the model"
+                                                  : "Delta-p of the reference and of the models";
+    defect.caption =
+        fmt::format("What the reference ({}) asks for, and what the model gives.", comparison_.reference);
+    defect.columns = defects_;
+    defect.axis = "delta-p";
+    report_.items.emplace_back(std::move(defect));
+    PairPanel pair;
+    pair.title = comparison_.models.size() == 1
+                     ? "Delta-p of the reference against that of the model"
+                     : fmt::format("Delta-p of the reference against that of the model, {}",
+                                   comparison_.models.back().name);
+    pair.caption = "A perfect model lies on the line.";
+    pair.x = defects_.back();
+    pair.y = "wanted";
+    pair.lines = {{1.0, 0.0, "equal"}};
+    report_.items.emplace_back(std::move(pair));
+  }
+
+  /// The systems against each other: figures 1 and 2 of the memo.
+  void add_pairs() {
+    const auto note = [](const LineFit& fit) {
+      return fmt::format(
+          "Slope {:.5f} +- {:.5f}, offset {:.3f} hPa, rms {:.3f} hPa, mean difference {:+.3f} hPa over {} "
+          "samples; the errors are those of independent samples.",
+          fit.slope, fit.slope_error, fit.offset, fit.rms, fit.mean_difference, fit.samples);
+    };
+    const auto pair = [&](const char* title, const std::string& caption, const char* x, const char* y,
+                          const LineFit& fit) {
+      PairPanel panel;
+      panel.title = title;
+      panel.caption = caption + note(fit);
+      panel.x = x;
+      panel.y = y;
+      panel.lines = {{1.0, 0.0, "equal"}, {fit.slope, fit.offset, "fitted line"}};
+      report_.items.emplace_back(std::move(panel));
+    };
+    using F = FlightResiduals;
+    using V = std::vector<double>;
+    const auto used = [this](const char* name, const char* title, const auto& series) {
+      std::vector<double> values = joined(comparison_, series);
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        if (std::isnan(report_.columns.front().values[i])) values[i] = nan;
+      }
+      report_.columns.push_back({name, title, "hPa", std::move(values)});
+    };
+    if (comparison_.total_pressure) {
+      used("total", "total pressure of the model's system",
+           [](const F& f) -> const V& { return f.total_pressure; });
+      used("reference_total", "total pressure of the reference",
+           [](const F& f) -> const V& { return f.reference_total_pressure; });
+      pair("Total pressures of the two systems",
+           "Static defects cancel in the total pressure, so what is left is of the "
+           "transducers, the pitots and the lines. ",
+           "total", "reference_total", *comparison_.total_pressure);
+    }
+    used("corrected", "static pressure of the model",
+         [](const F& f) -> const V& { return f.corrected_pressure; });
+    report_.columns.push_back(report_.columns.back());
+    ReportColumn& reference = report_.columns.back();
+    reference.name = "reference_corrected";
+    reference.title = "static pressure of the reference";
+    for (std::size_t i = 0; i < reference.values.size(); ++i)
+      reference.values[i] += report_.columns.front().values[i];
+    pair("Corrected static pressures", "The line makes the distances perpendicular to it small. ",
+         "corrected", "reference_corrected", comparison_.static_pressure);
+  }
+
+  void add_tables() {
+    ReportTable masks;
+    masks.title = "Samples";
+    masks.caption = "Every sample counts under the first reason that holds.";
+    masks.headers = {"samples", "why"};
+    for (std::size_t i = 0; i < mask_count; ++i) {
+      if (comparison_.masks[i] > 0)
+        masks.rows.push_back({std::to_string(comparison_.masks[i]),
+                              i == 0 ? "used" : "not used: " + std::string(mask_facts[i].meaning)});
+    }
+    report_.items.emplace_back(std::move(masks));
+    for (const ModelComparison& model : comparison_.models) {
+      ReportTable worst;
+      worst.title = comparison_.models.size() == 1 ? "The worst minutes" : "The worst minutes, " + model.name;
+      worst.caption = "The minutes with the largest rms residual, and what was flown.";
+      worst.headers = {"flight", "begin (UTC)", "end", "bias, hPa", "rms, hPa", "regimes"};
+      for (const WorstInterval& interval : model.worst) {
+        worst.rows.push_back({interval.flight, utc_text(interval.begin), utc_text(interval.end, "%H:%M:%S"),
+                              fmt::format("{:.3f}", interval.statistics.bias),
+                              fmt::format("{:.3f}", interval.statistics.rms), interval.regimes});
+      }
+      report_.items.emplace_back(std::move(worst));
+      ReportTable bands;
+      bands.title = comparison_.models.size() == 1 ? "By band" : "By band, " + model.name;
+      bands.caption = "Bands with fewer than 30 samples are left out.";
+      bands.headers = {"band", "samples", "bias, hPa", "std. error", "rms, hPa", "rms / noise"};
+      for (const PartStatistics& band : model.bands) {
+        bands.rows.push_back(
+            {band.name, std::to_string(band.statistics.samples), fmt::format("{:.3f}", band.statistics.bias),
+             fmt::format("{:.3f}", band.statistics.bias_error), fmt::format("{:.3f}", band.statistics.rms),
+             fmt::format("{:.1f}", band.statistics.rms_over_noise())});
+      }
+      report_.items.emplace_back(std::move(bands));
+    }
+  }
+
+  void summarise() {
+    for (const ModelComparison& model : comparison_.models) {
+      report_.summary.push_back(sentence(
+          fmt::format("{}: bias {:+.3f} hPa, rms {:.3f} hPa, {:.1f} times the noise of {:.3f} hPa; R2 "
+                      "{:.4f}, over {} samples",
+                      model.name, model.all.bias, model.all.rms, model.all.rms_over_noise(),
+                      model.all.noise_rms, model.r_squared, model.all.samples)));
+    }
+    const ModelComparison& last = comparison_.models.back();
+    const auto worst = std::max_element(
+        last.regimes.begin(), last.regimes.end(),
+        [](const PartStatistics& a, const PartStatistics& b) { return a.statistics.rms < b.statistics.rms; });
+    if (worst != last.regimes.end()) {
+      report_.summary.push_back(
+          fmt::format("It fails most in the regime {}: bias {:+.3f} hPa, rms {:.3f} hPa.", worst->name,
+                      worst->statistics.bias, worst->statistics.rms));
+    }
+    report_.facts.emplace_back("Reference", comparison_.reference);
+    for (const FlightResiduals& flight : comparison_.flights) {
+      const FlightSamples& samples = *flight.samples;
+      report_.facts.emplace_back("Flight",
+                                 fmt::format("{}, {} to {} UTC", samples.name, utc_text(samples.time.front()),
+                                             utc_text(samples.time.back(), "%H:%M:%S")));
+    }
+    report_.facts.emplace_back("Program", "pcor " PCOR_VERSION);
+    for (const std::string& note : comparison_.notes) report_.facts.emplace_back("Note", note);
+  }
+
+ private:
+  template <class Series>
+  void add(const std::string& name, const std::string& title, const std::string& unit, const Series& series) {
+    report_.columns.push_back({name, title, unit, joined(comparison_, series)});
+  }
+
+  const Comparison& comparison_;
+  Report report_;
+  std::vector<std::string> residuals_;
+  std::vector<std::string> variables_;
+  std::vector<std::string> defects_;  // delta-p of the reference and of every model
+};
+
+ReportTable coefficient_table(const RefitResult& fit) {
+  ReportTable table;
+  table.title = "Coefficients";
+  table.caption = "Standard errors know the memory of the residuals.";
+  table.headers = {"coefficient", "before", "after", "std. error", "unit", "stage"};
+  for (const FittedParameter& p : fit.parameters) {
+    table.rows.push_back({p.name, fmt::format("{:.6g}", p.start), fmt::format("{:.6g}", p.value),
+                          !p.fitted    ? "held"
+                          : p.at_bound ? "at its bound"
+                                       : fmt::format("{:.3g}", p.standard_error),
+                          p.unit, p.fitted ? std::to_string(p.stage) : ""});
+  }
+  return table;
+}
+
+ReportTable correlation_table(const RefitResult& fit) {
+  ReportTable table;
+  table.title = "Correlations of the coefficients";
+  table.caption = fmt::format("Condition number {:.0f}.", fit.condition_number);
+  table.headers.emplace_back("");
+  for (const std::string& name : fit.covariance_names) table.headers.push_back(name);
+  for (std::size_t a = 0; a < fit.covariance_names.size(); ++a) {
+    std::vector<std::string> row{fit.covariance_names[a]};
+    for (std::size_t b = 0; b < fit.covariance_names.size(); ++b) {
+      const double scale = std::sqrt(fit.covariance[a][a] * fit.covariance[b][b]);
+      row.push_back(scale > 0.0 ? fmt::format("{:+.3f}", fit.covariance[a][b] / scale) : "");
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+ReportTable flight_table(const RefitResult& fit) {
+  ReportTable table;
+  table.title = "Flights before and after";
+  table.caption = "A flight, or a part of it, that is held out took no part in the fit.";
+  table.headers = {"flight",
+                   "part",
+                   "samples",
+                   "rms before, hPa",
+                   "rms after, hPa",
+                   "bias after, hPa",
+                   "scatter after, hPa",
+                   "noise, hPa"};
+  for (const FlightFit& flight : fit.flights) {
+    table.rows.push_back({flight.flight, flight.holdout ? "held out" : "fitted",
+                          std::to_string(flight.after.samples), fmt::format("{:.3f}", flight.before.rms),
+                          fmt::format("{:.3f}", flight.after.rms), fmt::format("{:+.3f}", flight.after.bias),
+                          fmt::format("{:.3f}", flight.after.scatter()),
+                          fmt::format("{:.3f}", flight.after.noise_rms)});
+  }
+  return table;
+}
+
+}  // namespace
+
+Report comparison_report(const Comparison& comparison) {
+  Builder builder(comparison);
+  builder.report().title = "Pressure corrections against " + comparison.reference;
+  builder.report().subtitle = "Where the model fails";
+  builder.summarise();
+  builder.add_panels();
+  builder.add_pairs();
+  builder.add_tables();
+  return std::move(builder.report());
+}
+
+Report refit_report(const RefitResult& fit, const Comparison& comparison) {
+  Builder builder(comparison);
+  Report& report = builder.report();
+  report.title = fmt::format("Refit of {} to {}", fit.model.model.name, fit.reference_text);
+  report.subtitle = "Before and after";
+  report.summary.push_back(fmt::format(
+      "The fit brings the rms residual from {:.3f} to {:.3f} hPa over {} samples; the noise is {:.3f} hPa.",
+      fit.rms_before, fit.rms, fit.samples, fit.noise_rms));
+  for (const FlightFit& flight : fit.flights) {
+    if (!flight.holdout) continue;
+    report.summary.push_back(fmt::format(
+        "Held out, {}: rms {:.3f} before and {:.3f} hPa after the fit, scatter {:.3f} and {:.3f} hPa.",
+        flight.flight, flight.before.rms, flight.after.rms, flight.before.scatter(), flight.after.scatter()));
+  }
+  for (const std::string& note : fit.notes) {
+    const bool told =
+        std::find(comparison.notes.begin(), comparison.notes.end(), note) != comparison.notes.end();
+    if (!told) report.summary.push_back(sentence(note));
+  }
+  builder.summarise();
+  report.items.emplace_back(coefficient_table(fit));
+  builder.add_panels();
+  builder.add_pairs();
+  if (fit.omissions.size() > 1) {
+    BarPanel bars;
+    bars.title = "What each effect is worth";
+    bars.caption = "The rms residual when an effect is left out and the others are fitted again.";
+    bars.bars.push_back({"all effects", fit.rms, 0.0});
+    for (const Omission& omission : fit.omissions)
+      bars.bars.push_back({"without " + omission.effect, omission.rms, 0.0});
+    bars.axis = "rms";
+    bars.unit = "hPa";
+    report.items.emplace_back(std::move(bars));
+  }
+  report.items.emplace_back(flight_table(fit));
+  if (fit.covariance_names.size() > 1) report.items.emplace_back(correlation_table(fit));
+  builder.add_tables();
+  return std::move(report);
+}
+
+}  // namespace pcor

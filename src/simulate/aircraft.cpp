@@ -1,0 +1,108 @@
+#include "aircraft.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pcor::simulate {
+namespace {
+
+constexpr double standard_gravity = 9.80665;  // m/s2
+
+// Recovery factors: NCAR nimbus; Cooper, Recovery factor study, NCAR, 2014 (unheated Rosemount, heated
+// HARCO). Wing area, Mach limit, cabin: manufacturer's data. Radomes: NCAR processing algorithms sec. 4.5.
+// Envelope: speeds and heights of research flights (memo, QAtools). Drag, power, fuel flow, flaps: estimates.
+
+AircraftFacts make_c130() {
+  AircraftFacts a;
+  a.type = "C-130";
+  a.registration = "N130AR";
+  a.thermometer = {"TTRR", {0.95, 0.0, 0.0, 0.0}};
+  a.second_thermometer = {"RTF1", {0.9959, 0.0283, 0.0374, 0.0762}};
+  a.wing_area = 162.1;
+  a.lift_slope = 0.0905;  // this and the next fitted to the angles of the memo's envelope at 56 t
+  a.zero_lift = -4.3;
+  a.flap_lift = 6.0;
+  a.drag_constant = 0.035;
+  a.induced_drag = 0.045;
+  a.weight = 58000.0;
+  a.fuel_flow = 0.6;
+  a.power = 11.0e6;
+  a.cabin_differential = 517.0;  // 7.5 psi
+  a.least_speed = 75.0;
+  a.greatest_speed = 155.0;
+  a.lift_off_speed = 65.0;
+  a.greatest_mach = 0.62;
+  a.greatest_attack = 12.0;
+  a.ceiling = 9000.0;
+  a.climb_rate = 5.0;
+  a.speed_run_low = 98.0;
+  a.speed_run_high = 150.0;
+  a.speed_run_rate = 0.25;
+  a.clear_above = 12000.0;
+  a.attack = {5.776, 15.031, 0.0};
+  a.sideslip = {-0.012004, 12.2115, 0.0};
+  return a;
+}
+
+AircraftFacts make_gv() {
+  AircraftFacts a;
+  a.type = "GV";
+  a.registration = "N677F";
+  a.thermometer = {"TTHR1", {0.985, 0.0, 0.0, 0.0}};
+  a.second_thermometer = {"RTH1", {0.988, 0.053, 0.090, 0.091}};
+  a.wing_area = 105.6;
+  a.lift_slope = 0.085;  // this and the next fitted to 2.5 deg in cruise
+  a.zero_lift = -0.4;
+  a.flap_lift = 6.0;
+  a.drag_constant = 0.018;
+  a.induced_drag = 0.050;
+  a.weight = 36000.0;
+  a.fuel_flow = 0.36;
+  a.power = 18.0e6;
+  a.cabin_differential = 701.0;  // 10.17 psi
+  a.least_speed = 110.0;
+  a.greatest_speed = 260.0;
+  a.lift_off_speed = 75.0;
+  a.greatest_mach = 0.885;
+  a.greatest_attack = 12.0;
+  a.ceiling = 15000.0;
+  a.climb_rate = 8.0;
+  a.speed_run_low = 158.0;
+  a.speed_run_high = 225.0;
+  a.speed_run_rate = 0.35;
+  a.clear_above = 12000.0;
+  a.attack = {5.5156, 19.07, 2.08};
+  a.sideslip = {-0.052888, 21.15507, 0.0};
+  return a;
+}
+
+}  // namespace
+
+double Thermometer::recovery_factor(double mach) const {
+  const auto& c = recovery;
+  if (c[1] == 0.0 && c[2] == 0.0 && c[3] == 0.0) return c[0];
+  const double logarithm = std::log10(mach);
+  return c[0] + logarithm * (c[1] + logarithm * (c[2] + logarithm * c[3]));
+}
+
+const AircraftFacts& facts_of(Scenario::Aircraft aircraft) {
+  static const AircraftFacts c130 = make_c130();
+  static const AircraftFacts gv = make_gv();
+  return aircraft == Scenario::Aircraft::c130 ? c130 : gv;
+}
+
+double lift_attack(const AircraftFacts& aircraft, double weight, double load_factor, double dynamic_pressure,
+                   double mach, double flaps) {
+  const double lift = weight * load_factor * standard_gravity / (dynamic_pressure * aircraft.wing_area);
+  const double zero_lift = aircraft.zero_lift - 0.01 * flaps * aircraft.flap_lift;
+  return zero_lift + lift * std::sqrt(1.0 - mach * mach) / aircraft.lift_slope;
+}
+
+double torque(const AircraftFacts& aircraft, double lift, double dynamic_pressure, double speed,
+              double energy_rate) {
+  const double drag =
+      dynamic_pressure * aircraft.wing_area * (aircraft.drag_constant + aircraft.induced_drag * lift * lift);
+  return std::clamp(100.0 * (drag * speed + energy_rate) / aircraft.power, 5.0, 100.0);
+}
+
+}  // namespace pcor::simulate

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <array>
+#include <pcor/offline/simulate.hpp>
+#include <string_view>
+
+namespace pcor::simulate {
+
+/// The differential ports of a radome: angle = offset + ratio (slope + slope_mach M), deg.
+struct Radome {
+  double offset;
+  double slope;
+  double slope_mach;
+
+  /// The ratio of differential to dynamic pressure at an angle, deg.
+  double ratio(double angle, double mach) const { return (angle - offset) / (slope + slope_mach * mach); }
+  double angle(double ratio, double mach) const { return offset + ratio * (slope + slope_mach * mach); }
+};
+
+/// A thermometer in the airstream. Its recovery factor is c0 + c1 L + c2 L^2 + c3 L^3, L = log10 M.
+struct Thermometer {
+  std::string_view name;
+  std::array<double, 4> recovery;
+
+  /// The recovery factor at a Mach number above zero.
+  double recovery_factor(double mach) const;
+};
+
+/// What is particular to an aircraft. Sources: aircraft.cpp.
+struct AircraftFacts {
+  std::string_view type{};
+  std::string_view registration{};
+  Thermometer thermometer{};         ///< of constant recovery factor, which a scenario may set
+  Thermometer second_thermometer{};  ///< of the recovery factor that processing uses since 2014
+
+  double wing_area = 0.0;      ///< m2
+  double lift_slope = 0.0;     ///< of the lift coefficient at low Mach number, 1/deg
+  double zero_lift = 0.0;      ///< angle of attack without lift, flaps up, deg
+  double flap_lift = 0.0;      ///< by how much full flaps lower that angle, deg
+  double drag_constant = 0.0;  ///< drag coefficient C_D = drag_constant + induced_drag C_L^2
+  double induced_drag = 0.0;
+  double weight = 0.0;              ///< at the start of a flight, kg
+  double fuel_flow = 0.0;           ///< kg/s
+  double power = 0.0;               ///< of all engines at 100 %, propellers' losses taken off, W
+  double cabin_differential = 0.0;  ///< greatest, hPa
+
+  double least_speed = 0.0;     ///< true airspeed of manoeuvres, m/s
+  double greatest_speed = 0.0;  ///< m/s
+  double lift_off_speed = 0.0;  ///< m/s
+  double greatest_mach = 0.0;
+  double greatest_attack = 0.0;  ///< before the stall, deg
+  double ceiling = 0.0;          ///< m
+  double climb_rate = 0.0;       ///< usual, m/s
+  double speed_run_low = 0.0;    ///< usual, m/s
+  double speed_run_high = 0.0;   ///< usual, m/s
+  double speed_run_rate = 0.0;   ///< usual, m/s2
+  double clear_above = 0.0;      ///< where half of the laser's samples lack aerosol, m
+
+  Radome attack{};
+  Radome sideslip{};
+};
+
+/// The facts of one of the two aircraft.
+const AircraftFacts& facts_of(Scenario::Aircraft aircraft);
+
+/// The angle of attack, deg, at which the wing carries the weight:
+///
+///     alpha = alpha_0 + C_L (1 - M^2)^(1/2)/C_L_alpha,   C_L = weight load_factor g/(q_dyn S)
+///
+/// with the Prandtl-Glauert rule for compressibility. `dynamic_pressure` is rho v^2/2 in Pa, `flaps` in
+/// percent, the load factor in units of standard gravity. Domain: M < 1.
+double lift_attack(const AircraftFacts& aircraft, double weight, double load_factor, double dynamic_pressure,
+                   double mach, double flaps);
+
+/// The part of full power, %, that it takes to fly at `speed` m/s with lift coefficient `lift`, while the
+/// aircraft gains `energy_rate` (W) of height and speed; not below 5 (idle) nor above 100.
+double torque(const AircraftFacts& aircraft, double lift, double dynamic_pressure, double speed,
+              double energy_rate);
+
+}  // namespace pcor::simulate

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <pcor/offline/simulate.hpp>
+#include <vector>
+
+#include "air.hpp"
+
+namespace pcor::simulate {
+
+/// Gravity, m/s2, at a latitude (deg) and height (m): Somigliana's formula of WGS 84, falling with height as
+/// 2 z/a. Accuracy 1e-5 up to 15 km.
+double gravity(double latitude, double height);
+
+/// The column of air over a place: hydrostatic balance of moist air, integrated upwards from the ground.
+///
+/// The temperature falls by the lapse rate from the ground to the tropopause and is constant above it; the
+/// inversion adds its strength over 200 m. The relative humidity goes from its lower to its upper value in
+/// the inversion and to 2 % at the tropopause.
+class Column {
+ public:
+  /// @throws Error if the air would be colder than 150 K below the tropopause.
+  Column(const Scenario::Atmosphere& atmosphere, double latitude);
+
+  /// The air at a height, m. Beyond the column (500 m below the ground to 18 km) the last value.
+  Air at(double height) const;
+
+ private:
+  double bottom_;
+  std::vector<double> log_pressure_;
+  std::vector<Air> levels_;
+};
+
+/// The dissipation rate of turbulence, m2/s3, at a height in m: that of the boundary layer up to the
+/// inversion, that of the free troposphere from 300 m above it, in between by their geometric mean.
+double dissipation(const Scenario::Atmosphere& atmosphere, double height);
+
+}  // namespace pcor::simulate

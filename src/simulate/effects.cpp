@@ -1,0 +1,330 @@
+#include "effects.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <pcor/physics/constants.hpp>
+
+#include "aircraft.hpp"
+
+namespace pcor::simulate {
+namespace {
+
+using Effect = Scenario::Effect;
+using Law = Scenario::Law;
+
+constexpr double radians = constants::radians_per_degree;
+constexpr double standard_gravity = 9.80665;  // m/s2
+constexpr double seconds_per_hour = 3600.0;
+
+double number(const Effect& effect, const std::string& key) { return effect.parameters.at(key); }
+
+/// Adds `value(step)` to a series at every step.
+template <class Value>
+void add(Series& series, const Truth& truth, Value value) {
+  series.resize(truth.size());
+  for (std::size_t i = 0; i < series.size(); ++i) series[i] += value(i);
+}
+
+bool in_cloud(const Truth& truth, std::size_t i) { return truth.liquid_water[i] > 0.0; }
+
+template <double Law::*term>
+void add_to_law(const Effect& effect, const Truth&, SystemFaults* system, Faults&) {
+  system->law.*term += effect.parameters.begin()->second;
+}
+
+// l = q k theta^n, theta the angle between the flow and the pitot's axis. Memo footnote 3: below 0.2 % of q
+// to 5 deg.
+void pitot_angle(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
+  const double k = number(effect, "k");
+  const double power = number(effect, "power");
+  const double axis = number(effect, "axis");
+  add(system->total_loss, truth, [&](std::size_t i) {
+    const double angle = std::hypot(truth.attack[i] - axis, truth.sideslip[i]);
+    return k * (truth.total_pressure[i] - truth.pressure[i]) * std::pow(angle, power);
+  });
+}
+
+void static_lag(const Effect& effect, const Truth&, SystemFaults* system, Faults&) {
+  system->static_lag += number(effect, "tau");
+}
+
+void total_lag(const Effect& effect, const Truth&, SystemFaults* system, Faults&) {
+  system->total_lag += number(effect, "tau");
+}
+
+void static_leak(const Effect& effect, const Truth&, SystemFaults* system, Faults&) {
+  system->leak += number(effect, "fraction");
+}
+
+void qcf_zero(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
+  add(system->dynamic_error, truth, [&](std::size_t) { return number(effect, "offset"); });
+}
+
+void qcf_gain(const Effect& effect, const Truth&, SystemFaults* system, Faults&) {
+  system->dynamic_gain += number(effect, "gain");
+}
+
+void psfd_bias(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
+  add(system->static_error, truth, [&](std::size_t) { return number(effect, "offset"); });
+}
+
+void transducer_thermal(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
+  const double reference = number(effect, "reference");
+  add(system->static_error, truth,
+      [&](std::size_t i) { return number(effect, "static") * (truth.bay_temperature[i] - reference); });
+  add(system->dynamic_error, truth,
+      [&](std::size_t i) { return number(effect, "dynamic") * (truth.bay_temperature[i] - reference); });
+}
+
+void time_drift(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
+  const auto hours = [](std::size_t i) { return static_cast<double>(i) * time_step / seconds_per_hour; };
+  add(system->static_error, truth, [&](std::size_t i) { return number(effect, "static") * hours(i); });
+  add(system->dynamic_error, truth, [&](std::size_t i) { return number(effect, "dynamic") * hours(i); });
+}
+
+void flaps_gear(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
+  constexpr double full = 50.0;  // percent
+  const double defect = number(effect, "defect");
+  add(system->static_defect, truth, [&](std::size_t i) { return defect * truth.flaps[i] / full; });
+}
+
+void thrust(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
+  const double defect = number(effect, "defect");
+  add(system->static_defect, truth, [&](std::size_t i) { return defect * 0.01 * truth.torque[i]; });
+}
+
+void load_factor(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
+  const double per_g = number(effect, "per_g");
+  add(system->static_defect, truth,
+      [&](std::size_t i) { return per_g * truth.normal_acceleration[i] / standard_gravity; });
+}
+
+void roll_static(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
+  const double defect = number(effect, "defect");
+  add(system->static_defect, truth,
+      [&](std::size_t i) { return defect * std::sin(radians * truth.roll[i]); });
+}
+
+void static_transonic(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
+  const double strength = number(effect, "strength");
+  const double onset = number(effect, "onset");
+  const double power = number(effect, "power");
+  add(system->static_defect, truth, [&](std::size_t i) {
+    return strength * truth.pressure[i] * std::pow(std::max(0.0, truth.mach[i] - onset), power);
+  });
+}
+
+void qcr_angle(const Effect& effect, const Truth& truth, SystemFaults*, Faults& faults) {
+  add(faults.radome_loss, truth, [&](std::size_t i) {
+    return number(effect, "attack") * truth.attack[i] * truth.attack[i] +
+           number(effect, "sideslip") * truth.sideslip[i] * truth.sideslip[i];
+  });
+}
+
+void adif_drift(const Effect& effect, const Truth& truth, SystemFaults*, Faults& faults) {
+  faults.attack_gain += number(effect, "gain");
+  add(faults.attack_ratio, truth, [&](std::size_t i) {
+    return number(effect, "offset") +
+           number(effect, "per_hour") * static_cast<double>(i) * time_step / seconds_per_hour;
+  });
+}
+
+void lams_elevation(const Effect& effect, const Truth& truth, SystemFaults*, Faults& faults) {
+  add(faults.lams_elevation, truth, [&](std::size_t) { return number(effect, "error"); });
+}
+
+void lams_azimuth(const Effect& effect, const Truth&, SystemFaults*, Faults& faults) {
+  faults.lams_azimuth += number(effect, "error");
+}
+
+// The wing bends with the lift that it carries more than at the start.
+void lams_pod_flex(const Effect& effect, const Truth& truth, SystemFaults*, Faults& faults) {
+  const double per_tonne = number(effect, "per_tonne");
+  add(faults.lams_elevation, truth, [&](std::size_t i) {
+    const double load = 1.0 + truth.normal_acceleration[i] / standard_gravity;
+    return per_tonne * 1e-3 * (load * truth.weight[i] - truth.weight[0]);
+  });
+}
+
+void lams_scale(const Effect& effect, const Truth&, SystemFaults*, Faults& faults) {
+  faults.lams_scale += number(effect, "scale");
+}
+
+void lams_induction(const Effect& effect, const Truth& truth, SystemFaults*, Faults& faults) {
+  add(faults.lams_speed, truth, [&](std::size_t i) {
+    return -truth.airspeed[i] * (number(effect, "fraction") + number(effect, "per_attack") * truth.attack[i]);
+  });
+}
+
+void lams_cloud(const Effect& effect, const Truth& truth, SystemFaults*, Faults& faults) {
+  const double error = number(effect, "error");
+  add(faults.lams_speed, truth, [&](std::size_t i) { return in_cloud(truth, i) ? error : 0.0; });
+}
+
+void temp_offset(const Effect& effect, const Truth& truth, SystemFaults*, Faults& faults) {
+  add(faults.temperature_error, truth, [&](std::size_t i) {
+    return number(effect, "offset") + number(effect, "slope") * (truth.temperature[i] - constants::ice_point);
+  });
+}
+
+void recovery_factor(const Effect& effect, const Truth&, SystemFaults*, Faults& faults) {
+  faults.recovery += number(effect, "error");
+}
+
+void temp_lag(const Effect& effect, const Truth&, SystemFaults*, Faults& faults) {
+  faults.temperature_lag += number(effect, "tau");
+}
+
+// Wet within a second, dry again in the time stated.
+void temp_wetting(const Effect& effect, const Truth& truth, SystemFaults*, Faults& faults) {
+  const double wet_time = 1.0;  // s, estimate
+  double wet = 0.0;
+  add(faults.temperature_error, truth, [&](std::size_t i) {
+    const bool cloud = in_cloud(truth, i);
+    wet += ((cloud ? 1.0 : 0.0) - wet) * time_step / (cloud ? wet_time : number(effect, "drying"));
+    return number(effect, "error") * wet;
+  });
+}
+
+void humidity_error(const Effect& effect, const Truth&, SystemFaults*, Faults& faults) {
+  faults.humidity_gain += number(effect, "gain");
+}
+
+void clock_skew(const Effect& effect, const Truth&, SystemFaults*, Faults& faults) {
+  faults.clock[effect.on] += number(effect, "seconds");
+}
+
+void sensor_response(const Effect& effect, const Truth&, SystemFaults*, Faults& faults) {
+  faults.response[effect.on] += number(effect, "tau");
+}
+
+double shaped(const std::string& shape, double x) {
+  if (shape == "quadratic") return x * x;
+  if (shape == "step") return x > 0.0 ? 1.0 : 0.0;
+  if (shape == "sine") return std::sin(x);
+  return x;
+}
+
+// strength * shape((x - centre)/scale) of any series x.
+void unknown(const Effect& effect, const Truth& truth, SystemFaults* system, Faults& faults) {
+  const Series& series = truth.*find_series(effect.of);
+  const auto value = [&](std::size_t i) {
+    const double x = (series[i] - number(effect, "centre")) / number(effect, "scale");
+    return number(effect, "strength") * shaped(effect.shape, x);
+  };
+  if (effect.where == "static") add(system->static_defect, truth, value);
+  if (effect.where == "total") add(system->total_loss, truth, value);
+  if (effect.where == "lams") add(faults.lams_speed, truth, value);
+  if (effect.where == "temperature") add(faults.temperature_error, truth, value);
+}
+
+bool acts_on(const Effect& effect, const Scenario::System& system) {
+  return effect.on.empty() || effect.on == system.static_pressure || effect.on == system.dynamic_pressure;
+}
+
+bool acts_on_systems(const Effect& effect, const FaultFacts& facts) {
+  if (effect.id == "unknown") return effect.where == "static" || effect.where == "total";
+  return facts.target == Target::system;
+}
+
+}  // namespace
+
+const std::vector<FaultFacts>& fault_facts() {
+  static const std::vector<FaultFacts> facts{
+      {"static-constant", Target::system, {{"a0", "1"}}, add_to_law<&Law::a0>},
+      {"static-alpha", Target::system, {{"a1", "1"}}, add_to_law<&Law::a1>},
+      {"static-qp", Target::system, {{"a2", "1"}}, add_to_law<&Law::a2>},
+      {"static-attack", Target::system, {{"a3", "1/deg"}}, add_to_law<&Law::a3>},
+      {"static-alpha-quad", Target::system, {{"a4", "1/deg2"}}, add_to_law<&Law::a4>},
+      {"static-mach", Target::system, {{"m1", "1"}}, add_to_law<&Law::m1>},
+      {"static-mach2", Target::system, {{"m2", "1"}}, add_to_law<&Law::m2>},
+      {"static-mach3", Target::system, {{"m3", "1"}}, add_to_law<&Law::m3>},
+      {"static-beta-odd", Target::system, {{"b1", "1"}}, add_to_law<&Law::b1>},
+      {"static-beta-even", Target::system, {{"b2", "1/deg2"}}, add_to_law<&Law::b2>},
+      {"static-transonic",
+       Target::system,
+       {{"strength", "1"}, {"onset", "1", 0.82}, {"power", "1", 2.0}},
+       static_transonic},
+      {"flaps-gear", Target::system, {{"defect", "hPa at 50 %"}}, flaps_gear},
+      {"speedbrake-thrust", Target::system, {{"defect", "hPa at 100 %"}}, thrust},
+      {"load-factor", Target::system, {{"per_g", "hPa"}}, load_factor},
+      {"roll-static", Target::system, {{"defect", "hPa"}}, roll_static},
+      {"pitot-angle",
+       Target::system,
+       {{"k", "1/deg^power"}, {"power", "1", 2.0}, {"axis", "deg", 0.0}},
+       pitot_angle},
+      {"static-lag", Target::system, {{"tau", "s"}}, static_lag},
+      {"total-lag", Target::system, {{"tau", "s"}}, total_lag},
+      {"static-leak", Target::system, {{"fraction", "1"}}, static_leak},
+      {"qcf-zero", Target::system, {{"offset", "hPa"}}, qcf_zero},
+      {"qcf-gain", Target::system, {{"gain", "1"}}, qcf_gain},
+      {"psfd-bias", Target::system, {{"offset", "hPa"}}, psfd_bias},
+      {"transducer-thermal",
+       Target::system,
+       {{"static", "hPa/K", 0.0}, {"dynamic", "hPa/K", 0.0}, {"reference", "K", 290.0}},
+       transducer_thermal},
+      {"time-drift", Target::system, {{"static", "hPa/h", 0.0}, {"dynamic", "hPa/h", 0.0}}, time_drift},
+      {"qcr-angle",
+       Target::instrument,
+       {{"attack", "hPa/deg2", 0.0}, {"sideslip", "hPa/deg2", 0.0}},
+       qcr_angle},
+      {"adif-drift",
+       Target::instrument,
+       {{"gain", "1", 0.0}, {"offset", "1", 0.0}, {"per_hour", "1/h", 0.0}},
+       adif_drift},
+      {"lams-elevation", Target::instrument, {{"error", "deg"}}, lams_elevation},
+      {"lams-azimuth", Target::instrument, {{"error", "deg"}}, lams_azimuth},
+      {"lams-pod-flex", Target::instrument, {{"per_tonne", "deg/t"}}, lams_pod_flex},
+      {"lams-scale", Target::instrument, {{"scale", "1"}}, lams_scale},
+      {"lams-induction",
+       Target::instrument,
+       {{"fraction", "1", 0.0}, {"per_attack", "1/deg", 0.0}},
+       lams_induction},
+      {"lams-cloud", Target::instrument, {{"error", "m/s"}}, lams_cloud},
+      {"temp-offset", Target::instrument, {{"offset", "K", 0.0}, {"slope", "1", 0.0}}, temp_offset},
+      {"recovery-factor", Target::instrument, {{"error", "1"}}, recovery_factor},
+      {"temp-lag", Target::instrument, {{"tau", "s"}}, temp_lag},
+      {"temp-wetting", Target::instrument, {{"error", "K"}, {"drying", "s", 10.0}}, temp_wetting},
+      {"humidity-error", Target::instrument, {{"gain", "1"}}, humidity_error},
+      {"clock-skew", Target::variable, {{"seconds", "s"}}, clock_skew},
+      {"sensor-response", Target::variable, {{"tau", "s"}}, sensor_response},
+      {"unknown",
+       Target::instrument,
+       {{"strength", "hPa, m/s or K"}, {"centre", "of the variable", 0.0}, {"scale", "of the variable", 1.0}},
+       unknown},
+  };
+  return facts;
+}
+
+const FaultFacts* find_fault(std::string_view id) {
+  const auto& facts = fault_facts();
+  const auto found =
+      std::find_if(facts.begin(), facts.end(), [id](const FaultFacts& each) { return each.id == id; });
+  return found == facts.end() ? nullptr : &*found;
+}
+
+const Series Truth::*find_series(std::string_view name) {
+  if (name == "hidden") return &Truth::hidden;
+  for (const TruthFacts& facts : truth_facts) {
+    if (!name.empty() && (facts.recorded == name || facts.name == name)) return facts.series;
+  }
+  return nullptr;
+}
+
+Faults faults_of(const Scenario& scenario, const Truth& truth) {
+  Faults faults;
+  for (const Scenario::System& system : scenario.systems) faults.systems.emplace_back().law = system.law;
+  for (const Effect& effect : scenario.effects) {
+    const FaultFacts& facts = *find_fault(effect.id);
+    if (!acts_on_systems(effect, facts)) {
+      facts.act(effect, truth, nullptr, faults);
+      continue;
+    }
+    for (std::size_t i = 0; i < scenario.systems.size(); ++i) {
+      if (acts_on(effect, scenario.systems[i])) facts.act(effect, truth, &faults.systems[i], faults);
+    }
+  }
+  return faults;
+}
+
+}  // namespace pcor::simulate

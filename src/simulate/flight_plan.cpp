@@ -1,0 +1,265 @@
+#include "flight_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "pilot.hpp"
+
+namespace pcor::simulate {
+namespace {
+
+using Leg = Scenario::Leg;
+using Kind = Scenario::Leg::Kind;
+
+constexpr double two_pi = 6.283185307179586;
+constexpr double usual_acceleration = 0.5;  // m/s2, between legs
+constexpr double hold_rate = 3.0;           // m/s, to come back to a height
+
+/// Flies legs with a pilot; remembers the height and speed to hold.
+class Plan {
+ public:
+  explicit Plan(const Scenario& scenario)
+      : pilot_(scenario), held_height_(scenario.atmosphere.ground_height), held_speed_(0.0) {
+    std::size_t steps = 0;
+    for (const Leg& leg : scenario.legs) {
+      steps = pilot_.truth().size();
+      fly(leg);
+      legs_.push_back({leg.kind, steps, pilot_.truth().size()});
+    }
+  }
+
+  FlownPlan result() && { return {std::move(pilot_.truth()), std::move(legs_)}; }
+
+ private:
+  void fly(const Leg& leg) {
+    switch (leg.kind) {
+      case Kind::ground:
+        return wait(leg);
+      case Kind::take_off:
+        return take_off(leg);
+      case Kind::climb:
+      case Kind::descent:
+        return change_height(leg);
+      case Kind::level:
+        return level(leg);
+      case Kind::pitch:
+        return pitch(leg);
+      case Kind::yaw:
+        return yaw(leg);
+      case Kind::speed_run:
+        return speed_run(leg);
+      case Kind::reverse_heading:
+        settle(leg);
+        hold_for(leg, leg.duration);
+        turn(leg, 180.0);
+        return hold_for(leg, leg.duration);
+      case Kind::circle:
+      case Kind::turn:
+        settle(leg);
+        return turn(leg, leg.angle);
+      case Kind::landing:
+        return land(leg);
+    }
+  }
+
+  void wait(const Leg& leg) {
+    for (std::size_t i = 0; i < steps_of(leg.duration); ++i) pilot_.step({}, leg);
+  }
+
+  void take_off(const Leg& leg) {
+    constexpr double runway_acceleration = 2.0;  // m/s2, estimate
+    const double lift_off = pilot_.aircraft().lift_off_speed;
+    while (pilot_.speed() < lift_off) pilot_.step({0.0, runway_acceleration, 0.0, 0.0, leg.flaps}, leg);
+    pilot_.set_on_ground(false);
+    held_height_ = leg.altitude;
+    held_speed_ = leg.speed;
+    do {
+      Command command = hold(leg.rate);
+      command.acceleration = pilot_.towards_speed(held_speed_, 1.0);
+      command.flaps = pilot_.speed() < pilot_.aircraft().least_speed ? leg.flaps : 0.0;
+      pilot_.step(command, leg);
+    } while (!arrived());
+  }
+
+  void change_height(const Leg& leg) {
+    take_speed(leg);
+    held_height_ = leg.altitude;
+    do {
+      pilot_.step(hold(leg.rate), leg);
+    } while (!arrived());
+  }
+
+  void level(const Leg& leg) {
+    settle(leg);
+    hold_for(leg, leg.duration);
+  }
+
+  // The vertical speed is W sin(2 pi t/P), growing over the first and dying over the last half cycle, which
+  // leaves the height swinging about where it began. The power levers are not moved, so the airspeed
+  // swings too.
+  void pitch(const Leg& leg) {
+    settle(leg);
+    const double duration = leg.period * leg.cycles;
+    const double frequency = two_pi / leg.period;
+    const double peak = leg.amplitude / frequency;
+    const double ramp = 0.5 * leg.period;
+    const auto vertical_speed = [&](double t) {
+      const double envelope = std::clamp(std::min(t, duration - t) / ramp, 0.0, 1.0);
+      return peak * envelope * std::sin(frequency * t);
+    };
+    const double left_over = pilot_.vertical_speed();  // to be gone after the first half cycle
+    for (std::size_t i = 0; i < steps_of(duration); ++i) {
+      const double t = time_step * static_cast<double>(i);
+      Command command;
+      command.vertical_acceleration = (vertical_speed(t + time_step) - vertical_speed(t)) / time_step;
+      if (t < ramp) command.vertical_acceleration -= left_over / ramp;
+      constexpr double standard_gravity = 9.80665;  // m/s2
+      command.acceleration = -standard_gravity * pilot_.vertical_speed() / pilot_.speed();
+      pilot_.step(command, leg);
+    }
+  }
+
+  void yaw(const Leg& leg) {
+    settle(leg);
+    const double duration = leg.period * leg.cycles;
+    for (std::size_t i = 0; i < steps_of(duration); ++i) {
+      const double t = time_step * static_cast<double>(i);
+      Command command = hold(hold_rate);
+      const double envelope = std::clamp(std::min(t, duration - t) / (0.5 * leg.period), 0.0, 1.0);
+      command.sideslip = leg.amplitude * envelope * std::sin(two_pi * t / leg.period);
+      pilot_.step(command, leg);
+    }
+  }
+
+  // Slow, fast, slow again, then the speed that was before.
+  void speed_run(const Leg& leg) {
+    const double before = held_speed_;
+    for (const double speed : {leg.low, leg.high, leg.low, before}) {
+      held_speed_ = speed;
+      do {
+        pilot_.step(hold(hold_rate, leg.rate), leg);
+      } while (!at_speed());
+    }
+  }
+
+  // With the bank of the leg; rolls out in proportion to what is left.
+  void turn(const Leg& leg, double angle) {
+    constexpr double done = 0.3;      // deg
+    constexpr double roll_out = 3.0;  // deg of bank for each deg that is left
+    const double target = pilot_.direction() + angle;
+    while (std::abs(target - pilot_.direction()) > done) {
+      Command command = hold(hold_rate);
+      command.roll = std::clamp(roll_out * (target - pilot_.direction()), -leg.roll, leg.roll);
+      pilot_.step(command, leg);
+    }
+    while (std::abs(pilot_.roll()) > 1e-9) pilot_.step(hold(hold_rate), leg);
+  }
+
+  void land(const Leg& leg) {
+    constexpr double brakes = 1.5;      // m/s2, estimate
+    constexpr double touch_down = 0.5;  // m
+    held_speed_ = leg.speed;
+    held_height_ = pilot_.height_of_ground();
+    while (pilot_.height() - held_height_ > touch_down) {
+      Command command = hold(leg.rate);
+      // Slow down in level flight at first: flaps go down when it is slow enough.
+      if (pilot_.speed() < pilot_.aircraft().least_speed + 5.0) command.flaps = leg.flaps;
+      pilot_.step(command, leg);
+    }
+    pilot_.set_on_ground(true);
+    while (pilot_.speed() > 0.0) {
+      Command command{pilot_.towards_height(held_height_, hold_rate), -brakes, 0.0, 0.0, leg.flaps};
+      pilot_.step(command, leg);
+    }
+  }
+
+  static std::size_t steps_of(double duration) {
+    return static_cast<std::size_t>(std::lround(duration * internal_rate));
+  }
+
+  Command hold(double rate, double acceleration = usual_acceleration) {
+    Command command;
+    command.vertical_acceleration = pilot_.towards_height(held_height_, rate);
+    command.acceleration = pilot_.towards_speed(held_speed_, acceleration);
+    command.flaps = held_flaps_;
+    return command;
+  }
+
+  void hold_for(const Leg& leg, double duration) {
+    for (std::size_t i = 0; i < steps_of(duration); ++i) pilot_.step(hold(hold_rate), leg);
+  }
+
+  void take_speed(const Leg& leg) {
+    if (!std::isnan(leg.speed)) held_speed_ = leg.speed;
+    held_flaps_ = std::isnan(leg.flaps) ? 0.0 : leg.flaps;
+  }
+
+  // Reaches the speed and flaps of a leg before it counts.
+  void settle(const Leg& leg) {
+    take_speed(leg);
+    while (!at_speed() || !arrived() || std::abs(pilot_.flaps() - held_flaps_) > 0.5)
+      pilot_.step(hold(hold_rate), leg);
+  }
+
+  bool at_speed() const { return std::abs(pilot_.speed() - held_speed_) < 0.2; }
+  bool arrived() const {
+    return std::abs(pilot_.height() - held_height_) < 2.0 && std::abs(pilot_.vertical_speed()) < 0.3;
+  }
+
+  Pilot pilot_;
+  std::vector<LegSteps> legs_;
+  double held_height_, held_speed_, held_flaps_ = 0.0;
+};
+
+}  // namespace
+
+void complete(Leg& leg, const AircraftFacts& aircraft) {
+  const auto usual = [](double& number, double value) {
+    if (std::isnan(number)) number = value;
+  };
+  switch (leg.kind) {
+    case Kind::ground:
+      return usual(leg.duration, 120.0);
+    case Kind::take_off:
+      usual(leg.altitude, 1000.0);
+      usual(leg.speed, 1.25 * aircraft.least_speed);
+      usual(leg.rate, aircraft.climb_rate);
+      return usual(leg.flaps, 50.0);
+    case Kind::climb:
+    case Kind::descent:
+      return usual(leg.rate, aircraft.climb_rate);
+    case Kind::level:
+      usual(leg.duration, 300.0);
+      return usual(leg.flaps, 0.0);
+    case Kind::pitch:
+      usual(leg.period, 20.0);
+      usual(leg.cycles, 8.0);
+      return usual(leg.amplitude, 4.0);
+    case Kind::yaw:
+      usual(leg.period, 12.0);
+      usual(leg.cycles, 12.0);
+      return usual(leg.amplitude, 4.0);
+    case Kind::speed_run:
+      usual(leg.low, aircraft.speed_run_low);
+      usual(leg.high, aircraft.speed_run_high);
+      return usual(leg.rate, aircraft.speed_run_rate);
+    case Kind::reverse_heading:
+      usual(leg.duration, 240.0);
+      return usual(leg.roll, 20.0);
+    case Kind::circle:
+      usual(leg.angle, 360.0);
+      return usual(leg.roll, 26.7);
+    case Kind::turn:
+      usual(leg.angle, 90.0);
+      return usual(leg.roll, 20.0);
+    case Kind::landing:
+      usual(leg.speed, 1.1 * aircraft.lift_off_speed);
+      usual(leg.rate, 4.0);
+      return usual(leg.flaps, 50.0);
+  }
+}
+
+FlownPlan fly(const Scenario& scenario) { return Plan(scenario).result(); }
+
+}  // namespace pcor::simulate

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <pcor/offline/simulate.hpp>
+#include <string_view>
+#include <vector>
+
+#include "aircraft.hpp"
+#include "truth.hpp"
+
+namespace pcor::simulate {
+
+/// A number that a leg takes.
+struct LegNumber {
+  std::string_view key;
+  double Scenario::Leg::*value;
+};
+
+/// Every number of a leg.
+inline constexpr std::array<LegNumber, 12> leg_numbers{{
+    {"duration", &Scenario::Leg::duration},
+    {"altitude", &Scenario::Leg::altitude},
+    {"speed", &Scenario::Leg::speed},
+    {"rate", &Scenario::Leg::rate},
+    {"low", &Scenario::Leg::low},
+    {"high", &Scenario::Leg::high},
+    {"period", &Scenario::Leg::period},
+    {"cycles", &Scenario::Leg::cycles},
+    {"amplitude", &Scenario::Leg::amplitude},
+    {"roll", &Scenario::Leg::roll},
+    {"angle", &Scenario::Leg::angle},
+    {"flaps", &Scenario::Leg::flaps},
+}};
+
+/// A kind of leg: its name in scenarios and the numbers it takes.
+struct LegFacts {
+  Scenario::Leg::Kind kind;
+  std::string_view name;
+  std::string_view keys;  ///< separated by spaces
+};
+
+inline constexpr std::array<LegFacts, 12> leg_facts{{
+    {Scenario::Leg::Kind::ground, "ground", "duration"},
+    {Scenario::Leg::Kind::take_off, "take-off", "altitude speed rate flaps"},
+    {Scenario::Leg::Kind::climb, "climb", "altitude speed rate"},
+    {Scenario::Leg::Kind::descent, "descent", "altitude speed rate"},
+    {Scenario::Leg::Kind::level, "level", "duration speed flaps"},
+    {Scenario::Leg::Kind::pitch, "pitch", "period cycles amplitude speed"},
+    {Scenario::Leg::Kind::yaw, "yaw", "period cycles amplitude speed"},
+    {Scenario::Leg::Kind::speed_run, "speed-run", "low high rate"},
+    {Scenario::Leg::Kind::reverse_heading, "reverse-heading", "duration roll speed"},
+    {Scenario::Leg::Kind::circle, "circle", "roll angle speed"},
+    {Scenario::Leg::Kind::turn, "turn", "roll angle speed"},
+    {Scenario::Leg::Kind::landing, "landing", "speed rate flaps"},
+}};
+
+/// Fills the numbers of a leg that are not given with the usual ones of the aircraft. Sizes of manoeuvres:
+/// those of NCAR's calibration flights (QAtools, memo).
+void complete(Scenario::Leg& leg, const AircraftFacts& aircraft);
+
+/// The steps of one leg as it was flown: from `first` to before `last`.
+struct LegSteps {
+  Scenario::Leg::Kind kind;
+  std::size_t first;
+  std::size_t last;
+};
+
+/// The whole flight, step by step, and the legs in it.
+struct FlownPlan {
+  Truth truth;
+  std::vector<LegSteps> legs;
+};
+
+/// Flies the legs of a scenario one after another. @throws Error if one cannot be flown.
+FlownPlan fly(const Scenario& scenario);
+
+}  // namespace pcor::simulate

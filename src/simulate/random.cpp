@@ -1,0 +1,65 @@
+#include "random.hpp"
+
+#include <cmath>
+
+namespace pcor::simulate {
+namespace {
+
+// FNV-1a over the name, started from the seed, then the finaliser of SplitMix64, which spreads every bit.
+std::uint64_t stream_seed(std::uint64_t seed, std::string_view name) {
+  std::uint64_t hash = 0xcbf29ce484222325U ^ (seed * 0x9e3779b97f4a7c15U);
+  for (const char letter : name) {
+    hash ^= static_cast<unsigned char>(letter);
+    hash *= 0x100000001b3U;
+  }
+  hash = (hash ^ (hash >> 30U)) * 0xbf58476d1ce4e5b9U;
+  hash = (hash ^ (hash >> 27U)) * 0x94d049bb133111ebU;
+  return hash ^ (hash >> 31U);
+}
+
+}  // namespace
+
+Random::Random(std::uint64_t seed, std::string_view name) : engine_(stream_seed(seed, name)) {}
+
+double Random::uniform() {
+  constexpr double step = 1.0 / 9007199254740992.0;  // 2^-53
+  return (static_cast<double>(engine_() >> 11U) + 0.5) * step;
+}
+
+double Random::normal() {
+  if (has_spare_) {
+    has_spare_ = false;
+    return spare_;
+  }
+  for (;;) {
+    const double x = 2.0 * uniform() - 1.0;
+    const double y = 2.0 * uniform() - 1.0;
+    const double square = x * x + y * y;
+    if (square >= 1.0 || square == 0.0) continue;
+    const double factor = std::sqrt(-2.0 * std::log(square) / square);
+    spare_ = y * factor;
+    has_spare_ = true;
+    return x * factor;
+  }
+}
+
+Drift::Drift(std::uint64_t seed, std::string_view name) : random_(seed, name), value_(random_.normal()) {}
+
+double Drift::next(double kept) {
+  const double now = value_;
+  value_ = kept * value_ + std::sqrt(1.0 - kept * kept) * random_.normal();
+  return now;
+}
+
+double variance_of_mean(double kept, std::size_t count) {
+  const auto n = static_cast<double>(count);
+  double sum = n;
+  double power = 1.0;
+  for (std::size_t lag = 1; lag < count; ++lag) {
+    power *= kept;
+    sum += 2.0 * (n - static_cast<double>(lag)) * power;
+  }
+  return sum / (n * n);
+}
+
+}  // namespace pcor::simulate

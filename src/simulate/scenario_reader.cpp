@@ -1,0 +1,693 @@
+// An assertion of toml++ ends the program on input such as `[ = "x`. Without it the same line is refused.
+#ifndef NDEBUG
+#define NDEBUG
+#endif
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <pcor/offline/error.hpp>
+#include <pcor/offline/simulate.hpp>
+#include <sstream>
+#include <utility>
+
+#include "../model_names.hpp"
+#include "aircraft.hpp"
+#include "effects.hpp"
+#include "flight_plan.hpp"
+#include "noise.hpp"
+
+namespace pcor {
+namespace {
+
+using namespace simulate;
+using Place = toml::source_position;
+
+constexpr std::string_view scenario_format = "pcor-scenario/1";
+
+/// A key of a table with its value.
+struct Entry {
+  std::string key;
+  Place place;
+  const toml::node* node;
+};
+
+/// The entries of a table in the order of the text; toml++ sorts them by name.
+std::vector<Entry> entries_of(const toml::table& table) {
+  std::vector<Entry> entries;
+  for (const auto& [key, node] : table) {
+    entries.push_back({std::string(key.str()), key.source().begin, &node});
+  }
+  std::stable_sort(entries.begin(), entries.end(),
+                   [](const Entry& a, const Entry& b) { return a.place < b.place; });
+  return entries;
+}
+
+/// The values that a number may have, with its unit for the message.
+struct Domain {
+  double least;
+  double greatest;
+  std::string_view unit;
+};
+
+constexpr double any = 1e9;
+
+/// A number of a table: its key, where it goes, what it may be.
+template <class Object>
+struct NumberKey {
+  std::string_view key;
+  double Object::*value;
+  Domain domain;
+};
+
+using Atmosphere = Scenario::Atmosphere;
+constexpr std::array<NumberKey<Atmosphere>, 18> atmosphere_keys{{
+    {"ground_pressure", &Atmosphere::ground_pressure, {500.0, 1100.0, "hPa"}},
+    {"ground_height", &Atmosphere::ground_height, {-400.0, 5000.0, "m"}},
+    {"ground_temperature", &Atmosphere::ground_temperature, {220.0, 330.0, "K"}},
+    {"lapse_rate", &Atmosphere::lapse_rate, {-5.0, 12.0, "K/km"}},
+    {"inversion_height", &Atmosphere::inversion_height, {0.0, 20000.0, "m"}},
+    {"inversion_strength", &Atmosphere::inversion_strength, {0.0, 20.0, "K"}},
+    {"tropopause", &Atmosphere::tropopause, {5000.0, 18000.0, "m"}},
+    {"ground_humidity", &Atmosphere::ground_humidity, {0.1, 100.0, "%"}},
+    {"upper_humidity", &Atmosphere::upper_humidity, {0.1, 100.0, "%"}},
+    {"wind_speed", &Atmosphere::wind_speed, {0.0, 40.0, "m/s"}},
+    {"wind_from", &Atmosphere::wind_from, {0.0, 360.0, "deg"}},
+    {"wind_shear", &Atmosphere::wind_shear, {-5.0, 10.0, "m/s per km"}},
+    {"wind_drift", &Atmosphere::wind_drift, {0.0, 10.0, "m/s"}},
+    {"wind_drift_time", &Atmosphere::wind_drift_time, {1.0, 1e5, "s"}},
+    {"turbulence", &Atmosphere::turbulence, {1e-9, 0.1, "m2/s3"}},
+    {"boundary_layer", &Atmosphere::boundary_layer, {1e-9, 0.1, "m2/s3"}},
+    {"pressure_height_east", &Atmosphere::pressure_height_east, {-100.0, 100.0, "m per 100 km"}},
+    {"pressure_height_north", &Atmosphere::pressure_height_north, {-100.0, 100.0, "m per 100 km"}},
+}};
+
+constexpr std::array<NumberKey<Scenario::Cloud>, 4> cloud_keys{{
+    {"base", &Scenario::Cloud::base, {-400.0, 20000.0, "m"}},
+    {"top", &Scenario::Cloud::top, {-400.0, 20000.0, "m"}},
+    {"liquid", &Scenario::Cloud::liquid, {0.0, 10.0, "g/m3"}},
+    {"cover", &Scenario::Cloud::cover, {0.0, 1.0, ""}},
+}};
+
+constexpr std::array<NumberKey<Scenario::Noise>, 4> noise_keys{{
+    {"rms", &Scenario::Noise::rms, {0.0, any, ""}},
+    {"bias", &Scenario::Noise::bias, {-any, any, ""}},
+    {"memory", &Scenario::Noise::memory, {0.0, 1e5, "s"}},
+    {"resolution", &Scenario::Noise::resolution, {0.0, any, ""}},
+}};
+
+constexpr std::array<NumberKey<Scenario::Lams>, 6> lams_keys{{
+    {"elevation", &Scenario::Lams::elevation, {-45.0, 45.0, "deg"}},
+    {"azimuth", &Scenario::Lams::azimuth, {-45.0, 45.0, "deg"}},
+    {"mismatch", &Scenario::Lams::mismatch, {0.0, 10.0, "m/s"}},
+    {"mismatch_memory", &Scenario::Lams::mismatch_memory, {0.0, 100.0, "s"}},
+    {"dropout", &Scenario::Lams::dropout, {0.0, 1.0, ""}},
+    {"clear_above", &Scenario::Lams::clear_above, {0.0, 50000.0, "m"}},
+}};
+
+constexpr std::array<NumberKey<Scenario::Avionics>, 2> avionics_keys{{
+    {"response", &Scenario::Avionics::response, {0.0, 100.0, "s"}},
+    {"delay", &Scenario::Avionics::delay, {-10.0, 10.0, "s"}},
+}};
+
+constexpr std::array<NumberKey<Scenario::Outliers>, 2> outlier_keys{{
+    {"fraction", &Scenario::Outliers::fraction, {0.0, 1.0, ""}},
+    {"size", &Scenario::Outliers::size, {0.0, any, ""}},
+}};
+
+constexpr std::array<NumberKey<Scenario::Gap>, 2> gap_keys{{
+    {"start", &Scenario::Gap::start, {0.0, any, "s"}},
+    {"duration", &Scenario::Gap::duration, {0.0, any, "s"}},
+}};
+
+/// A term of a law and the id under which a scenario has it.
+struct LawKey {
+  std::string_view id;
+  double Scenario::Law::*value;
+};
+
+constexpr std::array<LawKey, 10> law_keys{{
+    {"static-constant", &Scenario::Law::a0},
+    {"static-alpha", &Scenario::Law::a1},
+    {"static-qp", &Scenario::Law::a2},
+    {"static-attack", &Scenario::Law::a3},
+    {"static-alpha-quad", &Scenario::Law::a4},
+    {"static-mach", &Scenario::Law::m1},
+    {"static-mach2", &Scenario::Law::m2},
+    {"static-mach3", &Scenario::Law::m3},
+    {"static-beta-odd", &Scenario::Law::b1},
+    {"static-beta-even", &Scenario::Law::b2},
+}};
+
+Names words_of(std::string_view text) {
+  std::istringstream stream{std::string(text)};
+  return {std::istream_iterator<std::string>(stream), {}};
+}
+
+/// Reads a parsed file into a scenario, and refuses what has no meaning with the place where it stands.
+class Reader {
+ public:
+  explicit Reader(std::string_view name) : name_(name) { scenario_.file = name; }
+
+  Scenario read(std::string_view text) {
+    toml::table root;
+    try {
+      root = toml::parse(text, name_);
+    } catch (const toml::parse_error& error) {
+      fail(error.source().begin, std::string(error.description()) + "; correct the syntax (TOML) here");
+    }
+    check_format(root);
+    read_root(root);
+    return std::move(scenario_);
+  }
+
+ private:
+  using Action = std::function<void(const Entry&)>;
+  using Actions = std::vector<std::pair<std::string, Action>>;
+
+  std::string place_of(Place place) const {
+    if (!place) place = {1, 1};
+    return fmt::format("{}:{}:{}", name_, place.line, place.column);
+  }
+
+  [[noreturn]] void fail(Place place, const std::string& what) const {
+    throw Error(one_line(place_of(place) + ": " + what));
+  }
+
+  [[noreturn]] void fail(const Entry& entry, const std::string& what) const {
+    fail(entry.node->source().begin, what);
+  }
+
+  /// Does for each key what `actions` say; a key that they do not know is an error.
+  void each(const toml::table& table, const std::string& title, const Actions& actions) const {
+    for (const Entry& entry : entries_of(table)) {
+      const auto action = std::find_if(actions.begin(), actions.end(),
+                                       [&](const auto& candidate) { return candidate.first == entry.key; });
+      if (action == actions.end()) {
+        Names known;
+        for (const auto& candidate : actions) known.push_back(candidate.first);
+        fail(entry.place, fmt::format("there is no {}{}; {}", in_quotes(entry.key), " in " + title,
+                                      instead_of(entry.key, known)));
+      }
+      action->second(entry);
+    }
+  }
+
+  double number(const Entry& entry, const Domain& domain) const {
+    const std::optional<double> value = entry.node->value<double>();
+    if (!value || !entry.node->is_number())
+      fail(entry, fmt::format("{} is not a number; give one", in_quotes(entry.key)));
+    if (!(*value >= domain.least && *value <= domain.greatest)) {
+      const std::string unit = domain.unit.empty() ? "" : " " + std::string(domain.unit);
+      fail(entry, fmt::format("{} = {}{} is impossible; give a number from {} to {}{}", entry.key, *value,
+                              unit, domain.least, domain.greatest, unit));
+    }
+    return *value;
+  }
+
+  std::int64_t whole(const Entry& entry) const {
+    const auto* value = entry.node->as_integer();
+    if (value == nullptr) fail(entry, in_quotes(entry.key) + " is not a whole number; give one");
+    return value->get();
+  }
+
+  std::string text(const Entry& entry) const {
+    const auto* value = entry.node->as_string();
+    if (value == nullptr) fail(entry, in_quotes(entry.key) + " is not a text; give one in quotes");
+    return value->get();
+  }
+
+  std::string one_of(const Entry& entry, const Names& known) const {
+    std::string value = text(entry);
+    if (std::find(known.begin(), known.end(), value) == known.end())
+      fail(entry,
+           fmt::format("there is no {} {}; {}", entry.key, in_quotes(value), instead_of(value, known)));
+    return value;
+  }
+
+  bool boolean(const Entry& entry) const {
+    const auto* value = entry.node->as_boolean();
+    if (value == nullptr) fail(entry, in_quotes(entry.key) + " is not true or false; give one of them");
+    return value->get();
+  }
+
+  const toml::table& table(const Entry& entry) const {
+    const auto* value = entry.node->as_table();
+    if (value == nullptr) fail(entry, fmt::format("{} is not a table; write [{}]", entry.key, entry.key));
+    return *value;
+  }
+
+  /// Calls `read(table, place)` for each table of a list of tables.
+  template <class Read>
+  void tables(const Entry& entry, Read read) const {
+    const auto* list = entry.node->as_array();
+    if (list == nullptr) fail(entry, fmt::format("{} is not a list; write [[{}]]", entry.key, entry.key));
+    for (const toml::node& node : *list) {
+      if (!node.is_table())
+        fail(node.source().begin, fmt::format("this is not a table; write [[{}]]", entry.key));
+      read(*node.as_table(), node.source().begin);
+    }
+  }
+
+  template <class Object, std::size_t count>
+  Actions numbers(Object& object, const std::array<NumberKey<Object>, count>& keys) const {
+    Actions actions;
+    for (const NumberKey<Object>& key : keys) {
+      actions.emplace_back(std::string(key.key), [this, &object, key](const Entry& entry) {
+        object.*key.value = number(entry, key.domain);
+      });
+    }
+    return actions;
+  }
+
+  void check_format(const toml::table& root) const {
+    const std::string wanted = fmt::format("format = \"{}\"", scenario_format);
+    for (const Entry& entry : entries_of(root)) {
+      if (entry.key != "format") continue;
+      const std::string format = text(entry);
+      if (format == scenario_format) return;
+      fail(entry, fmt::format("{} is not the format of a scenario that this program reads; write {}",
+                              in_quotes(format), wanted));
+    }
+    fail(Place{1, 1}, "the file does not say that it is a scenario; begin it with " + wanted);
+  }
+
+  void read_root(const toml::table& root) {
+    std::map<std::string, Entry> later;
+    const Action keep = [&](const Entry& entry) { later.emplace(entry.key, entry); };
+    each(root, "a scenario",
+         {{"format", [](const Entry&) {}},
+          {"name", [&](const Entry& entry) { scenario_.name = text(entry); }},
+          {"aircraft", [&](const Entry& entry) { read_aircraft(entry); }},
+          {"seed", [&](const Entry& entry) { read_seed(entry); }},
+          {"start", [&](const Entry& entry) { read_start(entry); }},
+          {"rate", [&](const Entry& entry) { read_rate(entry); }},
+          {"latitude",
+           [&](const Entry& entry) {
+             scenario_.latitude = number(entry, {-85.0, 85.0, "deg"});
+           }},
+          {"longitude",
+           [&](const Entry& entry) {
+             scenario_.longitude = number(entry, {-180.0, 180.0, "deg"});
+           }},
+          {"heading",
+           [&](const Entry& entry) {
+             scenario_.heading = number(entry, {0.0, 360.0, "deg"});
+           }},
+          {"weight",
+           [&](const Entry& entry) {
+             scenario_.weight = number(entry, {10000.0, 90000.0, "kg"});
+           }},
+          {"recovery_factor",
+           [&](const Entry& entry) {
+             scenario_.recovery_factor = number(entry, {0.0, 1.2, ""});
+           }},
+          {"noiseless", [&](const Entry& entry) { scenario_.noise_on = !boolean(entry); }},
+          {"atmosphere", keep},
+          {"system", keep},
+          {"lams", keep},
+          {"avionics", keep},
+          {"noise", keep},
+          {"leg", keep},
+          {"effect", keep},
+          {"outliers", keep},
+          {"gap", keep}});
+    if (scenario_.name.empty()) fail(Place{1, 1}, "the scenario has no name; add name = \"...\"");
+    if (!has_aircraft_) fail(Place{1, 1}, "the scenario has no aircraft; add aircraft = \"C-130\" or \"GV\"");
+    const auto with = [&](const std::string& key, void (Reader::*reader)(const Entry&)) {
+      const auto found = later.find(key);
+      if (found != later.end()) (this->*reader)(found->second);
+    };
+    with("atmosphere", &Reader::read_atmosphere);
+    with("system", &Reader::read_systems);
+    if (scenario_.systems.empty()) fail(Place{1, 1}, "there is no pair of pressures; add a [[system]]");
+    with("lams", &Reader::read_lams);
+    with("avionics", &Reader::read_avionics);
+    scenario_.noise = usual_noise(scenario_);
+    with("noise", &Reader::read_noise);
+    with("leg", &Reader::read_legs);
+    if (scenario_.legs.empty()) fail(Place{1, 1}, "nothing is flown; add a [[leg]]");
+    with("effect", &Reader::read_effects);
+    with("outliers", &Reader::read_outliers);
+    with("gap", &Reader::read_gaps);
+  }
+
+  void read_aircraft(const Entry& entry) {
+    const std::string name = one_of(entry, {"C-130", "GV"});
+    scenario_.aircraft = name == "GV" ? Scenario::Aircraft::gv : Scenario::Aircraft::c130;
+    has_aircraft_ = true;
+  }
+
+  void read_seed(const Entry& entry) {
+    const std::int64_t seed = whole(entry);
+    if (seed < 0) fail(entry, fmt::format("seed = {} is negative; give 0 or more", seed));
+    scenario_.seed = static_cast<std::uint64_t>(seed);
+  }
+
+  void read_start(const Entry& entry) {
+    const auto* value = entry.node->as_date_time();
+    if (value == nullptr) fail(entry, "'start' is not a time; write it as 2011-11-17T20:00:00Z");
+    const toml::date_time& time = value->get();
+    if (time.offset && time.offset->minutes != 0)
+      fail(entry, "'start' is not UTC; write it as 2011-11-17T20:00:00Z");
+    if (time.time.nanosecond != 0)
+      fail(entry, "'start' is not a whole second; write it as 2011-11-17T20:00:00Z");
+    // Days from the civil calendar: Hinnant, "chrono-compatible low-level date algorithms".
+    const int year = time.date.year - (time.date.month <= 2 ? 1 : 0);
+    const int era = (year >= 0 ? year : year - 399) / 400;
+    const int year_of_era = year - era * 400;
+    const int month = time.date.month + (time.date.month > 2 ? -3 : 9);
+    const int day_of_year = (153 * month + 2) / 5 + time.date.day - 1;
+    const int day_of_era = year_of_era * 365 + year_of_era / 4 - year_of_era / 100 + day_of_year;
+    const double days = era * 146097.0 + day_of_era - 719468.0;
+    scenario_.start = days * 86400.0 + time.time.hour * 3600.0 + time.time.minute * 60.0 + time.time.second;
+  }
+
+  void read_rate(const Entry& entry) {
+    const std::int64_t rate = whole(entry);
+    if (rate != 1 && rate != 5 && rate != 25)
+      fail(entry, fmt::format("rate = {} is impossible; give 1, 5 or 25 samples a second", rate));
+    scenario_.rate = static_cast<int>(rate);
+  }
+
+  void read_atmosphere(const Entry& section) {
+    Actions actions = numbers(scenario_.atmosphere, atmosphere_keys);
+    actions.emplace_back("cloud", [this](const Entry& entry) {
+      tables(entry, [this](const toml::table& layer, Place place) { read_cloud(layer, place); });
+    });
+    each(table(section), "[atmosphere]", actions);
+    if (scenario_.atmosphere.inversion_height < scenario_.atmosphere.ground_height)
+      fail(section.place, "the inversion is below the ground; give inversion_height above ground_height");
+  }
+
+  void read_cloud(const toml::table& layer, Place place) {
+    Scenario::Cloud cloud;
+    each(layer, "[[atmosphere.cloud]]", numbers(cloud, cloud_keys));
+    if (!(cloud.base < cloud.top)) fail(place, "the cloud's base is not below its top; give base < top");
+    scenario_.atmosphere.clouds.push_back(cloud);
+  }
+
+  void read_systems(const Entry& section) {
+    tables(section, [this](const toml::table& items, Place place) {
+      Scenario::System system;
+      each(items, "[[system]]",
+           {{"static", [&](const Entry& entry) { system.static_pressure = text(entry); }},
+            {"dynamic", [&](const Entry& entry) { system.dynamic_pressure = text(entry); }},
+            {"mach",
+             [&](const Entry& entry) {
+               system.independent_mach = one_of(entry, {"pair", "independent"}) != "pair";
+             }},
+            {"law", [&](const Entry& entry) { read_law(entry, system.law); }}});
+      for (const auto& [key, name] :
+           {std::pair{"static", system.static_pressure}, std::pair{"dynamic", system.dynamic_pressure}}) {
+        if (name.empty()) fail(place, fmt::format("the system has no {} = \"...\"; add it", key));
+        for (const Scenario::System& other : scenario_.systems) {
+          if (name == other.static_pressure || name == other.dynamic_pressure)
+            fail(place, fmt::format("{} belongs to two systems; give each its own", name));
+        }
+      }
+      if (system.static_pressure == system.dynamic_pressure)
+        fail(place, "static and dynamic are one variable; give each its own");
+      scenario_.systems.push_back(system);
+    });
+  }
+
+  void read_law(const Entry& section, Scenario::Law& law) const {
+    Actions actions;
+    for (const LawKey& key : law_keys) {
+      actions.emplace_back(std::string(key.id), [this, &law, key](const Entry& entry) {
+        law.*key.value = number(entry, {-10.0, 10.0, ""});
+      });
+    }
+    each(table(section), "law", actions);
+  }
+
+  void read_lams(const Entry& section) { each(table(section), "[lams]", numbers(scenario_.lams, lams_keys)); }
+
+  void read_avionics(const Entry& section) {
+    Actions actions = numbers(scenario_.avionics, avionics_keys);
+    actions.emplace_back("law", [this](const Entry& entry) {
+      read_law(entry, scenario_.avionics.law);
+      scenario_.avionics.has_law = true;
+      const Scenario::Law& law = scenario_.avionics.law;
+      if (law.m1 == 0.0 && law.m2 == 0.0 && law.m3 == 0.0)
+        fail(entry.place, "the law does not depend on the Mach number; add a term static-mach or another");
+    });
+    each(table(section), "[avionics]", actions);
+  }
+
+  // A table, or only the rms.
+  void read_noise(const Entry& section) {
+    for (const Entry& entry : entries_of(table(section))) {
+      const auto found = scenario_.noise.find(entry.key);
+      if (found == scenario_.noise.end()) {
+        fail(entry.place, fmt::format("no variable {} is recorded; {}", in_quotes(entry.key),
+                                      instead_of(entry.key, recorded())));
+      }
+      if (entry.node->is_table())
+        each(*entry.node->as_table(), "the noise of " + entry.key, numbers(found->second, noise_keys));
+      else
+        found->second = {number(entry, {0.0, any, ""}), 0.0, found->second.memory, found->second.resolution};
+    }
+  }
+
+  void read_legs(const Entry& section) {
+    const AircraftFacts& aircraft = facts_of(scenario_.aircraft);
+    bool flying = false;
+    double height = scenario_.atmosphere.ground_height;
+    tables(section, [&](const toml::table& items, Place place) {
+      Scenario::Leg leg;
+      leg.place = place_of(place);
+      const LegFacts& facts = leg_kind(items, place);
+      leg.kind = facts.kind;
+      std::map<std::string, Entry> given;
+      Actions actions{{"kind", [](const Entry&) {}}};
+      for (const std::string& key : words_of(facts.keys)) {
+        actions.emplace_back(key, [&](const Entry& entry) {
+          const auto which = std::find_if(leg_numbers.begin(), leg_numbers.end(),
+                                          [&](const LegNumber& each) { return each.key == entry.key; });
+          leg.*which->value = number(entry, leg_domain(entry.key, leg.kind, aircraft));
+        });
+      }
+      each(items, fmt::format("a leg of kind {}", in_quotes(facts.name)), actions);
+      complete(leg, aircraft);
+      check_leg(leg, facts, place, flying, height);
+      scenario_.legs.push_back(leg);
+    });
+  }
+
+  const LegFacts& leg_kind(const toml::table& items, Place place) const {
+    for (const Entry& entry : entries_of(items)) {
+      if (entry.key != "kind") continue;
+      const std::string kind = one_of(entry, names_of(leg_facts, &LegFacts::name));
+      return *std::find_if(leg_facts.begin(), leg_facts.end(),
+                           [&](const LegFacts& each) { return each.name == kind; });
+    }
+    fail(place, "the leg has no kind; add kind = \"level\" or another");
+  }
+
+  static Domain leg_domain(const std::string& key, Scenario::Leg::Kind kind, const AircraftFacts& aircraft) {
+    using Kind = Scenario::Leg::Kind;
+    const bool slow = kind == Kind::take_off || kind == Kind::landing;
+    if (key == "duration") return {1.0, 86400.0, "s"};
+    if (key == "altitude") return {-400.0, aircraft.ceiling, "m"};
+    if (key == "speed" || key == "low" || key == "high")
+      return {slow ? aircraft.lift_off_speed : aircraft.least_speed, aircraft.greatest_speed, "m/s"};
+    if (key == "rate") {
+      if (kind == Kind::speed_run) return {0.05, 2.0, "m/s2"};
+      return {0.5, 30.0, "m/s"};
+    }
+    if (key == "period") return {3.0, 120.0, "s"};
+    if (key == "cycles") return {1.0, 1000.0, ""};
+    if (key == "amplitude") {
+      if (kind == Kind::pitch) return {0.1, 8.0, "m/s2"};
+      return {0.1, 15.0, "deg"};
+    }
+    if (key == "roll") return {1.0, 60.0, "deg"};
+    if (key == "angle") return {-3600.0, 3600.0, "deg"};
+    return {0.0, 100.0, "percent"};
+  }
+
+  /// What the numbers of a leg say together, and with the legs before it. `height` is what they led to.
+  void check_leg(const Scenario::Leg& leg, const LegFacts& facts, Place place, bool& flying,
+                 double& height) const {
+    using Kind = Scenario::Leg::Kind;
+    const bool starts = leg.kind == Kind::take_off || leg.kind == Kind::ground;
+    if (starts == flying) {
+      fail(place, flying ? fmt::format("{} in the air; put a landing before it", facts.name)
+                         : fmt::format("{} on the ground; put a take-off before it", facts.name));
+    }
+    if (leg.kind == Kind::take_off) flying = true;
+    if (leg.kind == Kind::landing) flying = false;
+    const bool changes_height = leg.kind == Kind::climb || leg.kind == Kind::descent;
+    if (changes_height && std::isnan(leg.altitude))
+      fail(place, fmt::format("the {} has no altitude; add altitude = ... (m)", facts.name));
+    if ((changes_height || leg.kind == Kind::take_off) &&
+        leg.altitude < scenario_.atmosphere.ground_height + 50.0)
+      fail(place, fmt::format("altitude = {} m is not 50 m above the ground; give more", leg.altitude));
+    if (leg.kind == Kind::climb && leg.altitude <= height)
+      fail(place, fmt::format("the climb to {} m begins at {} m; make it a descent", leg.altitude, height));
+    if (leg.kind == Kind::descent && leg.altitude >= height)
+      fail(place, fmt::format("the descent to {} m begins at {} m; make it a climb", leg.altitude, height));
+    if (changes_height || leg.kind == Kind::take_off) height = leg.altitude;
+    if (leg.kind == Kind::landing) height = scenario_.atmosphere.ground_height;
+    if (std::abs(leg.angle) < 1.0)
+      fail(place,
+           fmt::format("angle = {} deg is no {}; give 1 deg or more to either side", leg.angle, facts.name));
+    if (leg.kind == Kind::speed_run && !(leg.low < leg.high))
+      fail(place, fmt::format("low = {} m/s is not below high = {} m/s; give low < high", leg.low, leg.high));
+  }
+
+  void read_effects(const Entry& section) {
+    tables(section, [this](const toml::table& items, Place place) {
+      Scenario::Effect effect;
+      effect.place = place_of(place);
+      const FaultFacts& facts = effect_facts(items, place);
+      effect.id = facts.id;
+      Actions actions{{"id", [](const Entry&) {}},
+                      {"on", [&](const Entry& entry) { effect.on = target(entry, facts); }}};
+      for (const FaultParameter& parameter : facts.parameters) {
+        const std::string key(parameter.key);
+        if (!std::isnan(parameter.usual)) effect.parameters[key] = parameter.usual;
+        actions.emplace_back(key, [&](const Entry& entry) {
+          effect.parameters[entry.key] = number(entry, parameter_domain(entry.key));
+        });
+      }
+      if (facts.id == "unknown") add_unknown(effect, actions);
+      each(items, fmt::format("the effect {}", in_quotes(facts.id)), actions);
+      for (const FaultParameter& parameter : facts.parameters) {
+        if (effect.parameters.count(std::string(parameter.key)) == 0)
+          fail(place, fmt::format("{} has no {}; add {} = ... ({})", effect.id, parameter.key, parameter.key,
+                                  parameter.unit));
+      }
+      if (facts.target == Target::variable && effect.on.empty())
+        fail(place, fmt::format("{} has no variable; add on = \"VLAMS\" or another", effect.id));
+      if (facts.id == "unknown" && (effect.of.empty() || effect.where.empty()))
+        fail(place,
+             "unknown needs of = \"...\", the variable that causes it, and where = \"static\" or another");
+      check_effect(effect, place);
+      scenario_.effects.push_back(effect);
+    });
+  }
+
+  void add_unknown(Scenario::Effect& effect, Actions& actions) const {
+    effect.shape = "linear";
+    actions.emplace_back("where", [this, &effect](const Entry& entry) {
+      effect.where = one_of(entry, {"static", "total", "lams", "temperature"});
+    });
+    actions.emplace_back("shape", [this, &effect](const Entry& entry) {
+      effect.shape = one_of(entry, {"linear", "quadratic", "step", "sine"});
+    });
+    actions.emplace_back("of", [this, &effect](const Entry& entry) {
+      effect.of = text(entry);
+      if (find_series(effect.of) != nullptr) return;
+      Names known{"hidden"};
+      for (const TruthFacts& facts : truth_facts) {
+        if (!facts.recorded.empty()) known.emplace_back(facts.recorded);
+        if (!facts.name.empty()) known.emplace_back(facts.name);
+      }
+      fail(entry, fmt::format("no variable {} is simulated; {}", in_quotes(effect.of),
+                              instead_of(effect.of, known)));
+    });
+  }
+
+  /// What an effect says together with the rest of the scenario.
+  void check_effect(const Scenario::Effect& effect, Place place) const {
+    const bool of_clouds = effect.id == "lams-cloud" || effect.id == "temp-wetting";
+    if (of_clouds && scenario_.atmosphere.clouds.empty())
+      fail(place, fmt::format("{} needs a cloud; add an [[atmosphere.cloud]]", effect.id));
+    if (effect.id != "unknown") return;
+    const bool on_systems = effect.where == "static" || effect.where == "total";
+    if (!on_systems && !effect.on.empty())
+      fail(place, fmt::format("what acts on the {} acts on nothing else; remove 'on'", effect.where));
+    if (effect.parameters.at("scale") == 0.0) fail(place, "scale = 0 is impossible; give another number");
+  }
+
+  static Domain parameter_domain(const std::string& key) {
+    if (key == "tau" || key == "drying") return {0.0, 600.0, "s"};
+    if (key == "seconds") return {-60.0, 60.0, "s"};
+    if (key == "fraction") return {-1.0, 1.0, ""};
+    if (key == "scale") return {-any, any, ""};
+    return {-1e6, 1e6, ""};
+  }
+
+  const FaultFacts& effect_facts(const toml::table& items, Place place) const {
+    for (const Entry& entry : entries_of(items)) {
+      if (entry.key != "id") continue;
+      const std::string id = text(entry);
+      if (const FaultFacts* facts = find_fault(id)) return *facts;
+      fail(entry, fmt::format("no effect {} can be simulated; {}", in_quotes(id),
+                              instead_of(id, names_of(fault_facts(), &FaultFacts::id))));
+    }
+    fail(place, "the effect has no id; add id = \"static-lag\" or another");
+  }
+
+  std::string target(const Entry& entry, const FaultFacts& facts) const {
+    Names known;
+    if (facts.target == Target::variable) known = recorded();
+    if (facts.target == Target::system || facts.id == "unknown") {
+      for (const Scenario::System& system : scenario_.systems) {
+        known.push_back(system.static_pressure);
+        known.push_back(system.dynamic_pressure);
+      }
+    }
+    if (known.empty()) fail(entry.place, fmt::format("{} acts on one thing only; remove 'on'", facts.id));
+    return one_of(entry, known);
+  }
+
+  void read_outliers(const Entry& section) {
+    tables(section, [this](const toml::table& items, Place place) {
+      Scenario::Outliers outliers;
+      Actions actions = numbers(outliers, outlier_keys);
+      actions.emplace_back("variable",
+                           [&](const Entry& entry) { outliers.variable = one_of(entry, recorded()); });
+      each(items, "[[outliers]]", actions);
+      if (outliers.variable.empty()) fail(place, "the outliers have no variable; add variable = \"...\"");
+      if (outliers.fraction == 0.0 || outliers.size == 0.0)
+        fail(place, "the outliers are none; give a fraction and a size above 0");
+      scenario_.outliers.push_back(outliers);
+    });
+  }
+
+  void read_gaps(const Entry& section) {
+    tables(section, [this](const toml::table& items, Place place) {
+      Scenario::Gap gap;
+      Actions actions = numbers(gap, gap_keys);
+      actions.emplace_back("variable", [&](const Entry& entry) { gap.variable = one_of(entry, recorded()); });
+      each(items, "[[gap]]", actions);
+      if (gap.duration == 0.0) fail(place, "the gap has no duration; add duration = ... (s)");
+      scenario_.gaps.push_back(gap);
+    });
+  }
+
+  /// The variables that the scenario's instruments record.
+  Names recorded() const {
+    Names names;
+    for (const auto& [name, noise] : scenario_.noise) names.push_back(name);
+    return names;
+  }
+
+  std::string name_;
+  Scenario scenario_;
+  bool has_aircraft_ = false;
+};
+
+}  // namespace
+
+Scenario parse_scenario(std::string_view text, std::string_view name) { return Reader(name).read(text); }
+
+Scenario read_scenario(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (!file || !std::filesystem::is_regular_file(path) || !(text << file.rdbuf()))
+    throw Error(one_line(path.string() + ": cannot be read; check the name and the permissions"));
+  return parse_scenario(text.str(), path.string());
+}
+
+}  // namespace pcor

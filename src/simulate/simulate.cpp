@@ -1,0 +1,303 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <pcor/offline/error.hpp>
+#include <pcor/offline/flight_writer.hpp>
+#include <pcor/offline/simulate.hpp>
+#include <pcor/offline/utc.hpp>
+#include <pcor/physics/constants.hpp>
+#include <tuple>
+#include <utility>
+
+#include "air.hpp"
+#include "aircraft.hpp"
+#include "effects.hpp"
+#include "flight_plan.hpp"
+#include "sensors.hpp"
+
+namespace pcor {
+namespace {
+
+using namespace simulate;
+
+constexpr int slow = 1;  // samples a second
+
+/// A variable of the file with its values.
+struct Column {
+  OutputVariable variable;
+  std::vector<double> values;
+};
+
+/// Collects the variables of the file.
+class Recording {
+ public:
+  Recording(const Scenario& scenario, const Truth& truth)
+      : scenario_(scenario),
+        truth_(truth),
+        aircraft_(facts_of(scenario.aircraft)),
+        faults_(faults_of(scenario, truth)),
+        recorder_(scenario, faults_) {
+    record_pressures();
+    record_air();
+    record_avionics();
+    record_motion();
+    write_truth();
+  }
+
+  std::vector<Column>& columns() { return columns_; }
+
+ private:
+  std::vector<double>& record(const std::string& name, const std::string& units, const std::string& what,
+                              Series series, int rate) {
+    OutputVariable variable;
+    variable.name = name;
+    variable.rate = rate;
+    variable.units = units;
+    variable.long_name = what;
+    variable.data_quality = "Simulated";
+    columns_.push_back({std::move(variable), recorder_.record(name, std::move(series), rate)});
+    return columns_.back().values;
+  }
+
+  void put(const std::string& name, const std::string& units, const std::string& what,
+           std::vector<double> values, int rate) {
+    OutputVariable variable;
+    variable.name = name;
+    variable.rate = rate;
+    variable.units = units;
+    variable.long_name = what;
+    variable.data_quality = "Simulated";
+    columns_.push_back({std::move(variable), std::move(values)});
+  }
+
+  void record_pressures() {
+    const int rate = scenario_.rate;
+    for (std::size_t i = 0; i < scenario_.systems.size(); ++i) {
+      const Scenario::System& system = scenario_.systems[i];
+      PairReading pair = read_pair(system, faults_.systems[i], truth_, aircraft_);
+      record(system.static_pressure, "hPa", "raw static pressure", std::move(pair.static_pressure), rate);
+      record(system.dynamic_pressure, "hPa", "raw dynamic pressure", std::move(pair.dynamic_pressure), rate);
+      put("TRUE_PCOR_" + system.static_pressure, "hPa",
+          "static defect of " + system.static_pressure + ", to be added to it",
+          Recorder::means(pair.defect, rate), rate);
+      if (i == 0) record_radome(pair.defect);
+    }
+  }
+
+  // The angles that processing finds are those of the recorded pressures.
+  void record_radome(const Series& defect) {
+    const int rate = scenario_.rate;
+    RadomeReading radome = read_radome(faults_, truth_, aircraft_, defect);
+    const std::vector<double> q =
+        record("QCR", "hPa", "raw dynamic pressure, radome", std::move(radome.dynamic_pressure), rate);
+    const std::vector<double> up =
+        record("ADIFR", "hPa", "vertical differential pressure, radome", std::move(radome.attack), rate);
+    const std::vector<double> side =
+        record("BDIFR", "hPa", "horizontal differential pressure, radome", std::move(radome.sideslip), rate);
+    const std::vector<double> mach = Recorder::means(truth_.mach, rate);
+    std::vector<double> attack(q.size());
+    std::vector<double> sideslip(q.size());
+    constexpr double least_flow = 1.0;  // hPa; below it the ports say nothing
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      const bool flow = q[i] > least_flow;
+      attack[i] = flow ? aircraft_.attack.angle(up[i] / q[i], mach[i]) : Scenario::by_default;
+      sideslip[i] = flow ? aircraft_.sideslip.angle(side[i] / q[i], mach[i]) : Scenario::by_default;
+    }
+    put("ATTACK", "degree", "angle of attack, radome", std::move(attack), rate);
+    put("SSLIP", "degree", "sideslip, radome, wind from starboard positive", std::move(sideslip), rate);
+  }
+
+  void record_air() {
+    const int rate = scenario_.rate;
+    Thermometer first = aircraft_.thermometer;
+    if (!std::isnan(scenario_.recovery_factor)) first.recovery = {scenario_.recovery_factor, 0.0, 0.0, 0.0};
+    for (const Thermometer& thermometer : {first, aircraft_.second_thermometer}) {
+      record(std::string(thermometer.name), "degC", "recovery temperature",
+             celsius(read_thermometer(thermometer, faults_, truth_)), rate);
+    }
+    Series vapor = truth_.vapor_pressure;
+    for (double& value : vapor) value *= 1.0 + faults_.humidity_gain;
+    Series dew(vapor.size());
+    std::transform(vapor.begin(), vapor.end(), dew.begin(), dew_point);
+    const std::vector<double> recorded =
+        record("EDPC", "hPa", "ambient water vapour pressure", std::move(vapor), slow);
+    put("EWX", "hPa", "ambient water vapour pressure, reference", recorded, slow);
+    record("DPXC", "degC", "dew point", celsius(std::move(dew)), slow);
+    record("VLAMS", "m/s", "airspeed along the laser beam", read_lams(scenario_, faults_, truth_, aircraft_),
+           rate);
+  }
+
+  void record_avionics() {
+    const auto filtered = [this](Series series) {
+      return delayed(with_response(std::move(series), scenario_.avionics.response), scenario_.avionics.delay);
+    };
+    Series dynamic = truth_.total_pressure;
+    for (std::size_t i = 0; i < dynamic.size(); ++i) dynamic[i] -= truth_.pressure[i];
+    record("PS_A", "hPa", "avionics static pressure", filtered(truth_.pressure), slow);
+    record("QC_A", "hPa", "avionics dynamic pressure", filtered(std::move(dynamic)), slow);
+    Series mach = scenario_.avionics.has_law ? mach_of_law(scenario_, truth_, aircraft_) : truth_.mach;
+    record("MACH_A", "1", "avionics Mach number", filtered(std::move(mach)), scenario_.rate);
+  }
+
+  void record_motion() {
+    for (const TruthFacts& facts : truth_facts) {
+      if (facts.recorded.empty()) continue;
+      Series series = truth_.*facts.series;
+      if (facts.unit == "degC") series = celsius(std::move(series));
+      std::vector<double>& values =
+          record(std::string(facts.recorded), std::string(facts.unit), std::string(facts.description),
+                 std::move(series), facts.fast ? scenario_.rate : slow);
+      if (facts.angle) wrap(values);
+    }
+  }
+
+  void write_truth() {
+    for (const TruthFacts& facts : truth_facts) {
+      if (facts.name.empty()) continue;
+      const int rate = facts.fast ? scenario_.rate : slow;
+      Series series = truth_.*facts.series;
+      if (facts.unit == "degC") series = celsius(std::move(series));
+      put(std::string(facts.name), std::string(facts.unit), "truth: " + std::string(facts.description),
+          Recorder::means(series, rate), rate);
+    }
+    Series dynamic = truth_.total_pressure;
+    for (std::size_t i = 0; i < dynamic.size(); ++i) dynamic[i] -= truth_.pressure[i];
+    put("TRUE_QC", "hPa", "truth: dynamic pressure", Recorder::means(dynamic, scenario_.rate),
+        scenario_.rate);
+  }
+
+  static Series celsius(Series kelvin) {
+    for (double& value : kelvin) value -= constants::ice_point;
+    return kelvin;
+  }
+
+  static void wrap(std::vector<double>& degrees) {
+    for (double& value : degrees) value -= 360.0 * std::floor(value / 360.0);
+  }
+
+  const Scenario& scenario_;
+  const Truth& truth_;
+  const AircraftFacts& aircraft_;
+  Faults faults_;
+  Recorder recorder_;
+  std::vector<Column> columns_;
+};
+
+/// The records that are in the file: all but those of gaps without a variable.
+std::vector<std::size_t> kept_records(const Scenario& scenario, std::size_t records) {
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < records; ++i) {
+    const auto time = static_cast<double>(i);
+    const bool lost = std::any_of(scenario.gaps.begin(), scenario.gaps.end(), [time](const auto& gap) {
+      return gap.variable.empty() && time >= gap.start && time < gap.start + gap.duration;
+    });
+    if (!lost) kept.push_back(i);
+  }
+  if (kept.empty()) throw Error(scenario.file + ": the gaps leave no record; make them shorter");
+  return kept;
+}
+
+std::vector<double> select(const std::vector<double>& values, const std::vector<std::size_t>& records,
+                           std::size_t rate) {
+  std::vector<double> selected;
+  selected.reserve(records.size() * rate);
+  for (const std::size_t record : records) {
+    for (std::size_t k = 0; k < rate; ++k) selected.push_back(values[record * rate + k]);
+  }
+  return selected;
+}
+
+LegFlown describe(const LegSteps& steps, const Truth& truth, double start) {
+  LegFlown leg;
+  leg.kind = leg_facts[static_cast<std::size_t>(steps.kind)].name;
+  leg.first_time = start + time_step * static_cast<double>(steps.first);
+  leg.last_time = start + time_step * static_cast<double>(steps.last);
+  const auto extremes = [&](const Series& series) {
+    const auto begin = series.begin();
+    const auto found = std::minmax_element(begin + static_cast<std::ptrdiff_t>(steps.first),
+                                           begin + static_cast<std::ptrdiff_t>(steps.last));
+    return std::pair{*found.first, *found.second};
+  };
+  std::tie(leg.least_speed, leg.greatest_speed) = extremes(truth.airspeed);
+  std::tie(leg.least_attack, leg.greatest_attack) = extremes(truth.attack);
+  for (std::size_t i = steps.first; i < steps.last; ++i) {
+    leg.altitude += truth.altitude[i];
+    leg.pressure += truth.pressure[i];
+  }
+  leg.altitude /= static_cast<double>(steps.last - steps.first);
+  leg.pressure /= static_cast<double>(steps.last - steps.first);
+  return leg;
+}
+
+FileDescription description_of(const Scenario& scenario, const SimulationSummary& summary,
+                               const std::string& history) {
+  FileDescription description;
+  description.title = "Simulated flight: " + scenario.name;
+  description.history = history.empty() ? "simulated by pcor" : history;
+  description.latitude = "GGLAT";
+  description.longitude = "GGLON";
+  description.altitude = "GGALT";
+  std::string legs;
+  for (const LegFlown& leg : summary.legs) {
+    legs += fmt::format("{}{} {}-{}", legs.empty() ? "" : "; ", leg.kind,
+                        utc_text(leg.first_time, "%H:%M:%S"), utc_text(leg.last_time, "%H:%M:%S"));
+  }
+  const AircraftFacts& aircraft = facts_of(scenario.aircraft);
+  description.attributes = {{"source", "simulation"},
+                            {"platform", std::string(aircraft.registration)},
+                            {"project", "SIMULATION"},
+                            {"FlightNumber", scenario.name},
+                            {"simulation_seed", std::to_string(scenario.seed)},
+                            {"simulation_legs", legs}};
+  std::string effects;
+  for (const std::string& effect : summary.effects) effects += (effects.empty() ? "" : " ") + effect;
+  if (!effects.empty()) description.attributes.emplace_back("simulation_effects", effects);
+  return description;
+}
+
+}  // namespace
+
+SimulationSummary simulate_flight(const Scenario& scenario, const std::filesystem::path& output,
+                                  const SimulateOptions& options) {
+  const FlownPlan plan = fly(scenario);
+  Recording recording(scenario, plan.truth);
+  std::vector<Column>& columns = recording.columns();
+
+  const std::vector<std::size_t> kept =
+      kept_records(scenario, plan.truth.size() / static_cast<std::size_t>(internal_rate));
+  SimulationSummary summary;
+  const AircraftFacts& aircraft = facts_of(scenario.aircraft);
+  summary.name = scenario.name;
+  summary.aircraft = fmt::format("{} {}", aircraft.type, aircraft.registration);
+  summary.seed = scenario.seed;
+  summary.records = kept.size();
+  summary.rate = scenario.rate;
+  summary.first_time = scenario.start + static_cast<double>(kept.front());
+  summary.last_time = scenario.start + static_cast<double>(kept.back());
+  for (const LegSteps& leg : plan.legs) summary.legs.push_back(describe(leg, plan.truth, scenario.start));
+  for (const Scenario::Effect& effect : scenario.effects) summary.effects.push_back(effect.id);
+
+  NewFlight flight;
+  flight.first_time = summary.first_time;
+  FlightWriter writer(output, flight, description_of(scenario, summary, options.history));
+  for (const Column& column : columns) {
+    writer.define(column.variable);
+    const bool truth = column.variable.name.rfind("TRUE_", 0) == 0;
+    (truth ? summary.truth : summary.variables).push_back(column.variable.name);
+  }
+  std::vector<double> times;
+  for (const std::size_t record : kept) times.push_back(scenario.start + static_cast<double>(record));
+  const RecordBlock all{0, kept.size()};
+  writer.write_time_stamps(all, times.data());
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const std::vector<double> values =
+        select(columns[i].values, kept, static_cast<std::size_t>(columns[i].variable.rate));
+    writer.write(i, all, values.data());
+    if (options.progress) options.progress(i + 1, columns.size());
+  }
+  writer.finish();
+  return summary;
+}
+
+}  // namespace pcor

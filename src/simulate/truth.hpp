@@ -1,0 +1,94 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pcor::simulate {
+
+/// Everything is simulated at this rate, samples a second.
+inline constexpr int internal_rate = 25;
+inline constexpr double time_step = 1.0 / internal_rate;  // s
+
+/// Values at the internal rate, one for each step of the flight.
+using Series = std::vector<double>;
+
+/// What really was, step by step. Angles go on beyond 360 deg, so that means need no care.
+struct Truth {
+  Series pressure;             ///< of the undisturbed air, hPa
+  Series total_pressure;       ///< hPa
+  Series temperature;          ///< K
+  Series vapor_pressure;       ///< hPa
+  Series airspeed;             ///< m/s, gusts included
+  Series mach;                 ///< 1
+  Series attack;               ///< deg, gusts included
+  Series sideslip;             ///< deg, positive for wind from starboard
+  Series pitch;                ///< deg
+  Series roll;                 ///< deg
+  Series heading;              ///< deg
+  Series track;                ///< deg
+  Series ground_speed;         ///< m/s
+  Series altitude;             ///< m
+  Series vertical_speed;       ///< m/s
+  Series latitude;             ///< deg
+  Series longitude;            ///< deg
+  Series normal_acceleration;  ///< without gravity, upwards in the aircraft, m/s2
+  Series flaps;                ///< percent
+  Series liquid_water;         ///< g/m3
+  Series cabin_pressure;       ///< hPa
+  Series torque;               ///< of the engines, percent
+  Series bay_temperature;      ///< of the transducers, K
+  Series weight;               ///< kg
+  Series wind_east;            ///< where the air moves to, m/s
+  Series wind_north;           ///< m/s
+  Series dissipation;          ///< of the turbulence, m2/s3
+  Series hidden;               ///< a slow wave that nothing in the file records, rms 1
+
+  std::size_t size() const { return pressure.size(); }
+};
+
+/// A series of the truth and how the file calls it.
+struct TruthFacts {
+  std::string_view recorded;  ///< as an instrument records it, e.g. "ENGTRQ"; empty if none does
+  std::string_view name;      ///< as truth, e.g. "TRUE_PS"; empty if it is not written
+  std::string_view unit;      ///< in the file; degC stands for K of the series
+  std::string_view description;
+  Series Truth::*series;
+  bool fast = false;   ///< written at the scenario's rate
+  bool angle = false;  ///< brought to 0..360 deg
+};
+
+inline constexpr std::array<TruthFacts, 28> truth_facts{{
+    {"", "TRUE_PS", "hPa", "static pressure", &Truth::pressure, true},
+    {"", "TRUE_PT", "hPa", "total pressure", &Truth::total_pressure, true},
+    {"", "TRUE_AT", "degC", "ambient temperature", &Truth::temperature, true},
+    {"", "TRUE_EW", "hPa", "water vapour pressure", &Truth::vapor_pressure, true},
+    {"TASX", "TRUE_TAS", "m/s", "true airspeed", &Truth::airspeed, true},
+    {"", "TRUE_MACH", "1", "Mach number", &Truth::mach, true},
+    {"", "TRUE_ALPHA", "degree", "angle of attack", &Truth::attack, true},
+    {"", "TRUE_BETA", "degree", "sideslip, wind from starboard positive", &Truth::sideslip, true},
+    {"PITCH", "", "degree", "pitch", &Truth::pitch, true},
+    {"ROLL", "", "degree", "roll", &Truth::roll, true},
+    {"THDG", "", "degree", "true heading", &Truth::heading, true, true},
+    {"GGTRK", "", "degree", "GPS ground track", &Truth::track, false, true},
+    {"GGSPD", "", "m/s", "GPS ground speed", &Truth::ground_speed},
+    {"GGALT", "TRUE_ALT", "m", "height", &Truth::altitude},
+    {"GGVSPD", "TRUE_VSPD", "m/s", "vertical speed", &Truth::vertical_speed},
+    {"GGLAT", "", "degree_N", "GPS latitude", &Truth::latitude},
+    {"GGLON", "", "degree_E", "GPS longitude", &Truth::longitude},
+    {"BNORMA", "TRUE_NORMA", "m/s2", "body normal acceleration less gravity", &Truth::normal_acceleration,
+     true},
+    {"FLAPS", "", "percent", "flap position", &Truth::flaps},
+    {"PLWCC", "TRUE_LWC", "gram/m3", "liquid water content", &Truth::liquid_water},
+    {"PCAB", "", "hPa", "cabin pressure", &Truth::cabin_pressure},
+    {"ENGTRQ", "", "percent", "engine torque", &Truth::torque},
+    {"TBAY", "", "degC", "temperature of the pressure transducers", &Truth::bay_temperature},
+    {"", "TRUE_WEIGHT", "kg", "weight of the aircraft", &Truth::weight},
+    {"", "TRUE_UE", "m/s", "wind, eastward component", &Truth::wind_east, true},
+    {"", "TRUE_UN", "m/s", "wind, northward component", &Truth::wind_north, true},
+    {"", "TRUE_EDR", "m2/s3", "dissipation rate of turbulence", &Truth::dissipation},
+    {"", "TRUE_HIDDEN", "1", "a slow wave that no instrument records", &Truth::hidden},
+}};
+
+}  // namespace pcor::simulate

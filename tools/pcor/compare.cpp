@@ -1,0 +1,213 @@
+#include "pcor/offline/compare.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "comparison.hpp"
+#include "pcor/offline/comparison_report.hpp"
+#include "pcor/offline/utc.hpp"
+#include "progress.hpp"
+
+namespace pcor::tool {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  ComparisonOptions comparison;
+  std::vector<std::string> models;
+  std::string residuals;
+};
+
+constexpr const char* iso_time = "%Y-%m-%dT%H:%M:%SZ";
+
+using tool::as_json;
+
+nlohmann::ordered_json as_json(const std::vector<PartStatistics>& parts) {
+  nlohmann::ordered_json result = nlohmann::ordered_json::array();
+  for (const PartStatistics& part : parts) {
+    nlohmann::ordered_json entry{{"name", part.name}};
+    entry.update(as_json(part.statistics));
+    result.push_back(std::move(entry));
+  }
+  return result;
+}
+
+nlohmann::ordered_json as_json(const ModelComparison& model) {
+  nlohmann::ordered_json result{{"name", model.name}};
+  result.update(as_json(model.all));
+  result["rms_over_noise"] = model.all.rms_over_noise();
+  result["r2"] = model.r_squared;
+  result["samples_per_independent"] = model.samples_per_independent;
+  result["regimes"] = as_json(model.regimes);
+  result["bands"] = as_json(model.bands);
+  result["flights"] = as_json(model.flights);
+  nlohmann::ordered_json worst = nlohmann::ordered_json::array();
+  for (const WorstInterval& interval : model.worst) {
+    nlohmann::ordered_json entry{{"flight", interval.flight},
+                                 {"begin", utc_text(interval.begin, iso_time)},
+                                 {"end", utc_text(interval.end, iso_time)},
+                                 {"regimes", interval.regimes}};
+    entry.update(as_json(interval.statistics));
+    worst.push_back(std::move(entry));
+  }
+  result["worst"] = std::move(worst);
+  return result;
+}
+
+nlohmann::ordered_json as_json(const Comparison& comparison) {
+  nlohmann::ordered_json result{{"reference", comparison.reference}};
+  result["models"] = nlohmann::ordered_json::array();
+  for (const ModelComparison& model : comparison.models) result["models"].push_back(as_json(model));
+  const auto line = [](const LineFit& fit) {
+    return nlohmann::ordered_json{{"slope", fit.slope},
+                                  {"slope_stderr", fit.slope_error},
+                                  {"offset_hpa", fit.offset},
+                                  {"rms_hpa", fit.rms},
+                                  {"mean_difference_hpa", fit.mean_difference},
+                                  {"samples", fit.samples}};
+  };
+  if (comparison.total_pressure) result["total_pressure"] = line(*comparison.total_pressure);
+  result["static_pressure"] = line(comparison.static_pressure);
+  result["masks"] = masks_as_json(comparison.masks);
+  nlohmann::ordered_json intervals = nlohmann::ordered_json::array();
+  for (const FlightResiduals& flight : comparison.flights) {
+    for (const Interval& interval : flight.samples->intervals) {
+      intervals.push_back({{"flight", flight.samples->name},
+                           {"regime", std::string(facts_of(interval.regime).name)},
+                           {"begin", utc_text(interval.begin, iso_time)},
+                           {"end", utc_text(interval.end, iso_time)},
+                           {"pair", interval.pair},
+                           {"note", interval.note}});
+    }
+  }
+  result["intervals"] = std::move(intervals);
+  result["notes"] = comparison.notes;
+  return result;
+}
+
+void print_row(const std::string& name, const Statistics& s) {
+  fmt::print("{:<32} {:>8} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.3f} {:>7.1f}\n", name, s.samples, s.bias,
+             s.scatter(), s.rms, s.noise_rms, s.rms_over_noise());
+}
+
+/// Of the regimes and bands, those that matter: where the model fails most.
+void print_model(const ModelComparison& model, bool with_name) {
+  if (with_name) fmt::print("\n{}\n", model.name);
+  fmt::print("\n{:<32} {:>8} {:>9} {:>9} {:>9} {:>9} {:>7}\n", "residual, hPa", "samples", "bias", "scatter",
+             "rms", "noise", "ratio");
+  print_row("all", model.all);
+  for (const PartStatistics& part : model.regimes) print_row("  " + part.name, part.statistics);
+  std::vector<PartStatistics> bands = model.bands;
+  std::stable_sort(bands.begin(), bands.end(), [](const PartStatistics& a, const PartStatistics& b) {
+    return a.statistics.rms > b.statistics.rms;
+  });
+  if (bands.size() > 5) bands.resize(5);
+  if (!bands.empty()) fmt::print("worst bands\n");
+  for (const PartStatistics& part : bands) print_row("  " + part.name, part.statistics);
+  if (!model.worst.empty()) fmt::print("worst minutes\n");
+  for (const WorstInterval& worst : model.worst) {
+    fmt::print("  {} to {}  bias {:+.3f}, rms {:.3f} hPa  {}\n", utc_text(worst.begin),
+               utc_text(worst.end, "%H:%M:%S"), worst.statistics.bias, worst.statistics.rms, worst.regimes);
+  }
+  fmt::print("R2 {:.4f}; one independent sample in {:.1f}\n", model.r_squared, model.samples_per_independent);
+}
+
+/// The residual of flight `number` goes to the file asked for, or beside it with the flight's name.
+std::filesystem::path residual_file(const Options& options, std::size_t number) {
+  const std::filesystem::path wanted = options.residuals;
+  if (options.comparison.flights.size() == 1) return wanted;
+  const std::filesystem::path flight = options.comparison.flights[number];
+  return wanted.parent_path() /
+         (wanted.stem().string() + "-" + flight.stem().string() + wanted.extension().string());
+}
+
+void print(const Comparison& comparison, const Options& options) {
+  fmt::print("residual = static pressure of the reference ({}) less that of the model\n",
+             comparison.reference);
+  fmt::print("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));
+  for (const ModelComparison& model : comparison.models) print_model(model, comparison.models.size() > 1);
+  if (comparison.total_pressure) {
+    const LineFit& total = *comparison.total_pressure;
+    fmt::print(
+        "\ntotal pressure of the reference against that of the model: slope {:.5f}, offset {:+.3f} hPa, rms "
+        "{:.3f} "
+        "hPa\n",
+        total.slope, total.offset, total.rms);
+  }
+  for (const std::string& note : comparison.notes) fmt::print("\nNote: {}.\n", note);
+  const auto best = std::min_element(
+      comparison.models.begin(), comparison.models.end(),
+      [](const ModelComparison& a, const ModelComparison& b) { return a.all.rms < b.all.rms; });
+  const std::string& model = options.models[static_cast<std::size_t>(best - comparison.models.begin())];
+  fmt::print("\n");
+  if (comparison.models.size() > 1) fmt::print("The least rms has {}. ", best->name);
+  if (best->all.rms_over_noise() < 1.2) {
+    fmt::print(
+        "The residual of {} is little more than noise. To apply it: pcor process {} -m {} -o corrected.nc\n",
+        best->name, quoted(options.comparison.flights.front()), quoted(model));
+  } else {
+    fmt::print("To refit its coefficients: pcor refit {} -m {} -o fitted.toml\n",
+               command_line(options.comparison), quoted(model));
+  }
+}
+
+void run(const Options& options) {
+  std::vector<std::filesystem::path> inputs = input_files(options.comparison);
+  inputs.insert(inputs.end(), options.models.begin(), options.models.end());
+  std::vector<std::filesystem::path> outputs{options.common.json, options.common.report};
+  if (!options.residuals.empty()) {
+    for (std::size_t i = 0; i < options.comparison.flights.size(); ++i)
+      outputs.push_back(residual_file(options, i));
+  }
+  refuse_overwriting(outputs, inputs);
+  JsonResult json(options.common);
+  std::vector<Contender> contenders;
+  for (const std::string& path : options.models) {
+    const ModelFile model = read_model(path);
+    contenders.push_back({model.model.name, model, read_reference(options.comparison.reference, model)});
+  }
+  CompareOptions compare_options;
+  compare_options.mask = mask_options(options.comparison);
+  compare_options.time_stamp = time_stamp(options.comparison);
+  Comparison comparison;
+  {
+    Progress bar("comparing", !options.common.quiet);
+    compare_options.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
+    comparison = compare(flight_paths(options.comparison), contenders, compare_options);
+  }
+  if (!options.residuals.empty()) {
+    for (std::size_t i = 0; i < comparison.flights.size(); ++i) {
+      write_residuals(comparison, i, options.comparison.flights[i], residual_file(options, i),
+                      "pcor " PCOR_VERSION " compare " + command_line(options.comparison));
+    }
+  }
+  if (!options.common.report.empty()) write_report(comparison_report(comparison), options.common.report);
+  json.write(as_json(comparison));
+  if (wants_text(options.common)) print(comparison, options);
+}
+
+}  // namespace
+
+std::function<void()> add_compare(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("compare", "Show where a model fails against measurements");
+  add_comparison_options(*command, options->comparison);
+  command
+      ->add_option("-m,--model", options->models,
+                   "a model of the pressure system; several are shown side by side")
+      ->required()
+      ->type_name("MODEL.toml")
+      ->expected(1)
+      ->take_all();
+  command
+      ->add_option("--residuals", options->residuals, "write the residuals of every sample to a netCDF file")
+      ->type_name("OUT.nc");
+  add_common_options(*command, options->common);
+  return [options] { run(*options); };
+}
+
+}  // namespace pcor::tool

@@ -1,0 +1,98 @@
+#include "comparison.hpp"
+
+#include <fmt/format.h>
+
+#include "pcor/offline/error.hpp"
+#include "pcor/offline/suggest.hpp"
+
+namespace pcor::tool {
+
+void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
+  command.add_option("flights", options.flights, "the flights, netCDF files")
+      ->required()
+      ->type_name("IN.nc...");
+  command
+      .add_option("--reference", options.reference,
+                  "what to hold the model against: lams, static:OTHER.toml or pressure:VARIABLE")
+      ->type_name("REFERENCE");
+  command.add_option("--exclude", options.exclude, "a regime that takes no part, e.g. turn or cloud")
+      ->type_name("REGIME");
+  command
+      .add_option("--intervals", options.intervals,
+                  "regimes that you add or veto, and times that you exclude")
+      ->type_name("FILE.toml");
+  command.add_option("--min-airspeed", options.least_airspeed, "m/s; slower samples take no part")
+      ->capture_default_str();
+  command.add_option("--max-flaps", options.most_flaps, "percent; samples with more flaps take no part")
+      ->capture_default_str();
+  command.add_option("--time-stamp", options.time_stamp, "which moment of its second a record's time is")
+      ->check(CLI::IsMember({"begin", "middle"}))
+      ->capture_default_str();
+}
+
+MaskOptions mask_options(const ComparisonOptions& options) {
+  MaskOptions mask;
+  mask.least_airspeed = options.least_airspeed;
+  mask.most_flaps = options.most_flaps;
+  for (const std::string& name : options.exclude) {
+    const Regime regime = regime_named(name);
+    if (regime == Regime::count) {
+      std::vector<std::string> known;
+      for (const RegimeFacts& facts : regime_facts) known.emplace_back(facts.name);
+      throw Error(
+          fmt::format("--exclude {}: there is no such regime; {}", name, did_you_mean(name, known, 12)));
+    }
+    mask.exclude.push_back(regime);
+  }
+  if (!options.intervals.empty()) mask.intervals = read_intervals(options.intervals);
+  return mask;
+}
+
+TimeStamp time_stamp(const ComparisonOptions& options) {
+  return options.time_stamp == "middle" ? TimeStamp::middle : TimeStamp::begin;
+}
+
+std::vector<std::filesystem::path> flight_paths(const ComparisonOptions& options) {
+  return {options.flights.begin(), options.flights.end()};
+}
+
+std::vector<std::filesystem::path> input_files(const ComparisonOptions& options) {
+  std::vector<std::filesystem::path> files = flight_paths(options);
+  const std::string prefix = "static:";
+  if (options.reference.compare(0, prefix.size(), prefix) == 0)
+    files.emplace_back(options.reference.substr(prefix.size()));
+  files.emplace_back(options.intervals);
+  return files;
+}
+
+std::string command_line(const ComparisonOptions& options) {
+  std::string line;
+  for (const std::string& flight : options.flights) line += quoted(flight) + " ";
+  if (!options.reference.empty()) line += "--reference " + quoted(options.reference) + " ";
+  for (const std::string& regime : options.exclude) line += "--exclude " + quoted(regime) + " ";
+  if (!options.intervals.empty()) line += "--intervals " + quoted(options.intervals) + " ";
+  if (options.least_airspeed != MaskOptions{}.least_airspeed)
+    line += fmt::format("--min-airspeed {} ", options.least_airspeed);
+  if (options.most_flaps != MaskOptions{}.most_flaps)
+    line += fmt::format("--max-flaps {} ", options.most_flaps);
+  if (options.time_stamp != "begin") line += "--time-stamp " + options.time_stamp + " ";
+  line.pop_back();
+  return line;
+}
+
+nlohmann::ordered_json as_json(const Statistics& statistics) {
+  return {{"samples", statistics.samples},
+          {"bias_hpa", statistics.bias},
+          {"bias_stderr_hpa", statistics.bias_error},
+          {"rms_hpa", statistics.rms},
+          {"scatter_hpa", statistics.scatter()},
+          {"noise_rms_hpa", statistics.noise_rms}};
+}
+
+nlohmann::ordered_json masks_as_json(const std::array<std::size_t, mask_count>& masks) {
+  nlohmann::ordered_json result = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < mask_count; ++i) result[std::string(mask_facts[i].name)] = masks[i];
+  return result;
+}
+
+}  // namespace pcor::tool

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "command.hpp"
+#include "pcor/offline/compare.hpp"
+
+namespace pcor::tool {
+
+/// The options of every sub-command that holds a model against measurements.
+struct ComparisonOptions {
+  std::vector<std::string> flights{};
+  std::string reference{};
+  std::vector<std::string> exclude{};
+  std::string intervals{};
+  double least_airspeed = MaskOptions{}.least_airspeed;
+  double most_flaps = MaskOptions{}.most_flaps;
+  std::string time_stamp = "begin";
+};
+
+void add_comparison_options(CLI::App& command, ComparisonOptions& options);
+
+/// @throws Error if a regime has no such name or the file of intervals cannot be read.
+MaskOptions mask_options(const ComparisonOptions& options);
+TimeStamp time_stamp(const ComparisonOptions& options);
+
+/// The files that the options read, for `refuse_overwriting`.
+std::vector<std::filesystem::path> input_files(const ComparisonOptions& options);
+
+/// The options as they stand on a command line, for the commands that a user is advised to run next.
+std::string command_line(const ComparisonOptions& options);
+
+std::vector<std::filesystem::path> flight_paths(const ComparisonOptions& options);
+
+nlohmann::ordered_json as_json(const Statistics& statistics);
+nlohmann::ordered_json masks_as_json(const std::array<std::size_t, mask_count>& masks);
+
+}  // namespace pcor::tool

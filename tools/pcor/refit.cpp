@@ -1,0 +1,281 @@
+#include "pcor/offline/refit.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "comparison.hpp"
+#include "pcor/offline/comparison_report.hpp"
+#include "pcor/offline/error.hpp"
+#include "pcor/offline/suggest.hpp"
+#include "progress.hpp"
+
+namespace pcor::tool {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  ComparisonOptions comparison;
+  std::string model;
+  std::string output;
+  std::string reference_output;
+  std::string loss = "tukey";
+  std::vector<std::string> fix;
+  std::vector<std::string> free;
+  std::vector<std::string> stages;
+  std::vector<std::string> holdout;
+  double training_share = 1.0;
+  double memory_mib = 512.0;
+  bool prior = false;
+  bool search = false;
+};
+
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
+std::vector<std::string> parts_of(const std::string& text) {
+  std::vector<std::string> parts;
+  std::size_t from = 0;
+  while (from <= text.size()) {
+    const std::size_t to = std::min(text.find(',', from), text.size());
+    parts.push_back(trimmed(text.substr(from, to - from)));
+    from = to + 1;
+  }
+  return parts;
+}
+
+/// "pitch manoeuvre, speed run: static-alpha" is a stage.
+FitStage parse_stage(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) {
+    throw Error(fmt::format(
+        "--stage '{}': give regimes and parameters, e.g. 'pitch manoeuvre: static-alpha.a1'", text));
+  }
+  FitStage stage;
+  for (const std::string& name : parts_of(text.substr(0, colon))) {
+    const Regime regime = regime_named(name);
+    if (regime == Regime::count) {
+      std::vector<std::string> known;
+      for (const RegimeFacts& facts : regime_facts) known.emplace_back(facts.name);
+      throw Error(fmt::format("--stage '{}': there is no regime '{}'; {}", text, name,
+                              did_you_mean(name, known, 12)));
+    }
+    stage.regimes.push_back(regime);
+  }
+  stage.parameters = parts_of(text.substr(colon + 1));
+  return stage;
+}
+
+RefitOptions refit_options(const Options& options) {
+  RefitOptions refit;
+  refit.mask = mask_options(options.comparison);
+  refit.time_stamp = time_stamp(options.comparison);
+  refit.loss = *loss_named(options.loss);
+  refit.fix = options.fix;
+  refit.free = options.free;
+  for (const std::string& stage : options.stages) refit.stages.push_back(parse_stage(stage));
+  refit.fit_reference = !options.reference_output.empty();
+  refit.use_prior = options.prior;
+  refit.search = options.search;
+  refit.training_share = options.training_share;
+  refit.holdout.assign(options.holdout.begin(), options.holdout.end());
+  refit.memory = static_cast<std::size_t>(options.memory_mib * 1048576.0);
+  return refit;
+}
+
+nlohmann::ordered_json effects_as_json(const std::vector<FittedParameter>& parameters) {
+  nlohmann::ordered_json effects = nlohmann::ordered_json::array();
+  for (const FittedParameter& parameter : parameters) {
+    const std::size_t dot = parameter.name.rfind('.');
+    const std::string id = parameter.name.substr(0, dot);
+    const std::string name = parameter.name.substr(dot + 1);
+    if (effects.empty() || effects.back()["id"] != id) {
+      effects.push_back({{"id", id},
+                         {"parameters", nlohmann::ordered_json::object()},
+                         {"stderr", nlohmann::ordered_json::object()},
+                         {"start", nlohmann::ordered_json::object()}});
+    }
+    effects.back()["parameters"][name] = parameter.value;
+    effects.back()["stderr"][name] = parameter.standard_error;
+    effects.back()["start"][name] = parameter.start;
+    if (parameter.at_bound) effects.back()["at_bound"].push_back(name);
+    if (!parameter.fitted) effects.back()["fixed"].push_back(name);
+  }
+  return effects;
+}
+
+using tool::as_json;
+
+nlohmann::ordered_json as_json(const RefitResult& result) {
+  nlohmann::ordered_json json;
+  json["effects"] = effects_as_json(result.parameters);
+  json["rms_hpa"] = result.rms;
+  json["rms_before_hpa"] = result.rms_before;
+  json["rms_over_pressure"] = result.rms_over_pressure;
+  json["bulk_rms_hpa"] = result.bulk_rms;
+  json["noise_rms_hpa"] = result.noise_rms;
+  json["r2"] = result.r_squared;
+  json["samples"] = result.samples;
+  json["outliers"] = result.outliers;
+  json["samples_per_independent"] = result.samples_per_independent;
+  json["condition_number"] = result.condition_number;
+  json["reference"] = result.reference_text;
+  json["covariance"] = {{"parameters", result.covariance_names}, {"matrix", result.covariance}};
+  json["omissions"] = nlohmann::ordered_json::array();
+  for (const Omission& omission : result.omissions)
+    json["omissions"].push_back(
+        {{"effect", omission.effect}, {"rms_hpa", omission.rms}, {"r2", omission.r_squared}});
+  json["flights"] = nlohmann::ordered_json::array();
+  for (const FlightFit& flight : result.flights) {
+    json["flights"].push_back({{"name", flight.flight},
+                               {"holdout", flight.holdout},
+                               {"before", as_json(flight.before)},
+                               {"after", as_json(flight.after)}});
+  }
+  json["masks"] = masks_as_json(result.masks);
+  json["notes"] = result.notes;
+  return json;
+}
+
+void print_flights(const RefitResult& result) {
+  fmt::print("\n{:<32} {:>8} {:>10} {:>10} {:>10} {:>10} {:>9}\n", "flight, hPa", "samples", "rms before",
+             "rms after", "bias after", "scatter", "noise");
+  for (const FlightFit& flight : result.flights) {
+    fmt::print("{:<32} {:>8} {:>10.3f} {:>10.3f} {:>+10.3f} {:>10.3f} {:>9.3f}\n",
+               flight.flight + (flight.holdout ? " (held out)" : ""), flight.after.samples, flight.before.rms,
+               flight.after.rms, flight.after.bias, flight.after.scatter(), flight.after.noise_rms);
+  }
+}
+
+void print(const RefitResult& result, const Options& options) {
+  fmt::print("reference: {}\n", result.reference_text);
+  fmt::print("fitted to {} samples; not used: {}\n\n", result.samples, mask_text(result.masks));
+  fmt::print("{:<36} {:>13} {:>13} {:>13}  {}\n", "coefficient", "before", "after", "std. error", "unit");
+  for (const FittedParameter& p : result.parameters) {
+    const std::string error = !p.fitted                      ? "held"
+                              : p.at_bound                   ? "at bound"
+                              : std::isnan(p.standard_error) ? "unknown"
+                                                             : fmt::format("{:.3g}", p.standard_error);
+    fmt::print("{:<36} {:>13.6g} {:>13.6g} {:>13}  {}\n", p.name, p.start, p.value, error, p.unit);
+  }
+  fmt::print("\nrms {:.3f} hPa ({:.5f} of p), before {:.3f}; without {} outliers {:.3f}; noise {:.3f} hPa\n",
+             result.rms, result.rms_over_pressure, result.rms_before, result.outliers, result.bulk_rms,
+             result.noise_rms);
+  fmt::print("R2 {:.4f}; condition number {:.0f}; one independent sample in {:.1f}\n", result.r_squared,
+             result.condition_number, result.samples_per_independent);
+  if (result.omissions.size() > 1) {
+    fmt::print("\n{:<36} {:>10} {:>10}\n", "left out, the others refitted", "rms, hPa", "R2");
+    for (const Omission& omission : result.omissions)
+      fmt::print("{:<36} {:>10.3f} {:>10.4f}\n", omission.effect, omission.rms, omission.r_squared);
+  }
+  bool any = false;
+  for (std::size_t a = 0; a < result.covariance_names.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      const double r = result.covariance[a][b] / std::sqrt(result.covariance[a][a] * result.covariance[b][b]);
+      if (!(std::abs(r) > 0.9)) continue;
+      if (!any) fmt::print("\ncorrelations above 0.9\n");
+      any = true;
+      fmt::print("  {} and {}: {:+.3f}\n", result.covariance_names[b], result.covariance_names[a], r);
+    }
+  }
+  print_flights(result);
+  for (const std::string& note : result.notes) fmt::print("\nNote: {}.\n", note);
+  if (options.reference_output.empty()) {
+    fmt::print("\nwrote {}\nTo see where it still fails: pcor compare {} -m {} -m {}\n", options.output,
+               command_line(options.comparison), quoted(options.model), quoted(options.output));
+    return;
+  }
+  ComparisonOptions fitted = options.comparison;
+  fitted.reference = "static:" + options.reference_output;
+  fmt::print("\nwrote {} and {}\nTo see where they still fail: pcor compare {} -m {}\n", options.output,
+             options.reference_output, command_line(fitted), quoted(options.output));
+}
+
+void write_fit_report(const RefitResult& result, const ModelFile& model, const Reference& reference,
+                      const Options& options) {
+  CompareOptions compare_options;
+  compare_options.mask = mask_options(options.comparison);
+  compare_options.time_stamp = time_stamp(options.comparison);
+  std::vector<std::filesystem::path> flights = flight_paths(options.comparison);
+  flights.insert(flights.end(), options.holdout.begin(), options.holdout.end());
+  Reference fitted = reference;
+  if (result.reference) fitted.system = result.reference;
+  const Comparison comparison =
+      compare(flights, {{"before the fit", model, reference}, {"after the fit", result.model, fitted}},
+              compare_options);
+  write_report(refit_report(result, comparison), options.common.report);
+}
+
+void run(const Options& options) {
+  std::vector<std::filesystem::path> inputs = input_files(options.comparison);
+  inputs.emplace_back(options.model);
+  inputs.insert(inputs.end(), options.holdout.begin(), options.holdout.end());
+  refuse_overwriting({options.output, options.reference_output, options.common.json, options.common.report},
+                     inputs);
+  JsonResult json(options.common);
+  const ModelFile model = read_model(options.model);
+  const Reference reference = read_reference(options.comparison.reference, model);
+  RefitOptions refit_with = refit_options(options);
+  RefitResult result;
+  {
+    Progress bar("fitting", !options.common.quiet);
+    refit_with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
+    result = refit(flight_paths(options.comparison), model, reference, refit_with);
+  }
+  save_model(result.model, options.output, inputs);
+  if (result.reference) save_model(*result.reference, options.reference_output, inputs);
+  if (!options.common.report.empty()) write_fit_report(result, model, reference, options);
+  json.write(as_json(result));
+  if (wants_text(options.common)) print(result, options);
+}
+
+}  // namespace
+
+std::function<void()> add_refit(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("refit", "Fit the free coefficients of a model to measurements");
+  add_comparison_options(*command, options->comparison);
+  command->add_option("-m,--model", options->model, "the model to fit")->required()->type_name("MODEL.toml");
+  command->add_option("-o,--output", options->output, "the fitted model, whole or not at all")
+      ->required()
+      ->type_name("FITTED.toml");
+  command
+      ->add_option("--refit-reference", options->reference_output,
+                   "fit the model of the second static system too, and write it here")
+      ->type_name("OTHER.toml");
+  command->add_option("--loss", options->loss, "how outliers count")
+      ->check(CLI::IsMember({"tukey", "huber", "soft-l1", "cauchy", "none"}))
+      ->capture_default_str();
+  command->add_option("--fix", options->fix, "hold a coefficient or an effect, e.g. static-qp.a2")
+      ->type_name("NAME");
+  command->add_option("--free", options->free, "fit a coefficient that the model file fixes")
+      ->type_name("NAME");
+  command
+      ->add_option(
+          "--stage", options->stages,
+          "first fit these coefficients to these regimes alone, each interval with an offset of its own, and "
+          "then hold them: 'pitch manoeuvre: static-alpha'")
+      ->type_name("REGIMES: NAMES");
+  command->add_option("--holdout", options->holdout, "a flight that takes no part in the fit and tests it")
+      ->type_name("T.nc");
+  command
+      ->add_option("--training-share", options->training_share,
+                   "fit the first part of every flight, this share; the rest tests the fit")
+      ->check(CLI::Range(0.01, 1.0))
+      ->capture_default_str();
+  command->add_flag("--prior", options->prior,
+                    "draw coefficients to their starting values by the typical size of their effect");
+  command->add_flag("--search", options->search,
+                    "search the start globally between the bounds, for coefficients that are not linear");
+  command->add_option("--memory", options->memory_mib, "MiB of flights kept between passes")
+      ->capture_default_str();
+  add_common_options(*command, options->common);
+  return [options] { run(*options); };
+}
+
+}  // namespace pcor::tool

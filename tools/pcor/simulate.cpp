@@ -1,0 +1,110 @@
+#include "pcor/offline/simulate.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "command.hpp"
+#include "pcor/offline/utc.hpp"
+#include "progress.hpp"
+
+namespace pcor::tool {
+
+
+namespace {
+
+constexpr const char* iso_time = "%Y-%m-%dT%H:%M:%SZ";
+
+struct Options {
+  CommonOptions common;
+  std::string scenario;
+  std::string output;
+  std::optional<std::uint64_t> seed{};
+};
+
+std::string command_line(const Options& options, std::uint64_t seed) {
+  return fmt::format("pcor " PCOR_VERSION " simulate {} -o {} --seed {}", quoted(options.scenario),
+                     quoted(options.output), seed);
+}
+
+nlohmann::ordered_json as_json(const SimulationSummary& summary, const Options& options) {
+  nlohmann::ordered_json result;
+  result["scenario"] = options.scenario;
+  result["output"] = options.output;
+  result["name"] = summary.name;
+  result["aircraft"] = summary.aircraft;
+  result["seed"] = summary.seed;
+  result["start"] = utc_text(summary.first_time, iso_time);
+  result["end"] = utc_text(summary.last_time, iso_time);
+  result["records"] = summary.records;
+  result["rate"] = summary.rate;
+  result["effects"] = summary.effects;
+  result["variables"] = summary.variables;
+  result["truth"] = summary.truth;
+  result["legs"] = nlohmann::ordered_json::array();
+  for (const LegFlown& leg : summary.legs) {
+    result["legs"].push_back({{"kind", leg.kind},
+                              {"start", utc_text(leg.first_time, iso_time)},
+                              {"end", utc_text(leg.last_time, iso_time)},
+                              {"altitude_m", leg.altitude},
+                              {"pressure_hpa", leg.pressure},
+                              {"airspeed_m_s", {leg.least_speed, leg.greatest_speed}},
+                              {"attack_deg", {leg.least_attack, leg.greatest_attack}}});
+  }
+  return result;
+}
+
+void print(const SimulationSummary& summary, const Options& options) {
+  fmt::print("{}, {}, {} to {} UTC: {} records, seed {}\n\n", summary.name, summary.aircraft,
+             utc_text(summary.first_time), utc_text(summary.last_time), summary.records, summary.seed);
+  fmt::print("{:<16} {:>8}  {:>8} {:>8} {:>8} {:>12} {:>12}\n", "leg", "begin", "end", "m", "hPa", "TAS m/s",
+             "alpha deg");
+  for (const LegFlown& leg : summary.legs) {
+    fmt::print("{:<16} {:>8}  {:>8} {:>8.0f} {:>8.1f} {:>12} {:>12}\n", leg.kind,
+               utc_text(leg.first_time, "%H:%M:%S"), utc_text(leg.last_time, "%H:%M:%S"), leg.altitude,
+               leg.pressure, fmt::format("{:.0f} to {:.0f}", leg.least_speed, leg.greatest_speed),
+               fmt::format("{:.1f} to {:.1f}", leg.least_attack, leg.greatest_attack));
+  }
+  if (!summary.effects.empty()) fmt::print("\nwrong in it: {}\n", fmt::join(summary.effects, ", "));
+  fmt::print("\nwrote {} variables, and the truth as TRUE_..., to {}\n", summary.variables.size(),
+             options.output);
+  fmt::print("To see where a model fails on it: pcor compare {} -m MODEL.toml\n", quoted(options.output));
+}
+
+void run(const Options& options) {
+  refuse_overwriting({options.output, options.common.json}, {options.scenario});
+  JsonResult json(options.common);
+  Scenario scenario = read_scenario(options.scenario);
+  if (options.seed) scenario.seed = *options.seed;
+  SimulateOptions simulate;
+  simulate.history = command_line(options, scenario.seed);
+  SimulationSummary summary;
+  {
+    Progress bar("simulating", !options.common.quiet);
+    simulate.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
+    summary = simulate_flight(scenario, options.output, simulate);
+  }
+  json.write(as_json(summary, options));
+  if (wants_text(options.common)) print(summary, options);
+}
+
+}  // namespace
+
+std::function<void()> add_simulate(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("simulate", "Simulate a flight whose truth is known");
+  command->add_option("scenario", options->scenario, "what is flown, and what is wrong")
+      ->required()
+      ->type_name("SCENARIO.toml");
+  command->add_option("-o,--output", options->output, "the file to write, whole or not at all")
+      ->required()
+      ->type_name("OUT.nc");
+  command->add_option("--seed", options->seed, "random numbers other than the scenario's")->type_name("N");
+  add_common_options(*command, options->common, false);
+  return [options] { run(*options); };
+}
+
+}  // namespace pcor::tool
