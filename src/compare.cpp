@@ -18,6 +18,8 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double worst_length = 60.0;  // s
 constexpr std::size_t worst_count = 5;
+// hPa2: a reference delta-p that varies less than the rounding of a file leaves nothing to explain.
+constexpr double smallest_variance = 1e-10;
 constexpr std::size_t fewest_in_band = 30;
 
 /// Sums of residuals, from which statistics follow; those of flights add up.
@@ -160,7 +162,8 @@ void Gathering::add_worst(const FlightResiduals& flight, const std::vector<doubl
 ModelComparison Gathering::finish() {
   result_.all = all_.statistics();
   const auto count = static_cast<double>(all_.samples);
-  result_.r_squared = 1.0 - all_.squares / (wanted_squares_ - wanted_sum_ * wanted_sum_ / count);
+  const double variation = wanted_squares_ - wanted_sum_ * wanted_sum_ / count;
+  result_.r_squared = variation > count * smallest_variance ? 1.0 - all_.squares / variation : nan;
   result_.samples_per_independent = count / all_.independent;
   for (std::size_t r = 0; r < regime_count; ++r) {
     if (regimes_[r].samples > 0)
@@ -303,9 +306,10 @@ Comparison compare(const std::vector<std::filesystem::path>& flights,
     if (options.progress) options.progress(result.flights.size(), flights.size());
   }
   if (result.masks[0] == 0) {
-    throw Error(fmt::format(
-        "{}: no sample is left to compare: {}; see the variables of the model and the options of the masks",
-        flights.size() == 1 ? flights.front().string() : "the flights", mask_text(result.masks)));
+    throw Error(
+        fmt::format("{}: no sample is left to compare: {}; see the variables of the model and "
+                    "--min-airspeed, --max-flaps, --exclude",
+                    flights.size() == 1 ? flights.front().string() : "the flights", mask_text(result.masks)));
   }
   for (Gathering& gathering : gatherings) result.models.push_back(gathering.finish());
   fit_lines(result);

@@ -4,13 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
+#include <deque>
+#include <future>
 #include <limits>
-#include <thread>
 
-#include "pcor/offline/compare.hpp"
 #include "pcor/offline/error.hpp"
 
 namespace pcor {
@@ -61,24 +59,26 @@ FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitSetu
                         [this](std::size_t parameter) { return residuals_.is_linear()[parameter]; });
 }
 
-std::size_t FitFlight::keep_derivatives(const Eigen::VectorXd& parameters) {
-  if (!linear_) return 0;
-  kept_residual_.clear();
-  kept_parameters_ = parameters;
+void FitFlight::keep_derivatives() {
+  if (!linear_) return;
+  kept_parameters_ = setup_->values;
+  if (kept_parameters_.size() == 0) {
+    const std::vector<double>& own = residuals_.parameters();
+    kept_parameters_ = Eigen::Map<const Eigen::VectorXd>(own.data(), as_index(own.size()));
+  }
   const std::size_t count = kept_.size();
   std::vector<double> residual(count);
   std::vector<double> derivatives(setup_->wanted.size() * count);
   std::vector<double> part(setup_->wanted.size() * chunk);
   for (std::size_t first = 0; first < count; first += chunk) {
     const std::size_t length = std::min(chunk, count - first);
-    residuals_.evaluate(kept_.data() + first, length, parameters.data(), setup_->wanted,
+    residuals_.evaluate(kept_.data() + first, length, kept_parameters_.data(), setup_->wanted,
                         residual.data() + first, part.data());
     for (std::size_t k = 0; k < setup_->wanted.size(); ++k)
       std::copy_n(part.data() + k * length, length, derivatives.data() + k * count + first);
   }
   kept_residual_ = std::move(residual);
   kept_derivatives_ = std::move(derivatives);
-  return (kept_residual_.size() + kept_derivatives_.size()) * sizeof(double);
 }
 
 void FitFlight::evaluate(std::size_t first, std::size_t count, const Eigen::VectorXd& parameters,
@@ -129,15 +129,12 @@ FitFlights::FitFlights(std::vector<FlightSource> sources, const FitSetup& setup)
       setup_(setup),
       cache_(sources_.size()),
       first_offset_(sources_.size(), 0) {
-  std::vector<std::pair<std::string, std::string>> aircraft(sources_.size());
   std::vector<std::size_t> kept(sources_.size());
   std::vector<std::array<std::size_t, mask_count>> masks(sources_.size());
   std::vector<Eigen::VectorXd> starts(sources_.size());
   std::vector<std::vector<bool>> linear(sources_.size());
   std::vector<std::size_t> offsets(sources_.size());
   visit([&](std::size_t number, std::size_t, FitFlight& fit) {
-    const FlightSamples& samples = fit.residuals().samples();
-    aircraft[number] = {samples.name, samples.aircraft};
     kept[number] = fit.kept().size();
     masks[number] = fit.residuals().mask_counts();
     offsets[number] = fit.offsets();
@@ -145,7 +142,6 @@ FitFlights::FitFlights(std::vector<FlightSource> sources, const FitSetup& setup)
     linear[number] = fit.residuals().is_linear();
     starts[number] = Eigen::Map<const Eigen::VectorXd>(parameters.data(), as_index(parameters.size()));
   });
-  require_one_aircraft(aircraft);
   start_ = starts.front();
   linear_ = linear.front();
   for (std::size_t i = 0; i < sources_.size(); ++i) {
@@ -156,52 +152,56 @@ FitFlights::FitFlights(std::vector<FlightSource> sources, const FitSetup& setup)
   }
 }
 
-std::shared_ptr<FitFlight> FitFlights::flight(std::size_t number) {
+std::shared_ptr<const FlightSamples> FitFlights::samples_of(std::size_t number) const {
+  if (cache_[number]) return nullptr;
+  if (sources_[number].samples) return sources_[number].samples;
+  const Flight file(sources_[number].path, setup_.time_stamp);
+  return std::make_shared<const FlightSamples>(
+      read_samples(file, *setup_.model, *setup_.reference, setup_.mask));
+}
+
+std::shared_ptr<FitFlight> FitFlights::made(std::size_t number,
+                                            std::shared_ptr<const FlightSamples> samples) {
   if (cache_[number]) return cache_[number];
-  std::shared_ptr<const FlightSamples> samples = sources_[number].samples;
-  {
-    const std::lock_guard lock(reading_);  // netCDF is not made for several threads
-    if (!samples) {
-      const Flight file(sources_[number].path, setup_.time_stamp);
-      samples = std::make_shared<const FlightSamples>(
-          read_samples(file, *setup_.model, *setup_.reference, setup_.mask));
-    }
-  }
-  auto fit = std::make_shared<FitFlight>(samples, setup_);
+  const std::size_t own_bytes = sources_[number].samples ? 0 : bytes_of(*samples);
+  auto fit = std::make_shared<FitFlight>(std::move(samples), setup_);
   if (noise_parameters_.size() > 0)
     fit->measure_noise(noise_parameters_, noise_offsets_.data() + first_offset_[number]);
-  const std::vector<double>& parameters = fit->residuals().parameters();
-  const std::size_t derivatives = fit->kept().size() * (setup_.wanted.size() + 1) * sizeof(double);
-  const std::size_t bytes = derivatives + (sources_[number].samples ? 0 : bytes_of(*samples));
-  bool keep = false;
-  {
-    const std::lock_guard lock(reading_);
-    keep = cached_bytes_ + bytes <= setup_.memory;
-    if (keep) cached_bytes_ += bytes;
+  const std::size_t bytes = own_bytes + fit->kept().size() * (setup_.wanted.size() + 1) * sizeof(double);
+  fit->keep_derivatives();
+  const std::lock_guard lock(counting_);
+  if (cached_bytes_ + bytes <= setup_.memory) {
+    cached_bytes_ += bytes;
+    cache_[number] = fit;
   }
-  fit->keep_derivatives(Eigen::Map<const Eigen::VectorXd>(parameters.data(), as_index(parameters.size())));
-  if (keep) cache_[number] = fit;
   return fit;
 }
 
 void FitFlights::visit(const std::function<void(std::size_t, std::size_t, FitFlight&)>& visit) {
-  std::atomic<std::size_t> next{0};
-  std::vector<std::exception_ptr> failures(count());
-  const auto work = [&] {
-    for (std::size_t number = next++; number < count(); number = next++) {
-      try {
-        visit(number, first_offset_[number], *flight(number));
-      } catch (...) {
-        failures[number] = std::current_exception();
-      }
-    }
+  const std::size_t threads = std::min(setup_.threads, count());
+  const auto work_on = [&](std::size_t number, std::shared_ptr<const FlightSamples> samples) {
+    visit(number, first_offset_[number], *made(number, std::move(samples)));
   };
-  std::vector<std::thread> helpers;
-  for (std::size_t i = 1; i < std::min(setup_.threads, count()); ++i) helpers.emplace_back(work);
-  work();
-  for (std::thread& helper : helpers) helper.join();
-  for (const std::exception_ptr& failure : failures) {
-    if (failure) std::rethrow_exception(failure);
+  std::deque<std::future<void>> working;
+  try {
+    for (std::size_t number = 0; number < count(); ++number) {
+      std::shared_ptr<const FlightSamples> samples = samples_of(number);
+      if (threads <= 1) {
+        work_on(number, std::move(samples));
+        continue;
+      }
+      if (working.size() == threads) {
+        working.front().get();
+        working.pop_front();
+      }
+      working.push_back(std::async(std::launch::async, work_on, number, std::move(samples)));
+    }
+    for (std::future<void>& each : working) each.get();
+  } catch (...) {
+    for (std::future<void>& each : working) {
+      if (each.valid()) each.wait();
+    }
+    throw;
   }
 }
 

@@ -36,6 +36,7 @@ struct FitSetup {
   std::vector<Regime> regimes{};      ///< only samples of these take part, where there are any
   bool with_offsets = false;          ///< every interval of these regimes has its own offset of delta-p/p
   std::vector<std::size_t> wanted{};  ///< the parameters that are fitted
+  Eigen::VectorXd values{};  ///< of all parameters, for those that are not; empty: those of the files
   std::size_t threads = 1;
   std::size_t memory = 0;
 };
@@ -68,8 +69,8 @@ class FitFlight {
   double samples_per_independent() const { return samples_per_independent_; }
   bool has_noise() const { return !noise_.empty(); }
 
-  /// Keeps derivatives, where the residual is linear in all that is wanted. @return the bytes that it takes
-  std::size_t keep_derivatives(const Eigen::VectorXd& parameters);
+  /// Keeps derivatives, where the residual is linear in all that is wanted.
+  void keep_derivatives();
 
  private:
   const FitSetup* setup_;
@@ -125,13 +126,14 @@ class FitFlights {
   double deviation(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets);
 
  private:
-  std::shared_ptr<FitFlight> flight(std::size_t number);
+  std::shared_ptr<const FlightSamples> samples_of(std::size_t number) const;
+  std::shared_ptr<FitFlight> made(std::size_t number, std::shared_ptr<const FlightSamples> samples);
 
   std::vector<FlightSource> sources_;
   const FitSetup& setup_;
   std::vector<std::shared_ptr<FitFlight>> cache_;
   std::vector<std::size_t> first_offset_;
-  std::mutex reading_;
+  std::mutex counting_;
   std::size_t cached_bytes_ = 0;
   Eigen::VectorXd start_;
   std::vector<bool> linear_;

@@ -15,6 +15,7 @@
 #include <numeric>
 #include <thread>
 
+#include "bounded_least_squares.hpp"
 #include "fit_flights.hpp"
 #include "global_search.hpp"
 #include "pcor/effects/catalogue.hpp"
@@ -36,6 +37,11 @@ constexpr double cauchy_width = 2.385;
 
 // Flights hold 32-bit floats: columns that agree to better than their rounding, 6e-8, are one column.
 constexpr double hopeless_condition = 1e7;
+// Column-scaled; that of the memo's eq. 20 with an independent Mach number is 1400 on a flight with speed
+// runs.
+constexpr double collinear_condition = 300.0;
+// A standard error above this share of an effect's typical size is worth a word.
+constexpr double weak_share = 0.25;
 constexpr int passes_expected = 40;
 
 Eigen::Index as_index(std::size_t n) { return static_cast<Eigen::Index>(n); }
@@ -164,6 +170,10 @@ struct FitSums {
   }
 };
 
+std::string name_of(const FlightSource& source) {
+  return source.samples ? source.samples->name : source.path.string();
+}
+
 class Refit {
  public:
   Refit(std::vector<FlightSource> sources, const ModelFile& model, const Reference& reference,
@@ -179,6 +189,7 @@ class Refit {
     std::vector<bool> at_bound;  // of the wanted parameters
   };
 
+  void require_one_kind() const;
   void list_parameters();
   std::vector<std::size_t> parameters_named(const std::string& name, const char* option) const;
   std::vector<std::vector<std::size_t>> stages();
@@ -218,6 +229,7 @@ class Refit {
   Eigen::VectorXd values_;
   RefitResult result_;
   double prior_strength_ = 0.0;  // weight of a starting value that is off by its typical size
+  RegimeSet flown_;              // in the flights of the fit
   std::size_t passes_ = 0;
 };
 
@@ -225,6 +237,23 @@ void Refit::tell() {
   ++passes_;
   if (options_.progress)
     options_.progress(std::min<std::size_t>(passes_, passes_expected - 1), passes_expected);
+}
+
+/// All flights are of one aircraft, those that are held out too.
+void Refit::require_one_kind() const {
+  std::vector<std::pair<std::string, std::string>> aircraft;
+  const auto add = [&aircraft](const std::filesystem::path& path) {
+    aircraft.emplace_back(path.filename().string(), Flight(path).aircraft());
+  };
+  for (const FlightSource& source : sources_) {
+    if (source.samples) {
+      aircraft.emplace_back(source.samples->name, source.samples->aircraft);
+    } else {
+      add(source.path);
+    }
+  }
+  for (const std::filesystem::path& path : options_.holdout) add(path);
+  require_one_aircraft(aircraft);
 }
 
 void Refit::list_parameters() {
@@ -312,6 +341,7 @@ FitSetup Refit::setup_for(std::vector<std::size_t> wanted) const {
   setup.time_stamp = options_.time_stamp;
   setup.training_share = options_.training_share;
   setup.wanted = std::move(wanted);
+  setup.values = values_;
   setup.threads =
       options_.threads != 0 ? options_.threads : std::max(1U, std::thread::hardware_concurrency());
   setup.memory = options_.memory;
@@ -329,9 +359,9 @@ void Refit::require_samples(const FitFlights& flights, const FitSetup& setup) co
   }
   if (flights.samples() == 0) {
     throw Error(fmt::format(
-        "no sample is left for the fit: {}; see the variables of the model and the options of the "
-        "masks",
-        mask_text(flights.masks())));
+        "{}: no sample is left for the fit: {}; see the variables of the model and --min-airspeed, "
+        "--max-flaps, --exclude",
+        sources_.size() == 1 ? name_of(sources_.front()) : "the flights", mask_text(flights.masks())));
   }
   const std::size_t unknown = setup.wanted.size() + flights.offsets();
   if (flights.samples() <= unknown) {
@@ -430,8 +460,9 @@ Refit::Solution Refit::solve(FitFlights& flights, const FitSetup& setup) {
     spread();
   }
   // The linear problem, in closed form: where derivatives do not depend on the coefficients, its solution.
-  const auto linear_step = [&] {
-    const Reduction reduction = flights.reduce(values_, solution.offsets, nullptr);
+  // Gives the cost before the step.
+  const auto linear_step = [&](const ceres::LossFunction* loss) {
+    const Reduction reduction = flights.reduce(values_, solution.offsets, loss);
     tell();
     const Eigen::Index size = x.size();
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2 * size, size);
@@ -443,24 +474,54 @@ Refit::Solution Refit::solve(FitFlights& flights, const FitSetup& setup) {
       rows(size + as_index(k), as_index(k)) = weight;
       right[size + as_index(k)] = weight * (start_[as_index(setup.wanted[k])] - x[as_index(k)]);
     }
-    if (!rows.allFinite() || !right.allFinite()) return;
-    x += rows.completeOrthogonalDecomposition().solve(right);
-    for (std::size_t k = 0; k < fitted; ++k) x[as_index(k)] = clamped(k, x[as_index(k)]);
+    if (!rows.allFinite() || !right.allFinite()) return infinity;
+    Eigen::VectorXd lower = Eigen::VectorXd::Constant(size, -infinity);
+    Eigen::VectorXd upper = Eigen::VectorXd::Constant(size, infinity);
+    for (std::size_t k = 0; k < fitted; ++k) {
+      lower[as_index(k)] = parameters_[setup.wanted[k]].bounds.lower;
+      upper[as_index(k)] = parameters_[setup.wanted[k]].bounds.upper;
+    }
+    x = bounded_least_squares(rows, right + rows * x, lower, upper, x);
     spread();
+    return reduction.cost;
   };
-  if (!uses_prior()) linear_step();
+  if (!uses_prior()) linear_step(nullptr);
   flights.measure_noise(values_, solution.offsets);
   solution.deviation = flights.deviation(values_, solution.offsets);
 
   if (uses_prior()) {
     prior_strength_ = std::sqrt(memory_of(flights, solution.offsets)) * solution.deviation;
-    linear_step();
+    linear_step(nullptr);
     solution.deviation = flights.deviation(values_, solution.offsets);
   }
+  const auto touches = [&](std::size_t k) {
+    const Bounds& bounds = parameters_[setup.wanted[k]].bounds;
+    const double near = 1e-9 * std::max(std::abs(x[as_index(k)]), 1e-12);
+    return x[as_index(k)] <= bounds.lower + near || x[as_index(k)] >= bounds.upper - near;
+  };
+  const auto is_at_bound = [&] {
+    for (std::size_t k = 0; k < fitted; ++k) {
+      if (touches(k)) return true;
+    }
+    return false;
+  };
   const auto fit_with = [&](Loss loss) {
     const std::unique_ptr<ceres::LossFunction> function =
         solution.deviation > 0.0 ? loss_function(loss, solution.deviation) : nullptr;
     minimise(flights, setup, function.get(), x);
+    spread();
+    // Along a bound, where coefficients are nearly collinear, steps cut off at the bounds stall before the
+    // minimum; steps that know the bounds go on.
+    double cost = infinity;
+    Eigen::VectorXd best = x;
+    for (int step = 0; step < 20 && is_at_bound(); ++step) {
+      const Eigen::VectorXd now = x;
+      const double cost_now = linear_step(function.get());
+      if (!(cost_now < (1.0 - 1e-10) * cost)) break;
+      cost = cost_now;
+      best = now;
+    }
+    x = best;
     spread();
     const double before = solution.deviation;
     solution.deviation = flights.deviation(values_, solution.offsets);
@@ -476,11 +537,7 @@ Refit::Solution Refit::solve(FitFlights& flights, const FitSetup& setup) {
     }
   }
   solution.at_bound.resize(fitted);
-  for (std::size_t k = 0; k < fitted; ++k) {
-    const Bounds& bounds = parameters_[setup.wanted[k]].bounds;
-    const double near = 1e-9 * std::max(std::abs(x[as_index(k)]), 1e-12);
-    solution.at_bound[k] = x[as_index(k)] <= bounds.lower + near || x[as_index(k)] >= bounds.upper - near;
-  }
+  for (std::size_t k = 0; k < fitted; ++k) solution.at_bound[k] = touches(k);
   return solution;
 }
 
@@ -715,6 +772,9 @@ void Refit::find_omissions(FitFlights& flights, const FitSetup& setup, const Sol
 
 void Refit::compare_flight(const Residuals& residuals, bool holdout) {
   const FlightSamples& samples = residuals.samples();
+  if (!holdout) {
+    for (const Interval& interval : samples.intervals) flown_.set(static_cast<std::size_t>(interval.regime));
+  }
   const std::vector<double> before = residuals.values(start_.data());
   const std::vector<double> after = residuals.values(values_.data());
   std::vector<std::size_t> used;
@@ -764,9 +824,10 @@ void Refit::explain_errors(const Eigen::MatrixXd& covariance, const std::vector<
   const Eigen::Index size = covariance.rows();
   std::vector<std::string> grave;
   for (Eigen::Index a = 0; a < size; ++a) {
-    const ParameterState& state = parameters_[wanted[static_cast<std::size_t>(a)]];
+    const std::size_t parameter = wanted[static_cast<std::size_t>(a)];
+    const ParameterState& state = parameters_[parameter];
     const double error = std::sqrt(covariance(a, a));
-    if (!(state.typical > 0.0) || !(error > state.typical)) continue;
+    if (!(state.typical > 0.0) || !(error > weak_share * state.typical)) continue;
     std::string partners;
     for (Eigen::Index b = 0; b < size; ++b) {
       const double correlation = covariance(a, b) / std::sqrt(covariance(a, a) * covariance(b, b));
@@ -775,16 +836,29 @@ void Refit::explain_errors(const Eigen::MatrixXd& covariance, const std::vector<
                               parameters_[wanted[static_cast<std::size_t>(b)]].name, correlation);
     }
     grave.push_back(
-        fmt::format("{} is not determined: its standard error {:.2g} is above the typical size {:.2g}{}{}; "
-                    "hold it with --fix {}; what would tell: {}",
-                    state.name, error, state.typical, partners.empty() ? "" : ", and it goes with ", partners,
-                    state.name, state.manoeuvre));
+        fmt::format("{} is {}: {:.3g} +- {:.2g}, where its typical size is {:.2g}{}{}; hold it with --fix "
+                    "{}; what would tell: {}",
+                    state.name, error > state.typical ? "not determined" : "weakly determined",
+                    values_[as_index(parameter)], error, state.typical,
+                    partners.empty() ? "" : ", and it goes with ", partners, state.name, state.manoeuvre));
   }
-  if (result_.condition_number > 1000.0) {
+  if (result_.condition_number > collinear_condition) {
     grave.push_back(
         fmt::format("the coefficients are nearly collinear (condition number {:.0f}): their sum is known "
                     "better than each; do not read meaning into one alone",
                     result_.condition_number));
+  }
+  const bool knows_regimes = flown_.any();
+  const bool has_manoeuvre = flown_[static_cast<std::size_t>(Regime::pitch_manoeuvre)] ||
+                             flown_[static_cast<std::size_t>(Regime::yaw_manoeuvre)] ||
+                             flown_[static_cast<std::size_t>(Regime::speed_run)];
+  if (knows_regimes && !has_manoeuvre) {
+    grave.emplace_back(
+        "the flights have no pitch manoeuvre, yaw manoeuvre or speed run: the coefficients rest on climbs "
+        "and slow "
+        "changes, in which angle of attack, Mach number and weight go together, and may carry effects that "
+        "the model "
+        "does not have");
   }
   result_.notes.insert(result_.notes.begin(), grave.begin(), grave.end());
 }
@@ -866,6 +940,7 @@ RefitResult Refit::run() {
   if (!(options_.training_share > 0.0 && options_.training_share <= 1.0)) {
     throw Error("the share of samples that is fitted has to be above 0 and at most 1");
   }
+  require_one_kind();
   list_parameters();
   for (const ParameterState& state : parameters_) {
     if (!(state.bounds.lower < state.bounds.upper)) {

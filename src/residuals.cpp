@@ -11,20 +11,21 @@
 #include "model_inputs.hpp"
 #include "pcor/offline/batch.hpp"
 #include "pcor/offline/error.hpp"
+#include "pcor/offline/suggest.hpp"
 
 namespace pcor {
 
 const std::array<MaskFacts, mask_count> mask_facts{{
-    {"used", "takes part"},
-    {"excluded", "the user excluded its time"},
-    {"missing", "a variable that the model reads has no value"},
+    {"used", "used"},
+    {"excluded", "in times that the user excluded"},
+    {"missing", "without a value that the model needs"},
     {"ground", "on the ground"},
-    {"low_speed", "slower than the least airspeed"},
-    {"flaps", "flaps out"},
-    {"regime", "in a regime that is excluded"},
-    {"reference_missing", "a variable of the reference has no value"},
-    {"laser_unlocked", "the laser airspeed is far from that of the pressures"},
-    {"impossible", "no delta-p follows from the values"},
+    {"low_speed", "slower than the least airspeed (--min-airspeed)"},
+    {"flaps", "with flaps out (--max-flaps)"},
+    {"regime", "in a regime that is excluded (--exclude)"},
+    {"reference_missing", "without a value of the reference"},
+    {"laser_unlocked", "with a laser airspeed far from that of the pressures"},
+    {"impossible", "without a delta-p: impossible with these values and coefficients"},
 }};
 
 namespace {
@@ -238,7 +239,12 @@ FlightSamples read_samples(const Flight& flight, const ModelFile& model, const R
     samples.reference = read_model_samples(flight, *reference.system, false, samples.time, samples.notes);
   }
   if (reference.kind == Reference::Kind::pressure) {
-    const UnitConversion conversion = flight.conversion(reference.variable, "hPa", "reference");
+    if (!flight.has(reference.variable)) {
+      const std::string meant = did_you_mean(reference.variable, flight.variables());
+      throw Error(fmt::format("{}: {}, the reference, is not in this file{}; give another with --reference",
+                              flight.path().string(), reference.variable, meant.empty() ? "" : "; " + meant));
+    }
+    const UnitConversion conversion = flight.conversion(reference.variable, "hPa");
     flight.require_values(reference.variable);
     samples.pressure = read_column(flight, reference.variable, conversion);
   }

@@ -75,6 +75,10 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
+void require_writable(const fs::path& output) {
+  if (is_file(output)) const ReplacementFile probe(output);
+}
+
 void refuse_overwriting(const std::vector<fs::path>& outputs, const std::vector<fs::path>& inputs) {
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     for (const fs::path& input : inputs) {

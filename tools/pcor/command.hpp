@@ -50,6 +50,10 @@ std::string quoted(const std::string& word);
 void refuse_overwriting(const std::vector<std::filesystem::path>& outputs,
                         const std::vector<std::filesystem::path>& inputs);
 
+/// Makes sure, before the work, that a file can be written there. Empty names and `-` are no files.
+/// @throws Error if it cannot.
+void require_writable(const std::filesystem::path& output);
+
 /// A sub-command: adds itself to the program, and returns what to run when it was asked for.
 using AddCommand = std::function<void()> (*)(CLI::App& program);
 

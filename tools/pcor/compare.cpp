@@ -164,6 +164,7 @@ void run(const Options& options) {
       outputs.push_back(residual_file(options, i));
   }
   refuse_overwriting(outputs, inputs);
+  for (const std::filesystem::path& output : outputs) require_writable(output);
   JsonResult json(options.common);
   std::vector<Contender> contenders;
   for (const std::string& path : options.models) {

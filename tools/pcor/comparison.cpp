@@ -1,11 +1,23 @@
 #include "comparison.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
 
 #include "pcor/offline/error.hpp"
 #include "pcor/offline/suggest.hpp"
 
 namespace pcor::tool {
+
+CLI::Validator is_amount() {
+  const auto check = [](const std::string& text) -> std::string {
+    double value = -1.0;
+    const bool number = CLI::detail::lexical_cast(text, value);
+    return number && value >= 0.0 && std::isfinite(value) ? "" : text + " is not a number of zero or more";
+  };
+  return CLI::Validator(check, "NUMBER");
+}
 
 void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
   command.add_option("flights", options.flights, "the flights, netCDF files")
@@ -22,28 +34,31 @@ void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
                   "regimes that you add or veto, and times that you exclude")
       ->type_name("FILE.toml");
   command.add_option("--min-airspeed", options.least_airspeed, "m/s; slower samples take no part")
+      ->check(is_amount())
       ->capture_default_str();
   command.add_option("--max-flaps", options.most_flaps, "percent; samples with more flaps take no part")
+      ->check(is_amount())
       ->capture_default_str();
   command.add_option("--time-stamp", options.time_stamp, "which moment of its second a record's time is")
       ->check(CLI::IsMember({"begin", "middle"}))
       ->capture_default_str();
 }
 
+Regime regime_of(const std::string& name, const std::string& option) {
+  const Regime regime = regime_named(name);
+  if (regime != Regime::count) return regime;
+  std::vector<std::string> known;
+  for (const RegimeFacts& facts : regime_facts) known.emplace_back(facts.name);
+  const std::string meant = did_you_mean(name, known);
+  throw Error(fmt::format("{} '{}': there is no such regime; {}", option, name,
+                          meant.empty() ? fmt::format("the regimes are {}", fmt::join(known, ", ")) : meant));
+}
+
 MaskOptions mask_options(const ComparisonOptions& options) {
   MaskOptions mask;
   mask.least_airspeed = options.least_airspeed;
   mask.most_flaps = options.most_flaps;
-  for (const std::string& name : options.exclude) {
-    const Regime regime = regime_named(name);
-    if (regime == Regime::count) {
-      std::vector<std::string> known;
-      for (const RegimeFacts& facts : regime_facts) known.emplace_back(facts.name);
-      throw Error(
-          fmt::format("--exclude {}: there is no such regime; {}", name, did_you_mean(name, known, 12)));
-    }
-    mask.exclude.push_back(regime);
-  }
+  for (const std::string& name : options.exclude) mask.exclude.push_back(regime_of(name, "--exclude"));
   if (!options.intervals.empty()) mask.intervals = read_intervals(options.intervals);
   return mask;
 }

@@ -21,7 +21,13 @@ struct ComparisonOptions {
   std::string time_stamp = "begin";
 };
 
+/// A check of an option: a finite number, zero or more.
+CLI::Validator is_amount();
+
 void add_comparison_options(CLI::App& command, ComparisonOptions& options);
+
+/// The regime called `name` on the option `option`. @throws Error with the names that there are.
+Regime regime_of(const std::string& name, const std::string& option);
 
 /// @throws Error if a regime has no such name or the file of intervals cannot be read.
 MaskOptions mask_options(const ComparisonOptions& options);

@@ -10,7 +10,6 @@
 #include "comparison.hpp"
 #include "pcor/offline/comparison_report.hpp"
 #include "pcor/offline/error.hpp"
-#include "pcor/offline/suggest.hpp"
 #include "progress.hpp"
 
 namespace pcor::tool {
@@ -57,16 +56,8 @@ FitStage parse_stage(const std::string& text) {
         "--stage '{}': give regimes and parameters, e.g. 'pitch manoeuvre: static-alpha.a1'", text));
   }
   FitStage stage;
-  for (const std::string& name : parts_of(text.substr(0, colon))) {
-    const Regime regime = regime_named(name);
-    if (regime == Regime::count) {
-      std::vector<std::string> known;
-      for (const RegimeFacts& facts : regime_facts) known.emplace_back(facts.name);
-      throw Error(fmt::format("--stage '{}': there is no regime '{}'; {}", text, name,
-                              did_you_mean(name, known, 12)));
-    }
-    stage.regimes.push_back(regime);
-  }
+  for (const std::string& name : parts_of(text.substr(0, colon)))
+    stage.regimes.push_back(regime_of(name, "--stage"));
   stage.parameters = parts_of(text.substr(colon + 1));
   return stage;
 }
@@ -217,6 +208,8 @@ void run(const Options& options) {
   inputs.insert(inputs.end(), options.holdout.begin(), options.holdout.end());
   refuse_overwriting({options.output, options.reference_output, options.common.json, options.common.report},
                      inputs);
+  for (const std::string& output : {options.output, options.reference_output, options.common.report})
+    require_writable(output);
   JsonResult json(options.common);
   const ModelFile model = read_model(options.model);
   const Reference reference = read_reference(options.comparison.reference, model);
@@ -273,6 +266,7 @@ std::function<void()> add_refit(CLI::App& program) {
   command->add_flag("--search", options->search,
                     "search the start globally between the bounds, for coefficients that are not linear");
   command->add_option("--memory", options->memory_mib, "MiB of flights kept between passes")
+      ->check(is_amount())
       ->capture_default_str();
   add_common_options(*command, options->common);
   return [options] { run(*options); };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,7 +13,6 @@
 #include "progress.hpp"
 
 namespace pcor::tool {
-
 
 namespace {
 
@@ -102,7 +102,9 @@ std::function<void()> add_simulate(CLI::App& program) {
   command->add_option("-o,--output", options->output, "the file to write, whole or not at all")
       ->required()
       ->type_name("OUT.nc");
-  command->add_option("--seed", options->seed, "random numbers other than the scenario's")->type_name("N");
+  command->add_option("--seed", options->seed, "random numbers other than the scenario's")
+      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()))
+      ->type_name("N");
   add_common_options(*command, options->common, false);
   return [options] { run(*options); };
 }

@@ -15,7 +15,7 @@ struct StaticConstant {
     facts.needs = {Quantity::static_pressure, Quantity::count, Quantity::count, Quantity::count};
     facts.size = "C-130 0.004: 3 hPa at 700 hPa";
     facts.look_alikes = "psfd-bias, qcf-zero";
-    facts.manoeuvre = "none: an absolute reference is needed";
+    facts.manoeuvre = "an absolute reference; no manoeuvre does";
     facts.source = "memo eq. 18-20";
     facts.example.inputs[0] = {Quantity::static_pressure, 700.0};
     facts.example.parameters = {0.004127875};

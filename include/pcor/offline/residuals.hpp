@@ -36,7 +36,7 @@ inline constexpr std::size_t mask_count = static_cast<std::size_t>(Mask::count);
 
 struct MaskFacts {
   std::string_view name;     ///< as in JSON, for example "low_speed"
-  std::string_view meaning;  ///< in words
+  std::string_view meaning;  ///< in words that follow a number of samples
 };
 
 extern const std::array<MaskFacts, mask_count> mask_facts;
