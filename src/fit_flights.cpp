@@ -29,7 +29,7 @@ std::size_t bytes_of(const FlightSamples& samples) {
 FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitSetup& setup)
     : setup_(&setup),
       residuals_(std::move(samples), *setup.model, *setup.reference, setup.mask),
-      static_pressure_(*residuals_.samples().model.find(Quantity::static_pressure)) {
+      static_pressure_(residuals_.samples().model.find(Quantity::static_pressure)) {
   const FlightSamples& flight = residuals_.samples();
   const std::vector<Mask>& mask = residuals_.mask();
   for (std::size_t i = 0; i < mask.size(); ++i) {
@@ -81,19 +81,17 @@ void FitFlight::keep_derivatives() {
   kept_derivatives_ = std::move(derivatives);
 }
 
-void FitFlight::evaluate(std::size_t first, std::size_t count, const Eigen::VectorXd& parameters,
-                         const double* offsets, double* residual, double* derivatives) const {
-  const std::vector<std::size_t>& wanted = setup_->wanted;
+/// From the derivatives that are kept, where there are any.
+void FitFlight::find_residuals(std::size_t first, std::size_t count, const Eigen::VectorXd& parameters,
+                               const double* offsets, double* residual) const {
   if (kept_residual_.empty()) {
-    const std::vector<std::size_t> none;
-    residuals_.evaluate(kept_.data() + first, count, parameters.data(),
-                        derivatives == nullptr ? none : wanted, residual, derivatives);
+    residuals_.evaluate(kept_.data() + first, count, parameters.data(), {}, residual, nullptr);
   } else {
     std::copy_n(kept_residual_.data() + first, count, residual);
-    for (std::size_t k = 0; k < wanted.size(); ++k) {
-      const double step = parameters[as_index(wanted[k])] - kept_parameters_[as_index(wanted[k])];
+    for (std::size_t k = 0; k < setup_->wanted.size(); ++k) {
+      const Eigen::Index parameter = as_index(setup_->wanted[k]);
+      const double step = parameters[parameter] - kept_parameters_[parameter];
       const double* const column = kept_derivatives_.data() + k * kept_.size() + first;
-      if (derivatives != nullptr) std::copy_n(column, count, derivatives + k * count);
       for (std::size_t i = 0; i < count; ++i) residual[i] += step * column[i];
     }
   }
@@ -105,10 +103,40 @@ void FitFlight::evaluate(std::size_t first, std::size_t count, const Eigen::Vect
 std::vector<double> FitFlight::values(const Eigen::VectorXd& parameters, const double* offsets) const {
   std::vector<double> result(kept_.size());
   for (std::size_t first = 0; first < kept_.size(); first += chunk) {
-    evaluate(first, std::min(chunk, kept_.size() - first), parameters, offsets, result.data() + first,
-             nullptr);
+    find_residuals(first, std::min(chunk, kept_.size() - first), parameters, offsets, result.data() + first);
   }
   return result;
+}
+
+void FitFlight::evaluate(std::size_t first, std::size_t count, const Eigen::VectorXd& parameters,
+                         const Eigen::VectorXd& offsets, std::size_t first_offset, Rows& rows) const {
+  const std::size_t fitted = setup_->wanted.size();
+  const auto all_offsets = static_cast<std::size_t>(offsets.size());
+  const bool kept = !kept_residual_.empty();
+  rows.columns.clear();
+  rows.store.assign((all_offsets + 1 + (kept ? 0 : fitted)) * count, 0.0);
+  double* const residual = rows.store.data();
+  double* const shifts = residual + count;
+  double* const derivatives = shifts + all_offsets * count;
+  if (kept) {
+    find_residuals(first, count, parameters, offsets.data() + first_offset, residual);
+  } else {
+    residuals_.evaluate(kept_.data() + first, count, parameters.data(), setup_->wanted, residual,
+                        derivatives);
+    for (std::size_t i = 0; i < count && !offset_.empty(); ++i) {
+      const Eigen::Index offset = as_index(first_offset) + offset_[first + i];
+      residual[i] -= offsets[offset] * static_pressure(first + i);
+    }
+  }
+  for (std::size_t k = 0; k < fitted; ++k)
+    rows.columns.push_back(kept ? kept_derivatives_.data() + k * kept_.size() + first
+                                : derivatives + k * count);
+  for (std::size_t k = 0; k < all_offsets; ++k) rows.columns.push_back(shifts + k * count);
+  for (std::size_t i = 0; i < count && !offset_.empty(); ++i) {
+    const std::size_t offset = first_offset + static_cast<std::size_t>(offset_[first + i]);
+    shifts[offset * count + i] = -static_pressure(first + i);
+  }
+  rows.columns.push_back(residual);
 }
 
 void FitFlight::measure_noise(const Eigen::VectorXd& parameters, const double* offsets) {
@@ -117,16 +145,16 @@ void FitFlight::measure_noise(const Eigen::VectorXd& parameters, const double* o
   std::vector<double> series(flight.time.size(), nan);
   for (std::size_t i = 0; i < kept_.size(); ++i) series[kept_[i]] = residual[i];
   const NoiseFloor floor = noise_floor(series, stretches_of(series, flight.time, flight.step), flight.step);
-  noise_.assign(kept_.size(), 1.0);
+  noise_.assign(kept_.size(), 1.0F);
   // Without noise (data that a formula made) all samples count alike.
   if (!(floor.rms > 0.0)) return;
-  for (std::size_t i = 0; i < kept_.size(); ++i) noise_[i] = floor.local_rms[kept_[i]];
+  for (std::size_t i = 0; i < kept_.size(); ++i) noise_[i] = static_cast<float>(floor.local_rms[kept_[i]]);
   samples_per_independent_ = floor.samples_per_independent;
 }
 
-FitFlights::FitFlights(std::vector<FlightSource> sources, const FitSetup& setup)
+FitFlights::FitFlights(std::vector<FlightSource> sources, FitSetup setup)
     : sources_(std::move(sources)),
-      setup_(setup),
+      setup_(std::move(setup)),
       cache_(sources_.size()),
       first_offset_(sources_.size(), 0) {
   std::vector<std::size_t> kept(sources_.size());
@@ -207,50 +235,66 @@ void FitFlights::visit(const std::function<void(std::size_t, std::size_t, FitFli
 
 Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets,
                              const ceres::LossFunction* loss) {
-  const std::size_t fitted = setup_.wanted.size();
-  const Eigen::Index columns = as_index(fitted + offsets_ + 1);
+  const Eigen::Index columns = as_index(setup_.wanted.size() + offsets_ + 1);
   std::vector<Reduction> parts(count());
   visit([&](std::size_t number, std::size_t first_offset, FitFlight& fit) {
     Reduction& part = parts[number];
     TriangularFactor factor(columns);
-    std::vector<double> residual(chunk);
-    std::vector<double> derivatives(fitted * chunk);
+    FitFlight::Rows rows;
+    std::array<double, chunk> scale{};
+    double slopes = 0.0;
+    double curvatures = 0.0;
     for (std::size_t first = 0; first < fit.kept().size(); first += chunk) {
       const std::size_t length = std::min(chunk, fit.kept().size() - first);
-      fit.evaluate(first, length, parameters, offsets.data() + first_offset, residual.data(),
-                   derivatives.data());
+      fit.evaluate(first, length, parameters, offsets, first_offset, rows);
       for (std::size_t i = 0; i < length; ++i) {
-        const double weight = 1.0 / fit.noise(first + i);
-        const double normal = weight * residual[i];
+        const double noise = fit.noise(first + i);
+        const double normal = rows.residual()[i] / noise;
         std::array<double, 3> rho{normal * normal, 1.0, 0.0};
         if (loss != nullptr) loss->Evaluate(rho[0], rho.data());
-        if (!std::isfinite(normal)) part.valid = false;
         part.cost += 0.5 * rho[0];
-        const double root = std::sqrt(rho[1]);
-        if (root == 0.0) continue;
-        auto row = factor.next_row();
-        if (offsets_ > 0) row.setZero();
-        for (std::size_t k = 0; k < fitted; ++k)
-          row[as_index(k)] = root * weight * derivatives[k * length + i];
-        if (const int offset = fit.offset_of(first + i); offset >= 0) {
-          row[as_index(fitted + first_offset) + offset] = -root * weight * fit.static_pressure(first + i);
-        }
-        row[columns - 1] = root * normal;
+        slopes += rho[1];
+        curvatures += rho[1] + 2.0 * normal * normal * rho[2];
+        scale[i] = std::sqrt(rho[1]) / noise;
       }
+      factor.add(rows.columns, scale.data(), length);
     }
     part.samples = fit.kept().size();
+    part.curvature = curvatures / slopes;
     part.factor = factor.factor();
   });
   Reduction whole;
+  double curvature = 0.0;
   TriangularFactor sum(columns);
   for (const Reduction& part : parts) {
-    for (Eigen::Index i = 0; i < columns; ++i) sum.next_row() = part.factor.row(i);
+    sum.add(part.factor);
     whole.cost += part.cost;
     whole.samples += part.samples;
-    whole.valid &= part.valid;
+    if (part.samples > 0) curvature += part.curvature * static_cast<double>(part.samples);
   }
+  whole.curvature = curvature / static_cast<double>(whole.samples);
   whole.factor = sum.factor();
+  whole.valid = std::isfinite(whole.cost) && whole.factor.allFinite();
   return whole;
+}
+
+Eigen::MatrixXd FitFlights::unweighted_factor(const Eigen::VectorXd& parameters) {
+  const Eigen::Index columns = as_index(setup_.wanted.size() + 1);
+  const std::vector<double> ones(chunk, 1.0);
+  std::vector<Eigen::MatrixXd> parts(count());
+  visit([&](std::size_t number, std::size_t, FitFlight& fit) {
+    TriangularFactor factor(columns);
+    FitFlight::Rows rows;
+    for (std::size_t first = 0; first < fit.kept().size(); first += chunk) {
+      const std::size_t length = std::min(chunk, fit.kept().size() - first);
+      fit.evaluate(first, length, parameters, Eigen::VectorXd(), 0, rows);
+      factor.add(rows.columns, ones.data(), length);
+    }
+    parts[number] = factor.factor();
+  });
+  TriangularFactor sum(columns);
+  for (const Eigen::MatrixXd& part : parts) sum.add(part);
+  return sum.factor();
 }
 
 void FitFlights::measure_noise(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) {

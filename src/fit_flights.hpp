@@ -54,18 +54,24 @@ class FitFlight {
   /// The residuals of the samples that take part. @param offsets those of this flight
   std::vector<double> values(const Eigen::VectorXd& parameters, const double* offsets) const;
 
-  /// Residuals and derivatives of `count` of the kept samples from `first` on; columns of `count` values.
-  /// `derivatives` may be null.
-  void evaluate(std::size_t first, std::size_t count, const Eigen::VectorXd& parameters,
-                const double* offsets, double* residual, double* derivatives) const;
+  /// Residuals and derivatives of consecutive kept samples, by columns: those of the wanted parameters, of
+  /// all offsets of the fit, and the residual, hPa. They point into the flight or into `store`.
+  struct Rows {
+    std::vector<const double*> columns{};
+    std::vector<double> store{};
+    const double* residual() const { return columns.back(); }
+  };
 
-  /// The place of a kept sample's offset among those of this flight; -1 without one.
-  int offset_of(std::size_t kept) const { return offset_.empty() ? -1 : offset_[kept]; }
-  double static_pressure(std::size_t kept) const { return static_pressure_[kept_[kept]]; }
+  /// Puts `count` of the kept samples from `first` on into `rows`. @param offsets of all flights, those of
+  /// this one from `first_offset` on
+  void evaluate(std::size_t first, std::size_t count, const Eigen::VectorXd& parameters,
+                const Eigen::VectorXd& offsets, std::size_t first_offset, Rows& rows) const;
+
+  double static_pressure(std::size_t kept) const { return (*static_pressure_)[kept_[kept]]; }
 
   /// Measures the noise of the residuals at `parameters`, which becomes the weight of the samples.
   void measure_noise(const Eigen::VectorXd& parameters, const double* offsets);
-  double noise(std::size_t kept) const { return noise_.empty() ? 1.0 : noise_[kept]; }
+  double noise(std::size_t kept) const { return noise_.empty() ? 1.0 : static_cast<double>(noise_[kept]); }
   double samples_per_independent() const { return samples_per_independent_; }
   bool has_noise() const { return !noise_.empty(); }
 
@@ -73,14 +79,17 @@ class FitFlight {
   void keep_derivatives();
 
  private:
+  void find_residuals(std::size_t first, std::size_t count, const Eigen::VectorXd& parameters,
+                      const double* offsets, double* residual) const;
+
   const FitSetup* setup_;
   Residuals residuals_;
-  std::vector<double> static_pressure_;
+  const std::vector<double>* static_pressure_;  // of the samples
   std::vector<std::size_t> kept_;
   std::size_t held_out_ = 0;
   std::vector<int> offset_;
   std::size_t offset_count_ = 0;
-  std::vector<double> noise_;
+  std::vector<float> noise_;  // weights need no more digits
   double samples_per_independent_ = 1.0;
   bool linear_ = false;
   std::vector<double> kept_residual_;     // at `kept_parameters_`
@@ -92,6 +101,9 @@ class FitFlight {
 struct Reduction {
   Eigen::MatrixXd factor;  ///< of rows (derivatives by wanted parameters and offsets, residual), weighted
   double cost = 0.0;       ///< half the sum of the loss
+  /// The curvature of the loss over its slope, rho' + 2 s rho'' over rho', mean over the samples: by so much
+  /// the second derivative of the cost is less than that of the weighted squares.
+  double curvature = 1.0;
   std::size_t samples = 0;
   bool valid = true;  ///< false where some residual is not a number at these parameters
 };
@@ -100,7 +112,11 @@ struct Reduction {
 /// of the flights, so they do not depend on the number of threads.
 class FitFlights {
  public:
-  FitFlights(std::vector<FlightSource> sources, const FitSetup& setup);
+  FitFlights(std::vector<FlightSource> sources, FitSetup setup);
+  FitFlights(const FitFlights&) = delete;
+  FitFlights& operator=(const FitFlights&) = delete;
+
+  const FitSetup& setup() const { return setup_; }
 
   std::size_t count() const { return sources_.size(); }
 
@@ -119,6 +135,9 @@ class FitFlights {
   Reduction reduce(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets,
                    const ceres::LossFunction* loss);
 
+  /// The factor of rows (derivatives, residual) in hPa, all samples alike.
+  Eigen::MatrixXd unweighted_factor(const Eigen::VectorXd& parameters);
+
   /// Measures the noise of every flight, which weights its samples from now on.
   void measure_noise(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets);
 
@@ -130,7 +149,7 @@ class FitFlights {
   std::shared_ptr<FitFlight> made(std::size_t number, std::shared_ptr<const FlightSamples> samples);
 
   std::vector<FlightSource> sources_;
-  const FitSetup& setup_;
+  const FitSetup setup_;  // the flights in the cache point to it
   std::vector<std::shared_ptr<FitFlight>> cache_;
   std::vector<std::size_t> first_offset_;
   std::mutex counting_;

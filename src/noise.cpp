@@ -18,38 +18,37 @@ constexpr double local_time = 300.0;  // s
 constexpr double local_share = 0.85;
 constexpr std::size_t fewest_differences = 30;
 constexpr std::size_t highest_order = 20;
+constexpr std::size_t orders_in_vain = 5;
 
-/// The differences over `lag` samples that begin in [first, last) of the series.
+/// The differences over `lag` samples that begin in [first, last) of the series; `every` is the step from one
+/// to the next within a stretch.
 std::vector<double> differences(const std::vector<double>& values, const std::vector<Stretch>& stretches,
-                                std::size_t lag, std::size_t first, std::size_t last) {
+                                std::size_t lag, std::size_t first, std::size_t last, std::size_t every = 1) {
   std::vector<double> result;
   for (const Stretch& stretch : stretches) {
     const std::size_t end = stretch.first + stretch.count;
     if (stretch.count <= lag) continue;
     const std::size_t to = std::min(end - lag, last);
-    for (std::size_t i = std::max(stretch.first, first); i < to; ++i)
+    for (std::size_t i = std::max(stretch.first, first); i < to; i += every)
       result.push_back(values[i + lag] - values[i]);
   }
   return result;
 }
 
-/// The lag, as its place in `lags`, over which the noise has forgotten itself.
-std::size_t plateau_of(const std::array<double, lags.size()>& variance) {
-  for (std::size_t i = 1; i < lags.size(); ++i) {
-    if (!(variance[i] > plateau_growth * variance[i - 1])) return i;
-  }
-  return lags.size() - 1;
-}
-
-/// The variances of the differences over each lag; NaN where there are too few.
-std::array<double, lags.size()> difference_variances(const std::vector<double>& values,
-                                                     const std::vector<Stretch>& stretches) {
-  std::array<double, lags.size()> result{};
-  for (std::size_t i = 0; i < lags.size(); ++i) {
-    std::vector<double> change = differences(values, stretches, lags[i], 0, values.size());
-    const bool enough = change.size() >= fewest_differences;
-    const double deviation = enough ? robust_deviation(std::move(change)) : nan;
-    result[i] = deviation * deviation;
+/// The variances of the differences over 1, 2, 4 ... samples, up to the lag at which they level off: the
+/// noise has forgotten itself. NaN where there are too few.
+std::vector<double> difference_variances(const std::vector<double>& values,
+                                         const std::vector<Stretch>& stretches) {
+  // So many tell the variance to 2 %.
+  constexpr std::size_t enough = 8192;
+  const std::size_t every = 1 + values.size() / enough;
+  std::vector<double> result;
+  for (const std::size_t lag : lags) {
+    std::vector<double> change = differences(values, stretches, lag, 0, values.size(), every);
+    const bool too_few = change.size() < fewest_differences;
+    const double deviation = too_few ? nan : robust_deviation(std::move(change));
+    result.push_back(deviation * deviation);
+    if (result.size() > 1 && !(result.back() > plateau_growth * result[result.size() - 2])) break;
   }
   return result;
 }
@@ -82,9 +81,9 @@ NoiseFloor noise_floor(const std::vector<double>& values, const std::vector<Stre
                        double step) {
   NoiseFloor floor;
   floor.local_rms.assign(values.size(), nan);
-  std::array<double, lags.size()> variance = difference_variances(values, stretches);
-  const std::size_t plateau = plateau_of(variance);
-  const double whole = std::sqrt(0.5 * variance[plateau]);
+  const std::vector<double> whole_variance = difference_variances(values, stretches);
+  const std::size_t plateau = lags[whole_variance.size() - 1];
+  const double whole = std::sqrt(0.5 * whole_variance.back());
   floor.rms = whole;
   if (!(whole > 0.0)) {
     for (const Stretch& stretch : stretches)
@@ -97,7 +96,7 @@ NoiseFloor noise_floor(const std::vector<double>& values, const std::vector<Stre
   std::size_t count = 0;
   for (std::size_t first = 0; first < values.size(); first += block) {
     const std::size_t last = std::min(first + block, values.size());
-    std::vector<double> change = differences(values, stretches, lags[plateau], first, last);
+    std::vector<double> change = differences(values, stretches, plateau, first, last);
     double here = whole;
     if (change.size() >= fewest_differences) here = std::sqrt(0.5) * robust_deviation(std::move(change));
     if (!(here > 0.0)) here = whole;
@@ -113,12 +112,12 @@ NoiseFloor noise_floor(const std::vector<double>& values, const std::vector<Stre
   floor.rms = std::sqrt(square_sum / static_cast<double>(count));
 
   // rho_k = 1 - D(k)/D(plateau) at the lags, and straight lines between them.
-  variance = difference_variances(normal, stretches);
+  const std::vector<double> variance = difference_variances(normal, stretches);
   double before = 1.0;
   double sum = 0.0;
   std::size_t lag_before = 0;
-  for (std::size_t i = 0; i <= plateau; ++i) {
-    const double correlation = std::clamp(1.0 - variance[i] / variance[plateau], 0.0, 1.0);
+  for (std::size_t i = 0; i < variance.size(); ++i) {
+    const double correlation = std::clamp(1.0 - variance[i] / variance.back(), 0.0, 1.0);
     const auto width = static_cast<double>(lags[i] - lag_before);
     // The lags above lag_before up to and with lags[i].
     sum += 0.5 * (width - 1.0) * before + 0.5 * (width + 1.0) * correlation;
@@ -192,6 +191,7 @@ Autoregression autoregression(const std::vector<double>& values, const std::vect
       best.coefficients = coefficients;
       best.innovation_rms = std::sqrt(power);
     }
+    if (order >= best.coefficients.size() + orders_in_vain) break;
   }
   return best;
 }

@@ -99,13 +99,18 @@ class ReducedCost final : public ceres::CostFunction {
     if (!reduction_.valid) return false;
     Eigen::Map<Eigen::VectorXd> all(residuals, size_ + 1);
     all.head(size_) = reduction_.factor.col(size_).head(size_);
+    // With the curvature of the loss a step is nearly Newton's. Gradient and cost stay as they are; far from
+    // the minimum, where the cost leaves no room for it, the weighted squares alone have to do.
+    double stretch = std::sqrt(std::clamp(reduction_.curvature, 0.1, 1.0));
+    if (all.head(size_).squaredNorm() > 2.0 * reduction_.cost * stretch * stretch) stretch = 1.0;
+    all.head(size_) /= stretch;
     const double rest = 2.0 * reduction_.cost - all.head(size_).squaredNorm();
     all[size_] = std::sqrt(std::max(rest, 0.0));
     if (jacobians != nullptr && jacobians[0] != nullptr) {
       Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> jacobian(
           jacobians[0], size_ + 1, size_);
       jacobian.setZero();
-      jacobian.topRows(size_) = reduction_.factor.topLeftCorner(size_, size_);
+      jacobian.topRows(size_) = stretch * reduction_.factor.topLeftCorner(size_, size_);
     }
     return true;
   }
@@ -165,8 +170,10 @@ struct FitSums {
   }
   double bulk_rms() const { return std::sqrt(bulk_squares / static_cast<double>(samples)); }
   double rms() const { return std::sqrt(squares / static_cast<double>(samples)); }
-  double r_squared() const {
-    return 1.0 - squares / (wanted_squares - wanted * wanted / static_cast<double>(samples));
+  double r_squared() const { return r_squared(squares); }
+  /// Of another model with that sum of squared residuals.
+  double r_squared(double other_squares) const {
+    return 1.0 - other_squares / (wanted_squares - wanted * wanted / static_cast<double>(samples));
   }
 };
 
@@ -194,19 +201,17 @@ class Refit {
   std::vector<std::size_t> parameters_named(const std::string& name, const char* option) const;
   std::vector<std::vector<std::size_t>> stages();
   FitSetup setup_for(std::vector<std::size_t> wanted) const;
-  void require_samples(const FitFlights& flights, const FitSetup& setup) const;
-  Solution solve(FitFlights& flights, const FitSetup& setup);
+  void require_samples(const FitFlights& flights) const;
+  Solution solve(FitFlights& flights);
   double memory_of(FitFlights& flights, const Eigen::VectorXd& offsets);
-  void minimise(FitFlights& flights, const FitSetup& setup, const ceres::LossFunction* loss,
-                Eigen::VectorXd& x);
-  Eigen::MatrixXd covariance(FitFlights& flights, const FitSetup& setup, const Solution& solution,
-                             const Eigen::MatrixXd& earlier, std::size_t earlier_count);
+  void minimise(FitFlights& flights, const ceres::LossFunction* loss, Eigen::VectorXd& x);
+  Eigen::MatrixXd covariance(FitFlights& flights, const Solution& solution, const Eigen::MatrixXd& earlier);
   Eigen::MatrixXd parameter_factor(const Reduction& reduction, std::size_t wanted) const;
   void require_rank(const Eigen::MatrixXd& factor, const std::vector<std::size_t>& wanted);
   FitSums sums_at(FitFlights& flights, const Eigen::VectorXd& parameters, double deviation);
-  void find_omissions(FitFlights& flights, const FitSetup& setup, const Solution& solution);
+  void find_omissions(FitFlights& flights, const Solution& solution, const FitSums& sums);
   void compare_flights(FitFlights& flights);
-  void compare_flight(const Residuals& residuals, bool holdout);
+  std::vector<FlightFit> before_and_after(const Residuals& residuals, double training_share) const;
   void explain_errors(const Eigen::MatrixXd& covariance, const std::vector<std::size_t>& wanted);
   void write_models(const Eigen::MatrixXd& covariance, const std::vector<std::size_t>& fitted);
   void tell();
@@ -348,7 +353,8 @@ FitSetup Refit::setup_for(std::vector<std::size_t> wanted) const {
   return setup;
 }
 
-void Refit::require_samples(const FitFlights& flights, const FitSetup& setup) const {
+void Refit::require_samples(const FitFlights& flights) const {
+  const FitSetup& setup = flights.setup();
   if (flights.samples() == 0 && !setup.regimes.empty()) {
     std::vector<std::string_view> names;
     for (const Regime regime : setup.regimes) names.push_back(facts_of(regime).name);
@@ -372,8 +378,8 @@ void Refit::require_samples(const FitFlights& flights, const FitSetup& setup) co
   }
 }
 
-void Refit::minimise(FitFlights& flights, const FitSetup& setup, const ceres::LossFunction* loss,
-                     Eigen::VectorXd& x) {
+void Refit::minimise(FitFlights& flights, const ceres::LossFunction* loss, Eigen::VectorXd& x) {
+  const FitSetup& setup = flights.setup();
   ceres::Problem::Options ownership;
   ceres::Problem problem(ownership);
   problem.AddParameterBlock(x.data(), static_cast<int>(x.size()));
@@ -397,6 +403,8 @@ void Refit::minimise(FitFlights& flights, const FitSetup& setup, const ceres::Lo
   }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
+  // The problem is linear or nearly so: the first step may be the whole one.
+  options.initial_trust_region_radius = 1e12;
   options.max_num_iterations = 200;
   options.function_tolerance = 1e-12;
   options.parameter_tolerance = 1e-9;
@@ -434,8 +442,9 @@ double Refit::memory_of(FitFlights& flights, const Eigen::VectorXd& offsets) {
   return std::max(sum / static_cast<double>(flights.samples()), 1.0);
 }
 
-Refit::Solution Refit::solve(FitFlights& flights, const FitSetup& setup) {
-  require_samples(flights, setup);
+Refit::Solution Refit::solve(FitFlights& flights) {
+  const FitSetup& setup = flights.setup();
+  require_samples(flights);
   const std::size_t fitted = setup.wanted.size();
   Solution solution;
   solution.offsets = Eigen::VectorXd::Zero(as_index(flights.offsets()));
@@ -508,7 +517,7 @@ Refit::Solution Refit::solve(FitFlights& flights, const FitSetup& setup) {
   const auto fit_with = [&](Loss loss) {
     const std::unique_ptr<ceres::LossFunction> function =
         solution.deviation > 0.0 ? loss_function(loss, solution.deviation) : nullptr;
-    minimise(flights, setup, function.get(), x);
+    minimise(flights, function.get(), x);
     spread();
     // Along a bound, where coefficients are nearly collinear, steps cut off at the bounds stall before the
     // minimum; steps that know the bounds go on.
@@ -526,13 +535,13 @@ Refit::Solution Refit::solve(FitFlights& flights, const FitSetup& setup) {
     const double before = solution.deviation;
     solution.deviation = flights.deviation(values_, solution.offsets);
     tell();
-    return std::abs(solution.deviation - before) < 1e-4 * before;
+    return std::abs(solution.deviation - before) < 1e-3 * before;
   };
   if (options_.loss == Loss::none) {
     fit_with(Loss::none);
   } else {
-    // The solution of Huber's loss is unique; from there the others find the minimum of the bulk.
-    fit_with(Loss::huber);
+    // The solution of a convex loss is unique; from Huber's the others find the minimum of the bulk.
+    if (options_.loss == Loss::tukey || options_.loss == Loss::cauchy) fit_with(Loss::huber);
     for (int round = 0; round < 5 && !fit_with(options_.loss); ++round) {
     }
   }
@@ -585,8 +594,10 @@ void Refit::require_rank(const Eigen::MatrixXd& factor, const std::vector<std::s
 /// The covariance of the wanted parameters: of the estimate that the loss makes from noise with the memory
 /// that the residuals have. The first `earlier_count` of them were found in earlier stages with the
 /// covariance `earlier`, and what they err by goes on to the others.
-Eigen::MatrixXd Refit::covariance(FitFlights& flights, const FitSetup& setup, const Solution& solution,
-                                  const Eigen::MatrixXd& earlier, std::size_t earlier_count) {
+Eigen::MatrixXd Refit::covariance(FitFlights& flights, const Solution& solution,
+                                  const Eigen::MatrixXd& earlier) {
+  const FitSetup& setup = flights.setup();
+  const auto earlier_count = static_cast<std::size_t>(earlier.rows());
   const Eigen::Index size = as_index(setup.wanted.size() + flights.offsets());
   const std::unique_ptr<ceres::LossFunction> loss =
       solution.deviation > 0.0 ? loss_function(options_.loss, solution.deviation) : nullptr;
@@ -602,29 +613,22 @@ Eigen::MatrixXd Refit::covariance(FitFlights& flights, const FitSetup& setup, co
                                              std::vector<double>(length, 0.0));
     std::vector<double> influence(length, nan);
     constexpr std::size_t chunk = 1024;
-    std::vector<double> residual(chunk);
-    std::vector<double> derivatives(setup.wanted.size() * chunk);
+    FitFlight::Rows rows;
     double slope = 0.0;
     double squares = 0.0;
     for (std::size_t first = 0; first < kept; first += chunk) {
       const std::size_t count = std::min(chunk, kept - first);
-      fit.evaluate(first, count, values_, solution.offsets.data() + first_offset, residual.data(),
-                   derivatives.data());
+      fit.evaluate(first, count, values_, solution.offsets, first_offset, rows);
       for (std::size_t i = 0; i < count; ++i) {
         const std::size_t place = fit.kept()[first + i];
         const double weight = 1.0 / fit.noise(first + i);
-        const double normal = weight * residual[i];
+        const double normal = weight * rows.residual()[i];
         std::array<double, 3> rho{normal * normal, 1.0, 0.0};
         if (loss) loss->Evaluate(rho[0], rho.data());
         influence[place] = rho[1] * normal;
         squares += influence[place] * influence[place];
         slope += rho[1] + 2.0 * normal * normal * rho[2];
-        for (std::size_t k = 0; k < setup.wanted.size(); ++k)
-          columns[k][place] = weight * derivatives[k * count + i];
-        if (const int offset = fit.offset_of(first + i); offset >= 0) {
-          columns[setup.wanted.size() + first_offset + static_cast<std::size_t>(offset)][place] =
-              -weight * fit.static_pressure(first + i);
-        }
+        for (std::size_t k = 0; k < columns.size(); ++k) columns[k][place] = weight * rows.columns[k][i];
       }
     }
     slope /= static_cast<double>(kept);
@@ -726,7 +730,8 @@ FitSums Refit::sums_at(FitFlights& flights, const Eigen::VectorXd& parameters, d
 
 /// What the fit becomes without each effect: its parameters go to their neutral values and the others follow,
 /// with the weights that the samples have.
-void Refit::find_omissions(FitFlights& flights, const FitSetup& setup, const Solution& solution) {
+void Refit::find_omissions(FitFlights& flights, const Solution& solution, const FitSums& sums) {
+  const FitSetup& setup = flights.setup();
   const std::unique_ptr<ceres::LossFunction> loss =
       solution.deviation > 0.0 ? loss_function(options_.loss, solution.deviation) : nullptr;
   const Reduction reduction = flights.reduce(values_, Eigen::VectorXd(), loss.get());
@@ -740,6 +745,20 @@ void Refit::find_omissions(FitFlights& flights, const FitSetup& setup, const Sol
     factor(size + as_index(k), size) =
         weight * (values_[as_index(setup.wanted[k])] - start_[as_index(setup.wanted[k])]);
   }
+  // Where the residual is linear in all, one factor tells the squares at any coefficients.
+  const bool linear = std::all_of(setup.wanted.begin(), setup.wanted.end(),
+                                  [&](std::size_t p) { return flights.is_linear()[p]; });
+  const Eigen::MatrixXd unweighted = linear ? flights.unweighted_factor(values_) : Eigen::MatrixXd();
+  const auto squares_of = [&](const Eigen::VectorXd& parameters) {
+    if (!linear) return sums_at(flights, parameters, solution.deviation).squares;
+    Eigen::VectorXd step = Eigen::VectorXd::Ones(size + 1);
+    for (Eigen::Index k = 0; k < size; ++k) {
+      const Eigen::Index p = as_index(setup.wanted[static_cast<std::size_t>(k)]);
+      step[k] = parameters[p] - values_[p];
+    }
+    return (unweighted * step).squaredNorm();
+  };
+  result_.rms_before = std::sqrt(squares_of(start_) / static_cast<double>(sums.samples));
   std::vector<std::string> effects;
   for (const std::size_t p : setup.wanted) {
     const std::string& effect = parameters_[p].effect;
@@ -765,24 +784,24 @@ void Refit::find_omissions(FitFlights& flights, const FitSetup& setup, const Sol
       for (std::size_t k = 0; k < others.size(); ++k)
         changed[as_index(setup.wanted[static_cast<std::size_t>(others[k])])] += step[as_index(k)];
     }
-    const FitSums sums = sums_at(flights, changed, solution.deviation);
-    result_.omissions.push_back({effect, sums.rms(), sums.r_squared()});
+    const double squares = squares_of(changed);
+    result_.omissions.push_back(
+        {effect, std::sqrt(squares / static_cast<double>(sums.samples)), sums.r_squared(squares)});
   }
 }
 
-void Refit::compare_flight(const Residuals& residuals, bool holdout) {
+/// A flight with the coefficients of the file and with those of the fit: the part that was fitted, the first
+/// `training_share` of its samples, and the part that was held out.
+std::vector<FlightFit> Refit::before_and_after(const Residuals& residuals, double training_share) const {
   const FlightSamples& samples = residuals.samples();
-  if (!holdout) {
-    for (const Interval& interval : samples.intervals) flown_.set(static_cast<std::size_t>(interval.regime));
-  }
   const std::vector<double> before = residuals.values(start_.data());
   const std::vector<double> after = residuals.values(values_.data());
   std::vector<std::size_t> used;
   for (std::size_t i = 0; i < after.size(); ++i) {
     if (residuals.mask()[i] == Mask::none) used.push_back(i);
   }
-  const auto training = static_cast<std::size_t>(
-      std::llround((holdout ? 0.0 : options_.training_share) * static_cast<double>(used.size())));
+  const auto training =
+      static_cast<std::size_t>(std::llround(training_share * static_cast<double>(used.size())));
   std::vector<bool> first(after.size(), false);
   std::vector<bool> second(after.size(), false);
   std::vector<double> series(after.size(), nan);
@@ -792,30 +811,39 @@ void Refit::compare_flight(const Residuals& residuals, bool holdout) {
   }
   const NoiseFloor noise =
       noise_floor(series, stretches_of(series, samples.time, samples.step), samples.step);
+  std::vector<FlightFit> parts;
   const auto add = [&](const std::vector<bool>& part, bool held) {
-    result_.flights.push_back(
+    parts.push_back(
         {samples.name, held, statistics_of(before, noise, part), statistics_of(after, noise, part)});
   };
   if (training > 0) add(first, false);
   if (training < used.size()) add(second, true);
+  return parts;
 }
 
 void Refit::compare_flights(FitFlights& flights) {
   std::vector<std::vector<FlightFit>> parts(flights.count());
-  for (std::size_t number = 0; number < flights.count(); ++number) {
-    std::shared_ptr<const FlightSamples> samples = sources_[number].samples;
-    if (!samples) {
-      const Flight file(sources_[number].path, options_.time_stamp);
-      samples = std::make_shared<const FlightSamples>(read_samples(file, model_, reference_, options_.mask));
-      for (const std::string& note : samples->notes) result_.notes.push_back(samples->name + ": " + note);
-    }
-    compare_flight(Residuals(samples, model_, reference_, options_.mask), false);
+  std::vector<std::vector<std::string>> notes(flights.count());
+  std::vector<RegimeSet> flown(flights.count());
+  flights.visit([&](std::size_t number, std::size_t, FitFlight& fit) {
+    const FlightSamples& samples = fit.residuals().samples();
+    parts[number] = before_and_after(fit.residuals(), options_.training_share);
+    for (const std::string& note : samples.notes) notes[number].push_back(samples.name + ": " + note);
+    for (const Interval& interval : samples.intervals)
+      flown[number].set(static_cast<std::size_t>(interval.regime));
+  });
+  for (std::size_t i = 0; i < flights.count(); ++i) {
+    result_.flights.insert(result_.flights.end(), parts[i].begin(), parts[i].end());
+    result_.notes.insert(result_.notes.end(), notes[i].begin(), notes[i].end());
+    flown_ |= flown[i];
   }
   for (const std::filesystem::path& path : options_.holdout) {
     const Flight file(path, options_.time_stamp);
     const auto samples =
         std::make_shared<const FlightSamples>(read_samples(file, model_, reference_, options_.mask));
-    compare_flight(Residuals(samples, model_, reference_, options_.mask), true);
+    const std::vector<FlightFit> held =
+        before_and_after(Residuals(samples, model_, reference_, options_.mask), 0.0);
+    result_.flights.insert(result_.flights.end(), held.begin(), held.end());
   }
 }
 
@@ -954,49 +982,43 @@ RefitResult Refit::run() {
   std::vector<std::size_t> fitted;
   std::vector<int> stage_of(parameters_.size(), 0);
   std::vector<bool> at_bound(parameters_.size(), false);
-  Eigen::MatrixXd covariances(0, 0);
+  Eigen::MatrixXd earlier(0, 0);
   Solution solution;
+  std::unique_ptr<FitFlights> all;
   for (std::size_t s = 0; s < stage_parameters.size(); ++s) {
+    const std::vector<std::size_t>& wanted = stage_parameters[s];
     const bool last = s + 1 == stage_parameters.size();
+    if (last && wanted.empty()) break;
+    FitSetup setup = setup_for(wanted);
     if (!last) {
-      FitSetup setup = setup_for(stage_parameters[s]);
       setup.regimes = options_.stages[s].regimes;
       setup.with_offsets = true;
-      FitFlights flights(sources_, setup);
-      if (start_.size() == 0) start_ = values_ = flights.start();
-      solution = solve(flights, setup);
-      require_rank(parameter_factor(flights.reduce(values_, solution.offsets, nullptr), setup.wanted.size()),
-                   setup.wanted);
-      const Eigen::MatrixXd own = covariance(flights, setup, solution, Eigen::MatrixXd(0, 0), 0);
-      const Eigen::Index before = covariances.rows();
-      Eigen::MatrixXd grown = Eigen::MatrixXd::Zero(before + own.rows(), before + own.rows());
-      grown.topLeftCorner(before, before) = covariances;
-      grown.bottomRightCorner(own.rows(), own.rows()) = own;
-      covariances = std::move(grown);
-    } else if (!stage_parameters[s].empty()) {
-      const FitSetup setup = setup_for(stage_parameters[s]);
-      FitFlights flights(sources_, setup);
-      if (start_.size() == 0) start_ = values_ = flights.start();
-      solution = solve(flights, setup);
-      result_.masks = flights.masks();
     }
-    for (std::size_t k = 0; k < stage_parameters[s].size(); ++k) {
-      fitted.push_back(stage_parameters[s][k]);
-      stage_of[stage_parameters[s][k]] = static_cast<int>(s) + 1;
-      at_bound[stage_parameters[s][k]] = solution.at_bound[k];
+    all = std::make_unique<FitFlights>(sources_, std::move(setup));
+    if (start_.size() == 0) start_ = values_ = all->start();
+    solution = solve(*all);
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      fitted.push_back(wanted[k]);
+      stage_of[wanted[k]] = static_cast<int>(s) + 1;
+      at_bound[wanted[k]] = solution.at_bound[k];
     }
+    if (last) break;
+    require_rank(parameter_factor(all->reduce(values_, solution.offsets, nullptr), wanted.size()), wanted);
+    const Eigen::MatrixXd own = covariance(*all, solution, Eigen::MatrixXd(0, 0));
+    const Eigen::Index before = earlier.rows();
+    earlier.conservativeResizeLike(Eigen::MatrixXd::Zero(before + own.rows(), before + own.rows()));
+    earlier.bottomRightCorner(own.rows(), own.rows()) = own;
   }
   // Everything that was fitted, over all samples: errors, what can be told apart, and what each effect does.
-  const FitSetup setup = setup_for(fitted);
-  FitFlights flights(sources_, setup);
+  if (stage_parameters.size() > 1) all = std::make_unique<FitFlights>(sources_, setup_for(fitted));
+  FitFlights& flights = *all;
   flights.measure_noise(values_, Eigen::VectorXd());
   if (stage_parameters.back().empty()) solution = {};
   solution.deviation = flights.deviation(values_, Eigen::VectorXd());
   solution.offsets = Eigen::VectorXd();
   result_.masks = flights.masks();
   require_rank(parameter_factor(flights.reduce(values_, Eigen::VectorXd(), nullptr), fitted.size()), fitted);
-  const std::size_t earlier = fitted.size() - stage_parameters.back().size();
-  const Eigen::MatrixXd errors = covariance(flights, setup, solution, covariances, earlier);
+  const Eigen::MatrixXd errors = covariance(flights, solution, earlier);
 
   const FitSums sums = sums_at(flights, values_, solution.deviation);
   result_.samples = sums.samples;
@@ -1004,8 +1026,7 @@ RefitResult Refit::run() {
   result_.rms_over_pressure = std::sqrt(sums.relative_squares / static_cast<double>(sums.samples));
   result_.r_squared = sums.r_squared();
   result_.outliers = sums.outliers;
-  result_.rms_before = sums_at(flights, start_, solution.deviation).rms();
-  find_omissions(flights, setup, solution);
+  find_omissions(flights, solution, sums);
   compare_flights(flights);
   double noise = 0.0;
   for (const FlightFit& flight : result_.flights) {

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cstddef>
+#include <vector>
 
 namespace pcor {
 
@@ -11,15 +13,26 @@ class TriangularFactor {
  public:
   explicit TriangularFactor(Eigen::Index columns) : rows_(Eigen::MatrixXd::Zero(columns + block, columns)) {}
 
-  /// The place for the next row. Write all its columns.
-  auto next_row() {
-    if (filled_ == block) reduce();
-    return rows_.row(columns() + filled_++);
+  /// Adds `count` rows, given by columns, each row times its scale.
+  void add(const std::vector<const double*>& by_columns, const double* scale, std::size_t count) {
+    for (std::size_t from = 0; from < count;) {
+      if (filled_ == block) reduce();
+      const Eigen::Index part = std::min(block - filled_, static_cast<Eigen::Index>(count - from));
+      const Eigen::Map<const Eigen::ArrayXd> scales(scale + from, part);
+      for (Eigen::Index c = 0; c < columns(); ++c) {
+        const Eigen::Map<const Eigen::ArrayXd> column(by_columns[static_cast<std::size_t>(c)] + from, part);
+        rows_.col(c).segment(columns() + filled_, part) = (scales * column).matrix();
+      }
+      filled_ += part;
+      from += static_cast<std::size_t>(part);
+    }
   }
 
-  void add(const TriangularFactor& other) {
-    const Eigen::MatrixXd factor = other.factor();
-    for (Eigen::Index i = 0; i < factor.rows(); ++i) next_row() = factor.row(i);
+  /// Adds the rows of another factor.
+  void add(const Eigen::MatrixXd& factor) {
+    if (block - filled_ < columns()) reduce();
+    rows_.middleRows(columns() + filled_, columns()) = factor;
+    filled_ += columns();
   }
 
   Eigen::Index columns() const { return rows_.cols(); }
@@ -32,7 +45,7 @@ class TriangularFactor {
   }
 
  private:
-  static constexpr Eigen::Index block = 256;
+  static constexpr Eigen::Index block = 512;
 
   void reduce() {
     if (filled_ == 0) return;

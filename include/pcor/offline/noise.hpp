@@ -56,8 +56,8 @@ struct Autoregression {
 };
 
 /// The process that fits a series best: by Burg's method over all stretches together, of the order (0 to 20)
-/// with the least Bayesian information criterion. Every order keeps the process stationary. Values beyond
-/// `limit` robust deviations count as if they were at that limit.
+/// with the least Bayesian information criterion; the search ends after five orders in vain. Every order
+/// keeps the process stationary. Values beyond `limit` robust deviations count as if they were at that limit.
 Autoregression autoregression(const std::vector<double>& values, const std::vector<Stretch>& stretches,
                               double limit = 4.5);
 
