@@ -90,7 +90,7 @@ class Gathering {
  public:
   explicit Gathering(std::string name) { result_.name = std::move(name); }
 
-  void add(const FlightResiduals& flight, std::size_t model);
+  void add(const FlightResiduals& flight, std::size_t model, const NoiseFloor& noise);
   ModelComparison finish();
 
  private:
@@ -105,22 +105,42 @@ class Gathering {
   std::array<std::map<long, Sums>, bandings.size()> bands_{};
 };
 
-void Gathering::add(const FlightResiduals& flight, std::size_t model) {
+/// For how many samples one independent one stands: in the residual as it is, with what the model misses, or
+/// in the noise alone, whichever is more.
+double memory_of(const std::vector<double>& values, const FlightSamples& samples, const NoiseFloor& noise) {
+  std::vector<double> centred = values;
+  double sum = 0.0;
+  double squares = 0.0;
+  std::size_t count = 0;
+  for (const double value : values) {
+    if (std::isnan(value)) continue;
+    sum += value;
+    squares += value * value;
+    ++count;
+  }
+  const double mean = sum / static_cast<double>(count);
+  for (double& value : centred) value -= mean;
+  const Autoregression process = autoregression(centred, stretches_of(centred, samples.time, samples.step));
+  const double variance = squares / static_cast<double>(count) - mean * mean;
+  const double memory = process.samples_per_independent(std::sqrt(std::max(variance, 0.0)));
+  return std::isfinite(memory) ? std::max(memory, noise.samples_per_independent)
+                               : noise.samples_per_independent;
+}
+
+void Gathering::add(const FlightResiduals& flight, std::size_t model, const NoiseFloor& noise) {
   const std::vector<double>& values = flight.values[model];
+  const std::vector<double>& wanted = flight.reference_defects[model];
   const FlightSamples& samples = *flight.samples;
-  const NoiseFloor noise =
-      noise_floor(values, stretches_of(values, samples.time, samples.step), samples.step);
+  const double memory = memory_of(values, samples, noise);
   const std::vector<RegimeSet> regimes = regimes_of_samples(samples.time, samples.intervals);
   Sums own;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (std::isnan(values[i])) continue;
-    const auto count = [&](Sums& sums) {
-      sums.add(values[i], noise.local_rms[i], noise.samples_per_independent);
-    };
+    const auto count = [&](Sums& sums) { sums.add(values[i], noise.local_rms[i], memory); };
     count(own);
     count(all_);
-    wanted_sum_ += flight.reference_defect[i];
-    wanted_squares_ += flight.reference_defect[i] * flight.reference_defect[i];
+    wanted_sum_ += wanted[i];
+    wanted_squares_ += wanted[i] * wanted[i];
     for (std::size_t r = 0; r < regime_count; ++r) {
       if (regimes[i][r]) count(regimes_[r]);
     }
@@ -143,7 +163,7 @@ void Gathering::add_worst(const FlightResiduals& flight, const std::vector<doubl
     std::size_t i = first;
     for (; i < values.size() && samples.time[i] < samples.time[first] + worst_length; ++i) {
       if (std::isnan(values[i])) continue;
-      sums.add(values[i], noise.local_rms[i], noise.samples_per_independent);
+      sums.add(values[i], noise.local_rms[i], 1.0);
       flown |= regimes[i];
     }
     if (sums.samples > 0 && sums.samples >= enough) {
@@ -155,7 +175,7 @@ void Gathering::add_worst(const FlightResiduals& flight, const std::vector<doubl
   }
   std::stable_sort(
       result_.worst.begin(), result_.worst.end(),
-      [](const WorstInterval& a, const WorstInterval& b) { return a.statistics.rms > b.statistics.rms; });
+      [](const WorstInterval& a, const WorstInterval& b) { return fails_more(a.statistics, b.statistics); });
   if (result_.worst.size() > worst_count) result_.worst.resize(worst_count);
 }
 
@@ -208,6 +228,17 @@ void fit_lines(Comparison& comparison) {
   if (!total.empty()) comparison.total_pressure = ordinary_fit(total, reference_total);
 }
 
+/// The noise of a flight is one, whatever the models: where one of them fails quickly, another shows it.
+NoiseFloor lowest_noise(const FlightResiduals& flight) {
+  const FlightSamples& samples = *flight.samples;
+  NoiseFloor lowest;
+  for (const std::vector<double>& values : flight.values) {
+    NoiseFloor noise = noise_floor(values, stretches_of(values, samples.time, samples.step), samples.step);
+    if (&values == &flight.values.front() || noise.rms < lowest.rms) lowest = std::move(noise);
+  }
+  return lowest;
+}
+
 /// The residuals of all models on one flight, where all of them have one.
 FlightResiduals residuals_on(const Flight& flight, const std::vector<Contender>& contenders,
                              const MaskOptions& options, std::vector<std::string>& notes) {
@@ -218,12 +249,12 @@ FlightResiduals residuals_on(const Flight& flight, const std::vector<Contender>&
     const Residuals residuals(samples, model, reference, options);
     const double* const parameters = residuals.parameters().data();
     result.values.push_back(residuals.values(parameters));
+    result.reference_defects.push_back(residuals.wanted_defect(parameters));
     result.model_defects.push_back(residuals.quantity(Quantity::static_defect, parameters));
     for (const std::string& note : samples->notes) notes.push_back(samples->name + ": " + note);
     if (!result.samples) {
       result.samples = samples;
       result.mask = residuals.mask();
-      result.reference_defect = residuals.wanted_defect(parameters);
       result.static_pressure = residuals.quantity(Quantity::static_pressure, parameters);
       result.corrected_pressure = residuals.quantity(Quantity::corrected_static_pressure, parameters);
       result.mach = residuals.quantity(Quantity::corrected_mach, parameters);
@@ -248,6 +279,16 @@ FlightResiduals residuals_on(const Flight& flight, const std::vector<Contender>&
 }
 
 }  // namespace
+
+double Statistics::rms_over_noise() const { return noise_rms > 0.0 ? rms / noise_rms : nan; }
+
+bool fails_more(const Statistics& a, const Statistics& b) {
+  const auto failure = [](const Statistics& s) {
+    const double ratio = s.rms_over_noise();
+    return std::isnan(ratio) ? 0.0 : ratio;
+  };
+  return failure(a) > failure(b);
+}
 
 double Statistics::scatter() const { return std::sqrt(std::max(rms * rms - bias * bias, 0.0)); }
 
@@ -301,7 +342,8 @@ Comparison compare(const std::vector<std::filesystem::path>& flights,
     require_one_aircraft(aircraft);
     FlightResiduals residuals = residuals_on(flight, contenders, options.mask, result.notes);
     for (const Mask mask : residuals.mask) ++result.masks[static_cast<std::size_t>(mask)];
-    for (std::size_t m = 0; m < contenders.size(); ++m) gatherings[m].add(residuals, m);
+    const NoiseFloor noise = lowest_noise(residuals);
+    for (std::size_t m = 0; m < contenders.size(); ++m) gatherings[m].add(residuals, m, noise);
     result.flights.push_back(std::move(residuals));
     if (options.progress) options.progress(result.flights.size(), flights.size());
   }
@@ -343,8 +385,11 @@ void write_residuals(const Comparison& comparison, std::size_t flight, const std
     define(fmt::format("PCOR_{}", m + 1),
            fmt::format("Static defect (delta-p) of the model {}", comparison.models[m].name),
            residuals.model_defects[m]);
+    define(fmt::format("PCOR_REFERENCE_{}", m + 1),
+           fmt::format("Static defect (delta-p) that the reference asks of the model {}",
+                       comparison.models[m].name),
+           residuals.reference_defects[m]);
   }
-  define("PCOR_REFERENCE", "Static defect (delta-p) that the reference asks for", residuals.reference_defect);
 
   const auto flags = [&](const std::string& name, const std::string& long_name, std::vector<Flag> meanings,
                          std::vector<double> values) {

@@ -14,7 +14,21 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
+// A regime with fewer samples is not called the one where a model fails most.
+constexpr std::size_t fewest_in_regime = 60;
+// Times the noise: less is hardly a failure.
+constexpr double notable_failure = 1.2;
+
 std::string residual_column(std::size_t model) { return fmt::format("residual{}", model + 1); }
+
+/// The samples of a flight that take part: a report shows no others.
+std::vector<std::size_t> used(const FlightResiduals& flight) {
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < flight.mask.size(); ++i) {
+    if (flight.mask[i] == Mask::none) places.push_back(i);
+  }
+  return places;
+}
 
 /// One series of every flight, one after another; NaN for a flight that does not have it.
 template <class Series>
@@ -22,11 +36,7 @@ std::vector<double> joined(const Comparison& comparison, const Series& series) {
   std::vector<double> values;
   for (const FlightResiduals& flight : comparison.flights) {
     const std::vector<double>& part = series(flight);
-    if (part.empty()) {
-      values.insert(values.end(), flight.mask.size(), nan);
-    } else {
-      values.insert(values.end(), part.begin(), part.end());
-    }
+    for (const std::size_t i : used(flight)) values.push_back(part.empty() ? nan : part[i]);
   }
   return values;
 }
@@ -46,12 +56,19 @@ class Builder {
  public:
   explicit Builder(const Comparison& comparison) : comparison_(comparison) {
     for (const FlightResiduals& flight : comparison.flights) {
+      const std::vector<std::size_t> places = used(flight);
+      if (places.empty()) continue;
       report_.flight_starts.push_back(report_.time.size());
       report_.flight_names.push_back(flight.samples->name);
-      report_.time.insert(report_.time.end(), flight.samples->time.begin(), flight.samples->time.end());
-      for (const Interval& interval : flight.samples->intervals)
-        report_.intervals.push_back(
-            {std::string(facts_of(interval.regime).name), interval.begin, interval.end});
+      for (const std::size_t i : places) report_.time.push_back(flight.samples->time[i]);
+      for (const Interval& interval : flight.samples->intervals) {
+        const bool met = std::any_of(places.begin(), places.end(), [&](std::size_t i) {
+          return flight.samples->time[i] >= interval.begin && flight.samples->time[i] < interval.end;
+        });
+        if (met)
+          report_.intervals.push_back(
+              {std::string(facts_of(interval.regime).name), interval.begin, interval.end});
+      }
     }
     for (std::size_t m = 0; m < comparison.models.size(); ++m) {
       const std::string& name = comparison.models[m].name;
@@ -60,13 +77,8 @@ class Builder {
           [m](const FlightResiduals& f) -> const std::vector<double>& { return f.values[m]; });
       residuals_.push_back(residual_column(m));
     }
-    // The pictures show the samples that take part.
-    const std::vector<double>& used = report_.columns.front().values;
     const auto variable = [&](const char* name, const char* title, const char* unit, const auto& series) {
       std::vector<double> values = joined(comparison_, series);
-      for (std::size_t i = 0; i < values.size(); ++i) {
-        if (std::isnan(used[i])) values[i] = nan;
-      }
       if (!has_value(values)) return;
       report_.columns.push_back({name, title, unit, std::move(values)});
       variables_.push_back(name);
@@ -88,7 +100,7 @@ class Builder {
              [](const F& f) -> const V& { return f.samples->motion.vertical_speed; });
     variable("roll", "roll", "deg", [](const F& f) -> const V& { return f.samples->motion.roll; });
     variable("wanted", "delta-p, reference", "hPa",
-             [](const F& f) -> const V& { return f.reference_defect; });
+             [](const F& f) -> const V& { return f.reference_defects.front(); });
     defects_.emplace_back("wanted");
     for (std::size_t m = 0; m < comparison.models.size(); ++m) {
       const std::string name = fmt::format("model{}", m + 1);
@@ -178,25 +190,21 @@ class Builder {
     };
     using F = FlightResiduals;
     using V = std::vector<double>;
-    const auto used = [this](const char* name, const char* title, const auto& series) {
-      std::vector<double> values = joined(comparison_, series);
-      for (std::size_t i = 0; i < values.size(); ++i) {
-        if (std::isnan(report_.columns.front().values[i])) values[i] = nan;
-      }
-      report_.columns.push_back({name, title, "hPa", std::move(values)});
+    const auto column = [this](const char* name, const char* title, const auto& series) {
+      add(name, title, "hPa", series);
     };
     if (comparison_.total_pressure) {
-      used("total", "total pressure of the model's system",
-           [](const F& f) -> const V& { return f.total_pressure; });
-      used("reference_total", "total pressure of the reference",
-           [](const F& f) -> const V& { return f.reference_total_pressure; });
+      column("total", "total pressure of the model's system",
+             [](const F& f) -> const V& { return f.total_pressure; });
+      column("reference_total", "total pressure of the reference",
+             [](const F& f) -> const V& { return f.reference_total_pressure; });
       pair("Total pressures of the two systems",
            "Static defects cancel in the total pressure, so what is left is of the "
            "transducers, the pitots and the lines. ",
            "total", "reference_total", *comparison_.total_pressure);
     }
-    used("corrected", "static pressure of the model",
-         [](const F& f) -> const V& { return f.corrected_pressure; });
+    column("corrected", "static pressure of the model",
+           [](const F& f) -> const V& { return f.corrected_pressure; });
     report_.columns.push_back(report_.columns.back());
     ReportColumn& reference = report_.columns.back();
     reference.name = "reference_corrected";
@@ -252,13 +260,17 @@ class Builder {
                       model.all.noise_rms, model.r_squared, model.all.samples)));
     }
     const ModelComparison& last = comparison_.models.back();
-    const auto worst = std::max_element(
-        last.regimes.begin(), last.regimes.end(),
-        [](const PartStatistics& a, const PartStatistics& b) { return a.statistics.rms < b.statistics.rms; });
-    if (worst != last.regimes.end()) {
-      report_.summary.push_back(
-          fmt::format("It fails most in the regime {}: bias {:+.3f} hPa, rms {:.3f} hPa.", worst->name,
-                      worst->statistics.bias, worst->statistics.rms));
+    const PartStatistics* worst = nullptr;
+    for (const PartStatistics& part : last.regimes) {
+      if (part.statistics.samples < fewest_in_regime || !(part.statistics.rms_over_noise() > notable_failure))
+        continue;
+      if (worst == nullptr || fails_more(part.statistics, worst->statistics)) worst = &part;
+    }
+    if (worst != nullptr) {
+      report_.summary.push_back(fmt::format(
+          "{} fails most in the regime {}: bias {:+.3f} hPa, rms {:.3f} hPa, {:.1f} times the noise there.",
+          comparison_.models.size() == 1 ? "It" : "The last", worst->name, worst->statistics.bias,
+          worst->statistics.rms, worst->statistics.rms_over_noise()));
     }
     report_.facts.emplace_back("Reference", comparison_.reference);
     for (const FlightResiduals& flight : comparison_.flights) {

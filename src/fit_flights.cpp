@@ -37,7 +37,6 @@ FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitSetu
   }
   const auto training =
       static_cast<std::size_t>(std::llround(setup.training_share * static_cast<double>(kept_.size())));
-  held_out_ = kept_.size() - training;
   kept_.resize(training);
   if (!setup.regimes.empty()) {
     std::vector<std::size_t> inside;
@@ -81,11 +80,22 @@ void FitFlight::keep_derivatives() {
   kept_derivatives_ = std::move(derivatives);
 }
 
+void FitFlight::evaluate_now(std::size_t first, std::size_t count, const Eigen::VectorXd& parameters,
+                             const std::vector<std::size_t>& wanted, double* residual,
+                             double* derivatives) const {
+  const std::size_t* const samples = kept_.data() + first;
+  if (!linear_ && setup_->reference->kind == Reference::Kind::lams) {
+    residuals_.evaluate_speed(samples, count, parameters.data(), wanted, residual, derivatives);
+  } else {
+    residuals_.evaluate(samples, count, parameters.data(), wanted, residual, derivatives);
+  }
+}
+
 /// From the derivatives that are kept, where there are any.
 void FitFlight::find_residuals(std::size_t first, std::size_t count, const Eigen::VectorXd& parameters,
                                const double* offsets, double* residual) const {
   if (kept_residual_.empty()) {
-    residuals_.evaluate(kept_.data() + first, count, parameters.data(), {}, residual, nullptr);
+    evaluate_now(first, count, parameters, {}, residual, nullptr);
   } else {
     std::copy_n(kept_residual_.data() + first, count, residual);
     for (std::size_t k = 0; k < setup_->wanted.size(); ++k) {
@@ -121,8 +131,7 @@ void FitFlight::evaluate(std::size_t first, std::size_t count, const Eigen::Vect
   if (kept) {
     find_residuals(first, count, parameters, offsets.data() + first_offset, residual);
   } else {
-    residuals_.evaluate(kept_.data() + first, count, parameters.data(), setup_->wanted, residual,
-                        derivatives);
+    evaluate_now(first, count, parameters, setup_->wanted, residual, derivatives);
     for (std::size_t i = 0; i < count && !offset_.empty(); ++i) {
       const Eigen::Index offset = as_index(first_offset) + offset_[first + i];
       residual[i] -= offsets[offset] * static_pressure(first + i);
@@ -149,7 +158,6 @@ void FitFlight::measure_noise(const Eigen::VectorXd& parameters, const double* o
   // Without noise (data that a formula made) all samples count alike.
   if (!(floor.rms > 0.0)) return;
   for (std::size_t i = 0; i < kept_.size(); ++i) noise_[i] = static_cast<float>(floor.local_rms[kept_[i]]);
-  samples_per_independent_ = floor.samples_per_independent;
 }
 
 FitFlights::FitFlights(std::vector<FlightSource> sources, FitSetup setup)
@@ -260,7 +268,7 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const Eigen::Vec
       factor.add(rows.columns, scale.data(), length);
     }
     part.samples = fit.kept().size();
-    part.curvature = curvatures / slopes;
+    if (slopes > 0.0) part.curvature = curvatures / slopes;
     part.factor = factor.factor();
   });
   Reduction whole;

@@ -48,7 +48,6 @@ class FitFlight {
 
   const Residuals& residuals() const { return residuals_; }
   const std::vector<std::size_t>& kept() const { return kept_; }
-  std::size_t held_out() const { return held_out_; }
   std::size_t offsets() const { return offset_count_; }
 
   /// The residuals of the samples that take part. @param offsets those of this flight
@@ -72,13 +71,14 @@ class FitFlight {
   /// Measures the noise of the residuals at `parameters`, which becomes the weight of the samples.
   void measure_noise(const Eigen::VectorXd& parameters, const double* offsets);
   double noise(std::size_t kept) const { return noise_.empty() ? 1.0 : static_cast<double>(noise_[kept]); }
-  double samples_per_independent() const { return samples_per_independent_; }
-  bool has_noise() const { return !noise_.empty(); }
 
   /// Keeps derivatives, where the residual is linear in all that is wanted.
   void keep_derivatives();
 
  private:
+  /// Through the chain; for LAMS, where some effect is not at the static ports, in the laser's own measure.
+  void evaluate_now(std::size_t first, std::size_t count, const Eigen::VectorXd& parameters,
+                    const std::vector<std::size_t>& wanted, double* residual, double* derivatives) const;
   void find_residuals(std::size_t first, std::size_t count, const Eigen::VectorXd& parameters,
                       const double* offsets, double* residual) const;
 
@@ -86,11 +86,9 @@ class FitFlight {
   Residuals residuals_;
   const std::vector<double>* static_pressure_;  // of the samples
   std::vector<std::size_t> kept_;
-  std::size_t held_out_ = 0;
   std::vector<int> offset_;
   std::size_t offset_count_ = 0;
   std::vector<float> noise_;  // weights need no more digits
-  double samples_per_independent_ = 1.0;
   bool linear_ = false;
   std::vector<double> kept_residual_;     // at `kept_parameters_`
   std::vector<double> kept_derivatives_;  // columns

@@ -114,8 +114,8 @@ Eigen::VectorXd global_search(FitFlights& flights, const FitSetup& setup, const 
   double least = 0.0;
   try {
     search.optimize(start, least);
-  } catch (const std::exception&) {
-    // It stops by an exception where rounding limits it; what was found by then is what counts.
+  } catch (const nlopt::roundoff_limited&) {
+    // What was found by then is what counts.
   }
   return trial.best();
 }

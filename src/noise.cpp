@@ -45,11 +45,13 @@ std::vector<double> difference_variances(const std::vector<double>& values,
   std::vector<double> result;
   for (const std::size_t lag : lags) {
     std::vector<double> change = differences(values, stretches, lag, 0, values.size(), every);
-    const bool too_few = change.size() < fewest_differences;
-    const double deviation = too_few ? nan : robust_deviation(std::move(change));
+    // Stretches that are shorter than the lag have none: what there is up to it has to do.
+    if (change.size() < fewest_differences) break;
+    const double deviation = robust_deviation(std::move(change));
     result.push_back(deviation * deviation);
     if (result.size() > 1 && !(result.back() > plateau_growth * result[result.size() - 2])) break;
   }
+  if (result.empty()) result.push_back(nan);
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <ceres/solver.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <glog/logging.h>
 
 #include <algorithm>
 #include <cmath>
@@ -42,6 +43,7 @@ constexpr double hopeless_condition = 1e7;
 constexpr double collinear_condition = 300.0;
 // A standard error above this share of an effect's typical size is worth a word.
 constexpr double weak_share = 0.25;
+constexpr int most_omission_steps = 8;
 constexpr int passes_expected = 40;
 
 Eigen::Index as_index(std::size_t n) { return static_cast<Eigen::Index>(n); }
@@ -61,6 +63,18 @@ std::unique_ptr<ceres::LossFunction> loss_function(Loss loss, double deviation) 
   }
   return nullptr;
 }
+
+/// Keeps Ceres from writing on standard error of trials that failed: what matters is in its summary.
+class QuietLog {
+ public:
+  QuietLog() : before_(FLAGS_minloglevel) { FLAGS_minloglevel = google::GLOG_FATAL; }
+  ~QuietLog() { FLAGS_minloglevel = before_; }
+  QuietLog(const QuietLog&) = delete;
+  QuietLog& operator=(const QuietLog&) = delete;
+
+ private:
+  int before_;
+};
 
 /// What a fit knows of one parameter beside its value.
 struct ParameterState {
@@ -207,7 +221,7 @@ class Refit {
   void minimise(FitFlights& flights, const ceres::LossFunction* loss, Eigen::VectorXd& x);
   Eigen::MatrixXd covariance(FitFlights& flights, const Solution& solution, const Eigen::MatrixXd& earlier);
   Eigen::MatrixXd parameter_factor(const Reduction& reduction, std::size_t wanted) const;
-  void require_rank(const Eigen::MatrixXd& factor, const std::vector<std::size_t>& wanted);
+  void require_rank(const Reduction& reduction, const std::vector<std::size_t>& wanted);
   FitSums sums_at(FitFlights& flights, const Eigen::VectorXd& parameters, double deviation);
   void find_omissions(FitFlights& flights, const Solution& solution, const FitSums& sums);
   void compare_flights(FitFlights& flights);
@@ -244,8 +258,23 @@ void Refit::tell() {
     options_.progress(std::min<std::size_t>(passes_, passes_expected - 1), passes_expected);
 }
 
-/// All flights are of one aircraft, those that are held out too.
+/// All flights are of one aircraft, those that are held out too, and none is given twice.
 void Refit::require_one_kind() const {
+  std::vector<std::filesystem::path> paths = options_.holdout;
+  for (const FlightSource& source : sources_) {
+    if (!source.samples) paths.push_back(source.path);
+  }
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      std::error_code ignored;
+      if (std::filesystem::equivalent(paths[i], paths[j], ignored)) {
+        throw Error(fmt::format(
+            "{} is given twice: its samples are not new ones; give every flight once, to the fit or "
+            "to --holdout",
+            paths[i].string()));
+      }
+    }
+  }
   std::vector<std::pair<std::string, std::string>> aircraft;
   const auto add = [&aircraft](const std::filesystem::path& path) {
     aircraft.emplace_back(path.filename().string(), Flight(path).aircraft());
@@ -411,7 +440,10 @@ void Refit::minimise(FitFlights& flights, const ceres::LossFunction* loss, Eigen
   options.gradient_tolerance = 1e-14;
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
+  {
+    const QuietLog quiet;
+    ceres::Solve(options, &problem, &summary);
+  }
   if (!summary.IsSolutionUsable() || !x.allFinite()) {
     throw Error(
         "the fit found no coefficients: from their values in the model the residuals are not numbers; give "
@@ -499,9 +531,16 @@ Refit::Solution Refit::solve(FitFlights& flights) {
   solution.deviation = flights.deviation(values_, solution.offsets);
 
   if (uses_prior()) {
-    prior_strength_ = std::sqrt(memory_of(flights, solution.offsets)) * solution.deviation;
-    linear_step(nullptr);
-    solution.deviation = flights.deviation(values_, solution.offsets);
+    // The samples count by their noise and memory, which only the residuals of a fit show: again until they
+    // agree.
+    for (int round = 0; round < 10; ++round) {
+      const double before = prior_strength_;
+      prior_strength_ = std::sqrt(memory_of(flights, solution.offsets)) * solution.deviation;
+      if (std::abs(prior_strength_ - before) < 0.05 * before) break;
+      linear_step(nullptr);
+      flights.measure_noise(values_, solution.offsets);
+      solution.deviation = flights.deviation(values_, solution.offsets);
+    }
   }
   const auto touches = [&](std::size_t k) {
     const Bounds& bounds = parameters_[setup.wanted[k]].bounds;
@@ -562,15 +601,20 @@ Eigen::MatrixXd Refit::parameter_factor(const Reduction& reduction, std::size_t 
   return upper.bottomRightCorner(count, count);
 }
 
-void Refit::require_rank(const Eigen::MatrixXd& factor, const std::vector<std::size_t>& wanted) {
-  Eigen::MatrixXd scaled = factor;
+void Refit::require_rank(const Reduction& reduction, const std::vector<std::size_t>& wanted) {
+  Eigen::MatrixXd scaled = parameter_factor(reduction, wanted.size());
   for (Eigen::Index k = 0; k < scaled.cols(); ++k) {
     const double length = scaled.col(k).norm();
-    if (!(length > 0.0)) {
+    const std::string& name = parameters_[wanted[static_cast<std::size_t>(k)]].name;
+    const double with_offsets = reduction.factor.col(k).norm();
+    if (!(with_offsets > 0.0)) {
       throw Error(fmt::format(
-          "{} changes nothing on these flights, so it cannot be found; leave it as it is: --fix {}",
-          parameters_[wanted[static_cast<std::size_t>(k)]].name,
-          parameters_[wanted[static_cast<std::size_t>(k)]].name));
+          "{} changes nothing on these flights, so it cannot be found; leave it as it is: --fix {}", name,
+          name));
+    }
+    if (!(length > with_offsets / hopeless_condition)) {
+      throw Error(fmt::format(
+          "--stage: {} cannot be told from the offsets of the intervals; leave it to the last stage", name));
     }
     scaled.col(k) /= length;
   }
@@ -672,8 +716,11 @@ Eigen::MatrixXd Refit::covariance(FitFlights& flights, const Solution& solution,
     const auto own = static_cast<std::size_t>(k) - earlier_count;
     if (own >= solution.at_bound.size() || !solution.at_bound[own]) varying.push_back(k);
   }
-  Eigen::MatrixXd result = Eigen::MatrixXd::Constant(size, size, 0.0);
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(size, size);
   const Eigen::Index early = as_index(earlier_count);
+  const Eigen::Index wanted = as_index(setup.wanted.size());
+  result.topLeftCorner(early, early) = earlier;
+  if (varying.empty()) return result.topLeftCorner(wanted, wanted);
   const Eigen::MatrixXd inner = curvature(varying, varying);
   const Eigen::VectorXd lengths = inner.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd inverse = lengths.asDiagonal() *
@@ -688,7 +735,6 @@ Eigen::MatrixXd Refit::covariance(FitFlights& flights, const Solution& solution,
     const Eigen::MatrixXd carried = -inverse * curvature(varying, before);
     own += carried * earlier * carried.transpose();
     const Eigen::MatrixXd across = carried * earlier;
-    result.topLeftCorner(early, early) = earlier;
     for (std::size_t a = 0; a < varying.size(); ++a) {
       for (Eigen::Index b = 0; b < early; ++b)
         result(varying[a], b) = result(b, varying[a]) = across(as_index(a), b);
@@ -698,7 +744,6 @@ Eigen::MatrixXd Refit::covariance(FitFlights& flights, const Solution& solution,
     for (std::size_t b = 0; b < varying.size(); ++b)
       result(varying[a], varying[b]) = own(as_index(a), as_index(b));
   }
-  const Eigen::Index wanted = as_index(setup.wanted.size());
   const Eigen::MatrixXd corner = result.topLeftCorner(wanted, wanted);
   return 0.5 * (corner + corner.transpose());
 }
@@ -706,8 +751,11 @@ Eigen::MatrixXd Refit::covariance(FitFlights& flights, const Solution& solution,
 FitSums Refit::sums_at(FitFlights& flights, const Eigen::VectorXd& parameters, double deviation) {
   std::vector<FitSums> parts(flights.count());
   flights.visit([&](std::size_t number, std::size_t, FitFlight& fit) {
-    const std::vector<double> wanted = fit.residuals().wanted_defect(values_.data());
-    const std::vector<double> residual = fit.values(parameters, nullptr);
+    // The reference's delta-p by its own file, so that R2 does not grow with a reference that is fitted too.
+    const std::vector<double> wanted = fit.residuals().wanted_defect(start_.data());
+    const std::vector<double> all = fit.residuals().values(parameters.data());
+    std::vector<double> residual;
+    for (const std::size_t i : fit.kept()) residual.push_back(all[i]);
     FitSums& sums = parts[number];
     sums.samples = fit.kept().size();
     for (std::size_t i = 0; i < residual.size(); ++i) {
@@ -734,17 +782,20 @@ void Refit::find_omissions(FitFlights& flights, const Solution& solution, const 
   const FitSetup& setup = flights.setup();
   const std::unique_ptr<ceres::LossFunction> loss =
       solution.deviation > 0.0 ? loss_function(options_.loss, solution.deviation) : nullptr;
-  const Reduction reduction = flights.reduce(values_, Eigen::VectorXd(), loss.get());
-  tell();
   const Eigen::Index size = as_index(setup.wanted.size());
-  Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(2 * size, size + 1);
-  factor.topRows(size) = reduction.factor.topRows(size);
-  for (std::size_t k = 0; k < setup.wanted.size(); ++k) {
-    const double weight = prior_weight_of(setup.wanted[k]);
-    factor(size + as_index(k), as_index(k)) = weight;
-    factor(size + as_index(k), size) =
-        weight * (values_[as_index(setup.wanted[k])] - start_[as_index(setup.wanted[k])]);
-  }
+  // Rows of derivatives and residual at some coefficients, with what draws these to their start.
+  const auto rows_at = [&](const Eigen::VectorXd& parameters) {
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2 * size, size + 1);
+    rows.topRows(size) = flights.reduce(parameters, Eigen::VectorXd(), loss.get()).factor.topRows(size);
+    for (Eigen::Index k = 0; k < size; ++k) {
+      const std::size_t p = setup.wanted[static_cast<std::size_t>(k)];
+      rows(size + k, k) = prior_weight_of(p);
+      rows(size + k, size) = prior_weight_of(p) * (parameters[as_index(p)] - start_[as_index(p)]);
+    }
+    tell();
+    return rows;
+  };
+  const Eigen::MatrixXd rows_of_fit = rows_at(values_);
   // Where the residual is linear in all, one factor tells the squares at any coefficients.
   const bool linear = std::all_of(setup.wanted.begin(), setup.wanted.end(),
                                   [&](std::size_t p) { return flights.is_linear()[p]; });
@@ -766,7 +817,7 @@ void Refit::find_omissions(FitFlights& flights, const Solution& solution, const 
   }
   for (const std::string& effect : effects) {
     std::vector<Eigen::Index> others;
-    Eigen::VectorXd right = -factor.col(size);
+    Eigen::VectorXd away = Eigen::VectorXd::Zero(size);
     Eigen::VectorXd changed = values_;
     for (Eigen::Index k = 0; k < size; ++k) {
       const std::size_t p = setup.wanted[static_cast<std::size_t>(k)];
@@ -774,15 +825,30 @@ void Refit::find_omissions(FitFlights& flights, const Solution& solution, const 
         others.push_back(k);
         continue;
       }
-      const double step = parameters_[p].neutral - values_[as_index(p)];
-      right -= step * factor.col(k);
-      changed[as_index(p)] += step;
+      away[k] = parameters_[p].neutral - values_[as_index(p)];
+      changed[as_index(p)] = parameters_[p].neutral;
     }
-    if (!others.empty()) {
-      const Eigen::MatrixXd rows = factor(Eigen::all, others);
-      const Eigen::VectorXd step = rows.colPivHouseholderQr().solve(right);
-      for (std::size_t k = 0; k < others.size(); ++k)
-        changed[as_index(setup.wanted[static_cast<std::size_t>(others[k])])] += step[as_index(k)];
+    Eigen::VectorXd lower(as_index(others.size()));
+    Eigen::VectorXd upper(as_index(others.size()));
+    Eigen::VectorXd x(as_index(others.size()));
+    for (std::size_t i = 0; i < others.size(); ++i) {
+      const std::size_t p = setup.wanted[static_cast<std::size_t>(others[i])];
+      lower[as_index(i)] = parameters_[p].bounds.lower;
+      upper[as_index(i)] = parameters_[p].bounds.upper;
+      x[as_index(i)] = values_[as_index(p)];
+    }
+    // From the fit one step leads to the least squares where all is linear; else a few do.
+    for (int round = 0; round < (linear ? 1 : most_omission_steps) && !others.empty(); ++round) {
+      const Eigen::MatrixXd rows = round == 0 ? rows_of_fit : rows_at(changed);
+      const Eigen::MatrixXd columns = rows(Eigen::all, others);
+      Eigen::VectorXd right = columns * x - rows.col(size);
+      if (round == 0) right -= rows.leftCols(size) * away;
+      if (!right.allFinite()) break;
+      const Eigen::VectorXd before = x;
+      x = bounded_least_squares(columns, right, lower, upper, x);
+      for (std::size_t i = 0; i < others.size(); ++i)
+        changed[as_index(setup.wanted[static_cast<std::size_t>(others[i])])] = x[as_index(i)];
+      if ((x - before).norm() < 1e-6 * x.norm()) break;
     }
     const double squares = squares_of(changed);
     result_.omissions.push_back(
@@ -851,7 +917,8 @@ void Refit::compare_flights(FitFlights& flights) {
 void Refit::explain_errors(const Eigen::MatrixXd& covariance, const std::vector<std::size_t>& wanted) {
   const Eigen::Index size = covariance.rows();
   std::vector<std::string> grave;
-  for (Eigen::Index a = 0; a < size; ++a) {
+  // With starting values that count as measured, a large error is no news.
+  for (Eigen::Index a = 0; a < size && !uses_prior(); ++a) {
     const std::size_t parameter = wanted[static_cast<std::size_t>(a)];
     const ParameterState& state = parameters_[parameter];
     const double error = std::sqrt(covariance(a, a));
@@ -1003,7 +1070,7 @@ RefitResult Refit::run() {
       at_bound[wanted[k]] = solution.at_bound[k];
     }
     if (last) break;
-    require_rank(parameter_factor(all->reduce(values_, solution.offsets, nullptr), wanted.size()), wanted);
+    require_rank(all->reduce(values_, solution.offsets, nullptr), wanted);
     const Eigen::MatrixXd own = covariance(*all, solution, Eigen::MatrixXd(0, 0));
     const Eigen::Index before = earlier.rows();
     earlier.conservativeResizeLike(Eigen::MatrixXd::Zero(before + own.rows(), before + own.rows()));
@@ -1017,7 +1084,7 @@ RefitResult Refit::run() {
   solution.deviation = flights.deviation(values_, Eigen::VectorXd());
   solution.offsets = Eigen::VectorXd();
   result_.masks = flights.masks();
-  require_rank(parameter_factor(flights.reduce(values_, Eigen::VectorXd(), nullptr), fitted.size()), fitted);
+  require_rank(flights.reduce(values_, Eigen::VectorXd(), nullptr), fitted);
   const Eigen::MatrixXd errors = covariance(flights, solution, earlier);
 
   const FitSums sums = sums_at(flights, values_, solution.deviation);
@@ -1052,10 +1119,13 @@ RefitResult Refit::run() {
       parameter.standard_error = std::sqrt(errors(k, k));
     }
     if (parameter.at_bound) {
-      result_.notes.push_back(
-          fmt::format("{} is held at its bound {:.6g}: the flights want it beyond; if that bound is "
-                      "not meant, widen it in the model file",
-                      parameter.name, parameter.value));
+      result_.notes.push_back(fmt::format(
+          "{} is held at its bound {:.6g}: the flights want it beyond; the errors of the others hold "
+          "only if that bound is true; {}",
+          parameter.name, parameter.value,
+          result_.condition_number > collinear_condition
+              ? "the coefficients are hard to tell apart here, so rather hold one of them with --fix"
+              : "if it is not meant, widen it in the model file"));
     }
     result_.parameters.push_back(std::move(parameter));
   }
@@ -1065,10 +1135,20 @@ RefitResult Refit::run() {
     for (Eigen::Index b = 0; b < errors.cols(); ++b) result_.covariance.back().push_back(errors(a, b));
   }
   explain_errors(errors, fitted);
+  if (result_.rms > 1.02 * result_.rms_before) {
+    result_.notes.insert(
+        result_.notes.begin(),
+        fmt::format("the fit left a larger rms, {:.3f} hPa, than the coefficients of the file, {:.3f}: "
+                    "what a stage held does not suit the rest, or outliers rule the rms",
+                    result_.rms, result_.rms_before));
+  }
   if (uses_prior()) {
     result_.notes.push_back(
-        "every coefficient was drawn to its starting value by the typical size of its effect: the "
-        "flights alone do not fix each");
+        "every coefficient of an effect of the catalogue was drawn to its starting value by the typical size "
+        "of its "
+        "effect; two static systems alone tell only their difference, so how it is shared between them is "
+        "what the "
+        "starting values say");
   }
   write_models(errors, fitted);
   return std::move(result_);

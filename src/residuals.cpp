@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "model_inputs.hpp"
@@ -250,6 +251,12 @@ FlightSamples read_samples(const Flight& flight, const ModelFile& model, const R
   }
   samples.motion = read_motion(flight, model, samples);
   samples.flaps = read_motion_column(flight, model, Quantity::flaps, {"FLAPS"});
+  if (samples.flaps.empty()) {
+    samples.notes.emplace_back(
+        "the flight records no flaps, so an approach with flaps and gear out takes part; --min-airspeed or "
+        "--intervals "
+        "leaves it out");
+  }
   const bool jet = samples.aircraft.find("677") != std::string::npos;
   samples.intervals = find_regimes(samples.motion, jet ? RegimeCriteria::gv() : RegimeCriteria::c130());
   if (options.intervals && options.intervals->is_for(flight.path())) {
@@ -270,6 +277,7 @@ struct Residuals::Implementation {
   std::vector<double> parameters;
   std::vector<bool> linear;
   std::vector<Mask> mask;
+  std::vector<double> sensitivity;  // for LAMS
 
   template <class S>
   S residual_at(std::size_t sample, const S* all) const {
@@ -290,12 +298,68 @@ struct Residuals::Implementation {
     return corrected;
   }
 
+  /// See `Residuals::evaluate_speed`.
+  template <class S>
+  S speed_residual_at(std::size_t sample, const S* all) const {
+    State<S> state;
+    NoQualityFlags flags;
+    const Chain& chain = bound->chain();
+    bound->corrected_static_pressure(sample, all, state);
+    chain.correct(state, state[Quantity::static_defect], flags);
+    const S measured = chain.lams_airspeed(state, all);
+    const S along =
+        state[Quantity::lams_airspeed] / measured;  // cosine of the beam, but for effects on its speed
+    chain.air(state, all, flags);
+    return S(sensitivity[sample]) * along * (measured - state[Quantity::corrected_airspeed]);
+  }
+
+  /// Derivatives by dual numbers of the parameters `places` among those `wanted`, into their columns.
+  template <class Function>
+  void differentiate(const std::size_t* at, std::size_t count, const double* all,
+                     const std::vector<std::size_t>& wanted, const std::vector<std::size_t>& places,
+                     double* derivatives, const Function& value_at) const {
+    std::vector<Jet> dual(parameters.size());
+    for (std::size_t first = 0; first < places.size(); first += jet_width) {
+      const std::size_t width = std::min<std::size_t>(jet_width, places.size() - first);
+      for (std::size_t p = 0; p < dual.size(); ++p) dual[p] = Jet(all[p]);
+      for (std::size_t k = 0; k < width; ++k)
+        dual[wanted[places[first + k]]].v[static_cast<Eigen::Index>(k)] = 1.0;
+      for (std::size_t i = 0; i < count; ++i) {
+        const Jet value = value_at(at[i], dual.data());
+        for (std::size_t k = 0; k < width; ++k)
+          derivatives[places[first + k] * count + i] = value.v[static_cast<Eigen::Index>(k)];
+      }
+    }
+  }
+
+  /// The rate of change of delta-p from LAMS with the airspeed, hPa/(m/s), where the files' parameters say
+  /// that the air is.
+  std::vector<double> find_sensitivity() const;
+
   void residuals(const std::vector<Batch::Input>& inputs, const std::vector<Batch::Input>& reference_inputs,
                  const double* pressure, std::size_t count, const double* all, double* out) const;
   void find_mask(const MaskOptions& options);
   Mask mask_of(std::size_t sample, double residual, const MaskOptions& options,
                const RegimeSet& regimes) const;
 };
+
+std::vector<double> Residuals::Implementation::find_sensitivity() const {
+  const std::size_t count = samples->time.size();
+  std::vector<double> mach(count);
+  std::vector<double> pressure(count);
+  std::vector<double> airspeed(count);
+  bound->batch().run(bound->columns(),
+                     {{Quantity::corrected_mach, mach.data()},
+                      {Quantity::corrected_static_pressure, pressure.data()},
+                      {Quantity::corrected_airspeed, airspeed.data()}},
+                     count, parameters.data());
+  std::vector<double> result(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double squared = mach[i] * mach[i];
+    result[i] = -1.4 * squared * pressure[i] / ((1.0 + 0.2 * squared) * airspeed[i]);
+  }
+  return result;
+}
 
 void Residuals::Implementation::residuals(const std::vector<Batch::Input>& inputs,
                                           const std::vector<Batch::Input>& reference_inputs,
@@ -398,6 +462,7 @@ Residuals::Residuals(std::shared_ptr<const FlightSamples> samples, const ModelFi
     add_linear(own.reference_model, own.linear);
   }
   own.find_mask(options);
+  if (own.kind == Reference::Kind::lams) own.sensitivity = own.find_sensitivity();
 }
 
 Residuals::Residuals(Residuals&&) noexcept = default;
@@ -469,18 +534,20 @@ void Residuals::evaluate(const std::size_t* samples, std::size_t count, const do
     for (std::size_t i = 0; i < count; ++i) column[i] = scale * (column[i] - defect[i]);
   }
 
-  std::vector<Jet> dual(own.parameters.size());
-  for (std::size_t first = 0; first < curved.size(); first += jet_width) {
-    const std::size_t width = std::min<std::size_t>(jet_width, curved.size() - first);
-    for (std::size_t p = 0; p < dual.size(); ++p) dual[p] = Jet(parameters[p]);
-    for (std::size_t k = 0; k < width; ++k)
-      dual[wanted[curved[first + k]]].v[static_cast<Eigen::Index>(k)] = 1.0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const Jet value = own.residual_at(samples[i], dual.data());
-      for (std::size_t k = 0; k < width; ++k)
-        derivatives[curved[first + k] * count + i] = value.v[static_cast<Eigen::Index>(k)];
-    }
-  }
+  own.differentiate(samples, count, parameters, wanted, curved, derivatives,
+                    [&own](std::size_t sample, const Jet* dual) { return own.residual_at(sample, dual); });
+}
+
+void Residuals::evaluate_speed(const std::size_t* samples, std::size_t count, const double* parameters,
+                               const std::vector<std::size_t>& wanted, double* residual,
+                               double* derivatives) const {
+  const Implementation& own = *implementation_;
+  for (std::size_t i = 0; i < count; ++i) residual[i] = own.speed_residual_at(samples[i], parameters);
+  std::vector<std::size_t> all(wanted.size());
+  std::iota(all.begin(), all.end(), 0);
+  own.differentiate(
+      samples, count, parameters, wanted, all, derivatives,
+      [&own](std::size_t sample, const Jet* dual) { return own.speed_residual_at(sample, dual); });
 }
 
 std::vector<double> Residuals::wanted_defect(const double* parameters) const {

@@ -63,7 +63,7 @@ class Samples {
         if (to < from) continue;
         this.intervals.push({name, begin: flight.offset + from, end: flight.offset + to});
         for (let i = flight.first; i < flight.end; ++i)
-          if (this.time[i] >= begin && this.time[i] <= end) this.regimes.get(name)[i] = 1;
+          if (this.time[i] >= begin && this.time[i] < end) this.regimes.get(name)[i] = 1;
       }
     }
   }

@@ -108,6 +108,12 @@ TEST(NoiseFloor, FollowsALevelThatChanges) {
   EXPECT_NEAR(std::accumulate(floor.local_rms.begin() + 3600, floor.local_rms.end(), 0.0) / 3600.0, 3.6, 0.5);
 }
 
+TEST(NoiseFloor, IsKnownFromShortStretches) {
+  std::vector<double> values = first_order(7200, 0.0, 12);
+  for (std::size_t i = 0; i < values.size(); i += 7) values[i] = missing;
+  EXPECT_NEAR(pcor::noise_floor(values, whole(values), 1.0).rms, 1.0, 0.05);
+}
+
 TEST(NoiseFloor, IsNotKnownFromFewSamples) {
   const std::vector<double> values = first_order(20, 0.0, 7);
   EXPECT_TRUE(std::isnan(pcor::noise_floor(values, whole(values), 1.0).rms));

@@ -130,6 +130,37 @@ TEST(Recovery, OfEquation20WithTheRawMachNumberIsSaidToBeCollinear) {
   EXPECT_TRUE(said("not determined"));
 }
 
+// The noise of the laser must not pass for an effect before it: least squares of delta-p itself would find a
+// recovery factor of 0.2 less in every flight, at 12 standard errors.
+TEST(Recovery, OfEffectsBeforeTheLaserFindsNoneThatIsNotThere) {
+  const pcor::test::TemporaryDirectory directory;
+  pcor::Scenario scenario = pcor::read_scenario(scenarios / "c130-eq18.toml");
+  pcor::ModelFile model = pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml");
+  for (const char* id : {"recovery-factor", "lams-elevation"}) {
+    pcor::ModelFile with = model;
+    with.model.effects.push_back(pcor::neutral_effect(id));
+    std::size_t negative = 0;
+    std::size_t at_bound = 0;
+    for (std::uint64_t seed = 7000; seed < 7008; ++seed) {
+      scenario.seed = seed;
+      pcor::simulate_flight(scenario, directory / "flight.nc");
+      const pcor::RefitResult fit = pcor::refit({directory / "flight.nc"}, with, pcor::Reference{});
+      const pcor::FittedParameter& own = fit.parameters.back();
+      if (own.value < 0.0) ++negative;
+      if (own.at_bound) ++at_bound;
+      for (const pcor::FittedParameter& p : fit.parameters) {
+        // Of 64 scores one beyond four is a chance of 1 in 250. Beside a coefficient at its bound the errors
+        // are not those of all.
+        const double score = own.at_bound ? 0.0 : std::abs(p.value - p.start) / p.standard_error;
+        EXPECT_LT(score, 4.0) << p.name << " seed " << seed;
+      }
+    }
+    EXPECT_LT(negative, 8U) << id << " has one sign on all seeds: a chance of 1 in 256";
+    // The bound of the recovery factor, 0.2, is 2.3 of its standard errors.
+    EXPECT_LT(at_bound, 3U) << id;
+  }
+}
+
 TEST(Recovery, OfAFlightWithoutManoeuvresIsExplained) {
   const pcor::test::TemporaryDirectory directory;
   pcor::simulate_flight(pcor::read_scenario(scenarios / "c130-no-manoeuvres.toml"), directory / "flight.nc");

@@ -194,6 +194,16 @@ TEST(Refit, StopsAtABoundAndSaysSo) {
   EXPECT_THAT(result.notes, testing::Contains(HasSubstr("static-constant.a0 is held at its bound")));
 }
 
+TEST(Refit, StopsAtABoundWithNothingElseFree) {
+  ModelFile model = made::model({"static-constant"});
+  model.fits.resize(1);
+  model.fits[0].resize(1);
+  model.fits[0][0].bounds = pcor::Bounds{-0.01, 0.0001};
+  const RefitResult result = fit({made::shared(plan_18(9))}, model);
+  EXPECT_TRUE(by_name(result).at("static-constant.a0").at_bound);
+  EXPECT_TRUE(std::isnan(by_name(result).at("static-constant.a0").standard_error));
+}
+
 TEST(Refit, NamesWhatCannotBeToldApart) {
   ModelFile model = made::model(equation_18);
   pcor::ModelEffect twin;
@@ -251,6 +261,51 @@ TEST(Refit, FitsSlopesToManoeuvresFirst) {
   EXPECT_EQ(found.at("static-constant.a0").stage, 2);
   const pcor::FittedParameter& at_once = by_name(fit({shared}, model)).at("static-alpha.a1");
   EXPECT_GT(std::abs(at_once.value - truth_18.at("static-alpha.a1")), 10.0 * at_once.standard_error);
+}
+
+TEST(Refit, CanFitEverythingInStages) {
+  FlightSamples samples = made::flight(plan_18(17));
+  pcor::Interval first;
+  first.regime = pcor::Regime::pitch_manoeuvre;
+  first.begin = samples.time[600];
+  first.end = samples.time[1200];
+  pcor::Interval second = first;
+  second.regime = pcor::Regime::speed_run;
+  second.begin = samples.time[1500];
+  second.end = samples.time[2500];
+  samples.intervals = {first, second};
+  RefitOptions options;
+  options.stages = {{{pcor::Regime::pitch_manoeuvre}, {"static-alpha"}},
+                    {{pcor::Regime::speed_run}, {"static-qp"}}};
+  options.fix = {"static-constant"};
+  const RefitResult result =
+      fit({std::make_shared<const FlightSamples>(samples)}, made::model(equation_18), options);
+  const auto found = by_name(result);
+  EXPECT_EQ(found.at("static-alpha.a1").stage, 1);
+  EXPECT_EQ(found.at("static-qp.a2").stage, 2);
+  EXPECT_GT(found.at("static-qp.a2").standard_error, 0.0);
+  // What the offset of an interval takes up is no business of a stage.
+  options.fix = {};
+  options.stages = {{{pcor::Regime::pitch_manoeuvre}, {"static-constant"}}};
+  EXPECT_THAT(message_of({std::make_shared<const FlightSamples>(samples)}, made::model(equation_18), options),
+              HasSubstr("cannot be told from the offsets"));
+}
+
+TEST(Refit, DrawsToItsStartWhatTheFlightsLeaveOpen) {
+  // What an hour of samples says, the prior leaves; what nearly collinear terms leave open, it decides.
+  const auto samples = made::shared(plan_18(18));
+  RefitOptions with_prior;
+  with_prior.use_prior = true;
+  const auto free = by_name(fit({samples}, made::model(equation_18)));
+  for (const auto& [name, parameter] : by_name(fit({samples}, made::model(equation_18), with_prior)))
+    EXPECT_NEAR(parameter.value, free.at(name).value, free.at(name).standard_error) << name;
+  const ModelFile powers = made::model(
+      {"static-constant", "static-alpha", "static-qp", "static-mach", "static-mach2", "static-mach3"});
+  const auto open = by_name(fit({samples}, powers));
+  for (const auto& [name, parameter] : by_name(fit({samples}, powers, with_prior))) {
+    if (open.at(name).at_bound) continue;  // it has no error to compare with
+    EXPECT_LT(parameter.standard_error, 1.05 * open.at(name).standard_error) << name;
+  }
 }
 
 TEST(Refit, FindsByGlobalSearchWhatCeresFromTheStartDoesNot) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <ostream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -617,6 +618,13 @@ struct Refusal {
   std::string text;
   std::vector<std::string> said;
 };
+
+/// The last line tells the case.
+void PrintTo(const Refusal& refusal, std::ostream* stream) {
+  std::string text = refusal.text;
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  *stream << text.substr(text.rfind('\n') + 1);
+}
 
 class ScenarioRefusal : public testing::TestWithParam<Refusal> {};
 

@@ -12,6 +12,7 @@ import math
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -318,7 +319,7 @@ class ResidualFile(ComparisonTest):
         with xarray.open_dataset(path) as file:
             residual = file["RESIDUAL_1"].values
             used = ~numpy.isnan(residual)
-            difference = (file["PCOR_REFERENCE"] - file["PCOR_1"]).values
+            difference = (file["PCOR_REFERENCE_1"] - file["PCOR_1"]).values
             self.assertLess(numpy.abs(difference - residual)[used].max(), 3e-6)
 
     def test_each_flight_has_its_own(self):
@@ -531,10 +532,17 @@ class Refit(ComparisonTest):
         result = self.done("refit", ONE, TWO, "-m", self.model(), "-o", self.path / "out.toml")
         self.assertEqual(result.stderr[:500], "")
 
-    def test_a_flight_given_twice_says_the_same(self):
+    def test_one_file_is_not_two_flights(self):
+        self.refused("refit", ONE, ONE, "-m", self.model(), "-o", self.path / "out.toml", words=["given twice", str(ONE)])
+        self.refused("refit", ONE, "--holdout", ONE, "-m", self.model(), "-o", self.path / "out.toml",
+                     words=["given twice"])
+
+    def test_a_copied_flight_says_the_same(self):
         """Twice the squares have their minimum where once had it, to the tolerance of the fit. The errors get
         smaller by the root of two, to a per cent for the degrees of freedom."""
-        once, twice = self.refit(), self.refit(flights=(ONE, ONE))
+        copy = self.path / "copy.nc"
+        shutil.copy(ONE, copy)
+        once, twice = self.refit(), self.refit(flights=(ONE, copy))
         for name, error in errors_of(once).items():
             self.assertAlmostEqual(values_of(twice)[name], values_of(once)[name], delta=1e-3 * error)
             self.assertAlmostEqual(errors_of(twice)[name] * math.sqrt(2.0) / error, 1.0, delta=0.01)

@@ -90,8 +90,11 @@ nlohmann::ordered_json as_json(const Comparison& comparison) {
 }
 
 void print_row(const std::string& name, const Statistics& s) {
-  fmt::print("{:<32} {:>8} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.3f} {:>7.1f}\n", name, s.samples, s.bias,
-             s.scatter(), s.rms, s.noise_rms, s.rms_over_noise());
+  const auto known = [](double value, int digits) {
+    return std::isnan(value) ? std::string("unknown") : fmt::format("{:.{}f}", value, digits);
+  };
+  fmt::print("{:<32} {:>8} {:>9.3f} {:>9.3f} {:>9.3f} {:>9} {:>7}\n", name, s.samples, s.bias, s.scatter(),
+             s.rms, known(s.noise_rms, 3), known(s.rms_over_noise(), 1));
 }
 
 /// Of the regimes and bands, those that matter: where the model fails most.
@@ -103,11 +106,15 @@ void print_model(const ModelComparison& model, bool with_name) {
   for (const PartStatistics& part : model.regimes) print_row("  " + part.name, part.statistics);
   std::vector<PartStatistics> bands = model.bands;
   std::stable_sort(bands.begin(), bands.end(), [](const PartStatistics& a, const PartStatistics& b) {
-    return a.statistics.rms > b.statistics.rms;
+    return fails_more(a.statistics, b.statistics);
   });
   if (bands.size() > 5) bands.resize(5);
   if (!bands.empty()) fmt::print("worst bands\n");
   for (const PartStatistics& part : bands) print_row("  " + part.name, part.statistics);
+  if (model.flights.size() > 1) {
+    fmt::print("flights\n");
+    for (const PartStatistics& part : model.flights) print_row("  " + part.name, part.statistics);
+  }
   if (!model.worst.empty()) fmt::print("worst minutes\n");
   for (const WorstInterval& worst : model.worst) {
     fmt::print("  {} to {}  bias {:+.3f}, rms {:.3f} hPa  {}\n", utc_text(worst.begin),
@@ -133,7 +140,8 @@ void print(const Comparison& comparison, const Options& options) {
   if (comparison.total_pressure) {
     const LineFit& total = *comparison.total_pressure;
     fmt::print(
-        "\ntotal pressure of the reference against that of the model: slope {:.5f}, offset {:+.3f} hPa, rms "
+        "\ntotal pressure of the reference against that of the model: slope {:.5f}, offset {:+.3f} "
+        "hPa, rms "
         "{:.3f} "
         "hPa\n",
         total.slope, total.offset, total.rms);
@@ -145,14 +153,27 @@ void print(const Comparison& comparison, const Options& options) {
   const std::string& model = options.models[static_cast<std::size_t>(best - comparison.models.begin())];
   fmt::print("\n");
   if (comparison.models.size() > 1) fmt::print("The least rms has {}. ", best->name);
-  if (best->all.rms_over_noise() < 1.2) {
+  const std::string flights = command_line(options.comparison);
+  if (best->all.rms_over_noise() < 1.15) {
     fmt::print(
-        "The residual of {} is little more than noise. To apply it: pcor process {} -m {} -o corrected.nc\n",
+        "The residual of {} is little more than noise. To apply it: pcor process {} -m {} -o "
+        "corrected.nc\n",
         best->name, quoted(options.comparison.flights.front()), quoted(model));
-  } else {
-    fmt::print("To refit its coefficients: pcor refit {} -m {} -o fitted.toml\n",
-               command_line(options.comparison), quoted(model));
+    return;
   }
+  fmt::print("To refit its coefficients: pcor refit {} -m {} -o fitted.toml\n", flights, quoted(model));
+  if (options.comparison.reference.rfind("static:", 0) == 0) {
+    fmt::print(
+        "To refit both systems together: pcor refit {} -m {} -o fitted.toml --refit-reference "
+        "fitted-reference.toml\n",
+        flights, quoted(model));
+  }
+}
+
+std::string history_of(const Options& options) {
+  std::string line = "pcor " PCOR_VERSION " compare " + command_line(options.comparison);
+  for (const std::string& model : options.models) line += " -m " + quoted(model);
+  return line + " --residuals " + quoted(options.residuals);
 }
 
 void run(const Options& options) {
@@ -183,7 +204,7 @@ void run(const Options& options) {
   if (!options.residuals.empty()) {
     for (std::size_t i = 0; i < comparison.flights.size(); ++i) {
       write_residuals(comparison, i, options.comparison.flights[i], residual_file(options, i),
-                      "pcor " PCOR_VERSION " compare " + command_line(options.comparison));
+                      history_of(options));
     }
   }
   if (!options.common.report.empty()) write_report(comparison_report(comparison), options.common.report);

@@ -154,9 +154,9 @@ void print(const RefitResult& result, const Options& options) {
                                                              : fmt::format("{:.3g}", p.standard_error);
     fmt::print("{:<36} {:>13.6g} {:>13.6g} {:>13}  {}\n", p.name, p.start, p.value, error, p.unit);
   }
-  fmt::print("\nrms {:.3f} hPa ({:.5f} of p), before {:.3f}; without {} outliers {:.3f}; noise {:.3f} hPa\n",
-             result.rms, result.rms_over_pressure, result.rms_before, result.outliers, result.bulk_rms,
-             result.noise_rms);
+  fmt::print("\nrms {:.3f} hPa ({:.5f} of p), before {:.3f}; robust {:.3f}; noise {:.3f} hPa; {} outliers\n",
+             result.rms, result.rms_over_pressure, result.rms_before, result.bulk_rms, result.noise_rms,
+             result.outliers);
   fmt::print("R2 {:.4f}; condition number {:.0f}; one independent sample in {:.1f}\n", result.r_squared,
              result.condition_number, result.samples_per_independent);
   if (result.omissions.size() > 1) {

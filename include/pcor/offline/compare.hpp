@@ -20,17 +20,21 @@ struct Statistics {
   double bias = 0.0;        ///< mean residual, hPa
   double bias_error = 0.0;  ///< its standard error, hPa, for the memory of the noise
   double rms = 0.0;         ///< about zero, hPa
-  double noise_rms = 0.0;   ///< of the noise floor over the same samples, hPa
+  double noise_rms = 0.0;   ///< of the noise floor over the same samples, hPa: the lowest of all models
 
   /// The scatter about the bias, hPa.
   double scatter() const;
-  /// By how much the rms is larger than the noise alone would make it.
-  double rms_over_noise() const { return rms / noise_rms; }
+  /// By how much the rms is larger than the noise alone would make it; NaN where the noise is not known.
+  double rms_over_noise() const;
 };
+
+/// Whether a model fails more in `a` than in `b`: by rms over noise. Where the noise is not known nothing is
+/// said to fail.
+bool fails_more(const Statistics& a, const Statistics& b);
 
 /// Statistics of a part of the samples: a regime, or a band of a variable.
 struct PartStatistics {
-  std::string name;  ///< "climb", or "Mach 0.30-0.35"
+  std::string name;  ///< "climb", or "Mach 0.30 to 0.35"
   Statistics statistics;
 };
 
@@ -61,11 +65,11 @@ struct FlightResiduals {
   std::shared_ptr<const FlightSamples> samples;
   std::vector<Mask> mask;                   ///< of the first model; the samples used are those of all models
   std::vector<std::vector<double>> values;  ///< of each model, hPa; NaN where the sample is not used
-  std::vector<double> reference_defect;     ///< delta-p that the reference asks of the first model, hPa
-  std::vector<std::vector<double>> model_defects;  ///< delta-p of each model, hPa
-  std::vector<double> static_pressure;             ///< as measured, hPa
-  std::vector<double> corrected_pressure;          ///< static pressure of the first model, hPa
-  std::vector<double> total_pressure;              ///< p_m + q_m of the first model, hPa
+  std::vector<std::vector<double>> reference_defects;  ///< delta-p that the reference asks of each model, hPa
+  std::vector<std::vector<double>> model_defects;      ///< delta-p of each model, hPa
+  std::vector<double> static_pressure;                 ///< as measured, hPa
+  std::vector<double> corrected_pressure;              ///< static pressure of the first model, hPa
+  std::vector<double> total_pressure;                  ///< p_m + q_m of the first model, hPa
   /// p_m + q_m of the reference, hPa, where that is a static system; else empty.
   std::vector<double> reference_total_pressure;
   std::vector<double> mach;           ///< of the first model's corrected pressures
@@ -118,8 +122,8 @@ std::string mask_text(const std::array<std::size_t, mask_count>& counts);
 Statistics statistics_of(const std::vector<double>& residuals, const NoiseFloor& noise,
                          const std::vector<bool>& used);
 
-/// Writes the residuals of a flight to a netCDF file: a variable RESIDUAL_1, RESIDUAL_2 ... for each model,
-/// delta-p of the reference and of the first model, the mask and the regimes as flags.
+/// Writes the residuals of a flight to a netCDF file: for each model RESIDUAL_1, RESIDUAL_2 ..., delta-p of
+/// the model PCOR_1 ... and of the reference PCOR_REFERENCE_1 ..., and the mask and the regimes as flags.
 /// @throws Error if the file cannot be written.
 void write_residuals(const Comparison& comparison, std::size_t flight, const std::filesystem::path& input,
                      const std::filesystem::path& output, const std::string& history);

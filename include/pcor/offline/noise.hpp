@@ -34,10 +34,6 @@ struct NoiseFloor {
   std::vector<double> local_rms{};
   /// For how many samples one independent sample stands, 1 + 2 (rho_1 + rho_2 + ...); at least 1.
   double samples_per_independent = 1.0;
-
-  double effective_samples(std::size_t samples) const {
-    return static_cast<double>(samples) / samples_per_independent;
-  }
 };
 
 /// @param values the series, NaN where missing; @param stretches its `stretches_of`.

@@ -124,6 +124,17 @@ class Residuals {
   void evaluate(const std::size_t* samples, std::size_t count, const double* parameters,
                 const std::vector<std::size_t>& wanted, double* residual, double* derivatives) const;
 
+  /// As `evaluate`, for LAMS, with the residual measured where the noise of the laser is added to it: the
+  /// speed along the beam less the one that pressures and temperature ask for, times the sensitivity of
+  /// delta-p to the airspeed (effects of the air, -gamma M^2 p / ((1 + 0.2 M^2) v)) at the parameters of the
+  /// file. Equal to the residual to first order, hPa.
+  ///
+  /// Delta-p from LAMS is a gain times the noisy speed, and an effect before it (the recovery factor, the
+  /// elevation of the beam) changes that gain: least squares of delta-p would shrink the gain to shrink the
+  /// noise, and find an effect that is not there.
+  void evaluate_speed(const std::size_t* samples, std::size_t count, const double* parameters,
+                      const std::vector<std::size_t>& wanted, double* residual, double* derivatives) const;
+
   /// Delta-p that the reference asks for, p(reference) - p at the port, hPa; NaN where missing.
   std::vector<double> wanted_defect(const double* parameters) const;
 
