@@ -1,12 +1,7 @@
 #include "pcor/offline/refit.hpp"
 
-#include <ceres/cost_function.h>
-#include <ceres/loss_function.h>
-#include <ceres/problem.h>
-#include <ceres/solver.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <glog/logging.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,24 +12,21 @@
 #include <thread>
 
 #include "bounded_least_squares.hpp"
+#include "fit_covariance.hpp"
 #include "fit_flights.hpp"
 #include "global_search.hpp"
+#include "minimise.hpp"
 #include "pcor/effects/catalogue.hpp"
 #include "pcor/offline/error.hpp"
 #include "pcor/offline/suggest.hpp"
 #include "pcor/offline/utc.hpp"
+#include "robust_loss.hpp"
 
 namespace pcor {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-// Tuning for 95 % efficiency on normal noise, in robust deviations (Huber and Ronchetti 2009, Robust
-// Statistics; Holland and Welsch 1977).
-constexpr double tukey_width = 4.685;
-constexpr double huber_width = 1.345;
-constexpr double cauchy_width = 2.385;
 
 // Flights hold 32-bit floats: columns that agree to better than their rounding, 6e-8, are one column.
 constexpr double hopeless_condition = 1e7;
@@ -48,34 +40,6 @@ constexpr int passes_expected = 40;
 
 Eigen::Index as_index(std::size_t n) { return static_cast<Eigen::Index>(n); }
 
-std::unique_ptr<ceres::LossFunction> loss_function(Loss loss, double deviation) {
-  switch (loss) {
-    case Loss::tukey:
-      return std::make_unique<ceres::TukeyLoss>(tukey_width * deviation);
-    case Loss::huber:
-      return std::make_unique<ceres::HuberLoss>(huber_width * deviation);
-    case Loss::soft_l1:
-      return std::make_unique<ceres::SoftLOneLoss>(deviation);
-    case Loss::cauchy:
-      return std::make_unique<ceres::CauchyLoss>(cauchy_width * deviation);
-    case Loss::none:
-      break;
-  }
-  return nullptr;
-}
-
-/// Keeps Ceres from writing on standard error of trials that failed: what matters is in its summary.
-class QuietLog {
- public:
-  QuietLog() : before_(FLAGS_minloglevel) { FLAGS_minloglevel = google::GLOG_FATAL; }
-  ~QuietLog() { FLAGS_minloglevel = before_; }
-  QuietLog(const QuietLog&) = delete;
-  QuietLog& operator=(const QuietLog&) = delete;
-
- private:
-  int before_;
-};
-
 /// What a fit knows of one parameter beside its value.
 struct ParameterState {
   std::string name;
@@ -86,81 +50,6 @@ struct ParameterState {
   std::string_view manoeuvre{};
   Bounds bounds;
   bool fixed = false;
-};
-
-/// All flights as one residual block of a few rows: the triangular factor of the weighted derivatives and
-/// residuals has the same gradient and the same normal matrix as all samples, and the last row brings the
-/// cost to that of the loss.
-class ReducedCost final : public ceres::CostFunction {
- public:
-  ReducedCost(FitFlights& flights, const FitSetup& setup, const Eigen::VectorXd& parameters,
-              const ceres::LossFunction* loss, std::function<void()> tell)
-      : flights_(flights), setup_(setup), parameters_(parameters), loss_(loss), tell_(std::move(tell)) {
-    size_ = as_index(setup.wanted.size() + flights.offsets());
-    set_num_residuals(static_cast<int>(size_) + 1);
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(size_));
-  }
-
-  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
-    const Eigen::Map<const Eigen::VectorXd> x(blocks[0], size_);
-    if (last_.size() == 0 || last_ != x) {
-      for (std::size_t k = 0; k < setup_.wanted.size(); ++k)
-        parameters_[as_index(setup_.wanted[k])] = x[as_index(k)];
-      reduction_ = flights_.reduce(parameters_, x.tail(as_index(flights_.offsets())), loss_);
-      last_ = x;
-      tell_();
-    }
-    if (!reduction_.valid) return false;
-    Eigen::Map<Eigen::VectorXd> all(residuals, size_ + 1);
-    all.head(size_) = reduction_.factor.col(size_).head(size_);
-    // With the curvature of the loss a step is nearly Newton's. Gradient and cost stay as they are; far from
-    // the minimum, where the cost leaves no room for it, the weighted squares alone have to do.
-    double stretch = std::sqrt(std::clamp(reduction_.curvature, 0.1, 1.0));
-    if (all.head(size_).squaredNorm() > 2.0 * reduction_.cost * stretch * stretch) stretch = 1.0;
-    all.head(size_) /= stretch;
-    const double rest = 2.0 * reduction_.cost - all.head(size_).squaredNorm();
-    all[size_] = std::sqrt(std::max(rest, 0.0));
-    if (jacobians != nullptr && jacobians[0] != nullptr) {
-      Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> jacobian(
-          jacobians[0], size_ + 1, size_);
-      jacobian.setZero();
-      jacobian.topRows(size_) = stretch * reduction_.factor.topLeftCorner(size_, size_);
-    }
-    return true;
-  }
-
- private:
-  FitFlights& flights_;
-  const FitSetup& setup_;
-  mutable Eigen::VectorXd parameters_;
-  const ceres::LossFunction* loss_;
-  std::function<void()> tell_;
-  Eigen::Index size_ = 0;
-  mutable Eigen::VectorXd last_;
-  mutable Reduction reduction_;
-};
-
-/// Draws every parameter to its start: (x - start) / deviation.
-class PriorCost final : public ceres::CostFunction {
- public:
-  PriorCost(Eigen::VectorXd start, Eigen::VectorXd weight)
-      : start_(std::move(start)), weight_(std::move(weight)) {
-    set_num_residuals(static_cast<int>(start_.size()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(start_.size()));
-  }
-
-  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
-    for (Eigen::Index k = 0; k < start_.size(); ++k) residuals[k] = weight_[k] * (blocks[0][k] - start_[k]);
-    if (jacobians == nullptr || jacobians[0] == nullptr) return true;
-    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> jacobian(
-        jacobians[0], start_.size(), start_.size());
-    jacobian = weight_.asDiagonal();
-    return true;
-  }
-
- private:
-  Eigen::VectorXd start_;
-  Eigen::VectorXd weight_;
 };
 
 /// The sums behind rms and R^2 of the samples of a fit.
@@ -218,7 +107,7 @@ class Refit {
   void require_samples(const FitFlights& flights) const;
   Solution solve(FitFlights& flights);
   double memory_of(FitFlights& flights, const Eigen::VectorXd& offsets);
-  void minimise(FitFlights& flights, const ceres::LossFunction* loss, Eigen::VectorXd& x);
+  Eigen::VectorXd prior_weights(const FitSetup& setup) const;
   Eigen::MatrixXd covariance(FitFlights& flights, const Solution& solution, const Eigen::MatrixXd& earlier);
   Eigen::MatrixXd parameter_factor(const Reduction& reduction, std::size_t wanted) const;
   void require_rank(const Reduction& reduction, const std::vector<std::size_t>& wanted);
@@ -407,51 +296,6 @@ void Refit::require_samples(const FitFlights& flights) const {
   }
 }
 
-void Refit::minimise(FitFlights& flights, const ceres::LossFunction* loss, Eigen::VectorXd& x) {
-  const FitSetup& setup = flights.setup();
-  ceres::Problem::Options ownership;
-  ceres::Problem problem(ownership);
-  problem.AddParameterBlock(x.data(), static_cast<int>(x.size()));
-  problem.AddResidualBlock(new ReducedCost(flights, setup, values_, loss, [this] { tell(); }), nullptr,
-                           x.data());
-  if (prior_strength_ > 0.0) {
-    Eigen::VectorXd start = x;
-    Eigen::VectorXd weight = Eigen::VectorXd::Zero(x.size());
-    for (std::size_t k = 0; k < setup.wanted.size(); ++k) {
-      start[as_index(k)] = start_[as_index(setup.wanted[k])];
-      weight[as_index(k)] = prior_weight_of(setup.wanted[k]);
-    }
-    problem.AddResidualBlock(new PriorCost(std::move(start), std::move(weight)), nullptr, x.data());
-  }
-  for (std::size_t k = 0; k < setup.wanted.size(); ++k) {
-    const Bounds& bounds = parameters_[setup.wanted[k]].bounds;
-    if (std::isfinite(bounds.lower))
-      problem.SetParameterLowerBound(x.data(), static_cast<int>(k), bounds.lower);
-    if (std::isfinite(bounds.upper))
-      problem.SetParameterUpperBound(x.data(), static_cast<int>(k), bounds.upper);
-  }
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  // The problem is linear or nearly so: the first step may be the whole one.
-  options.initial_trust_region_radius = 1e12;
-  options.max_num_iterations = 200;
-  options.function_tolerance = 1e-12;
-  options.parameter_tolerance = 1e-9;
-  options.gradient_tolerance = 1e-14;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  {
-    const QuietLog quiet;
-    ceres::Solve(options, &problem, &summary);
-  }
-  if (!summary.IsSolutionUsable() || !x.allFinite()) {
-    throw Error(
-        "the fit found no coefficients: from their values in the model the residuals are not numbers; give "
-        "other "
-        "starting values, or look for them with --search");
-  }
-}
-
 /// For how many samples one independent one stands in the residuals at hand: what a starting value is weighed
 /// against.
 double Refit::memory_of(FitFlights& flights, const Eigen::VectorXd& offsets) {
@@ -542,10 +386,18 @@ Refit::Solution Refit::solve(FitFlights& flights) {
       solution.deviation = flights.deviation(values_, solution.offsets);
     }
   }
+  Prior prior;
+  prior.weight = prior_weights(setup);
+  if (prior.weight.size() > 0) {
+    prior.weight.conservativeResizeLike(Eigen::VectorXd::Zero(x.size()));
+    prior.start = x;
+    for (std::size_t k = 0; k < fitted; ++k) prior.start[as_index(k)] = start_[as_index(setup.wanted[k])];
+  }
+  std::vector<Bounds> bounds;
+  for (const std::size_t p : setup.wanted) bounds.push_back(parameters_[p].bounds);
   const auto touches = [&](std::size_t k) {
-    const Bounds& bounds = parameters_[setup.wanted[k]].bounds;
     const double near = 1e-9 * std::max(std::abs(x[as_index(k)]), 1e-12);
-    return x[as_index(k)] <= bounds.lower + near || x[as_index(k)] >= bounds.upper - near;
+    return x[as_index(k)] <= bounds[k].lower + near || x[as_index(k)] >= bounds[k].upper - near;
   };
   const auto is_at_bound = [&] {
     for (std::size_t k = 0; k < fitted; ++k) {
@@ -554,9 +406,9 @@ Refit::Solution Refit::solve(FitFlights& flights) {
     return false;
   };
   const auto fit_with = [&](Loss loss) {
-    const std::unique_ptr<ceres::LossFunction> function =
-        solution.deviation > 0.0 ? loss_function(loss, solution.deviation) : nullptr;
-    minimise(flights, function.get(), x);
+    const std::unique_ptr<ceres::LossFunction> function = loss_function(loss, solution.deviation);
+    minimise(
+        flights, values_, function.get(), prior, bounds, [this] { tell(); }, x);
     spread();
     // Along a bound, where coefficients are nearly collinear, steps cut off at the bounds stall before the
     // minimum; steps that know the bounds go on.
@@ -635,117 +487,22 @@ void Refit::require_rank(const Reduction& reduction, const std::vector<std::size
                   fmt::join(names, ", "), result_.condition_number, names.back()));
 }
 
-/// The covariance of the wanted parameters: of the estimate that the loss makes from noise with the memory
-/// that the residuals have. The first `earlier_count` of them were found in earlier stages with the
-/// covariance `earlier`, and what they err by goes on to the others.
+/// Of the wanted parameters; empty without a prior.
+Eigen::VectorXd Refit::prior_weights(const FitSetup& setup) const {
+  if (!(prior_strength_ > 0.0)) return {};
+  Eigen::VectorXd weights(as_index(setup.wanted.size()));
+  for (std::size_t k = 0; k < setup.wanted.size(); ++k)
+    weights[as_index(k)] = prior_weight_of(setup.wanted[k]);
+  return weights;
+}
+
 Eigen::MatrixXd Refit::covariance(FitFlights& flights, const Solution& solution,
                                   const Eigen::MatrixXd& earlier) {
-  const FitSetup& setup = flights.setup();
-  const auto earlier_count = static_cast<std::size_t>(earlier.rows());
-  const Eigen::Index size = as_index(setup.wanted.size() + flights.offsets());
-  const std::unique_ptr<ceres::LossFunction> loss =
-      solution.deviation > 0.0 ? loss_function(options_.loss, solution.deviation) : nullptr;
-  std::vector<Eigen::MatrixXd> curvatures(flights.count(), Eigen::MatrixXd::Zero(size, size));
-  std::vector<Eigen::MatrixXd> scores(flights.count(), Eigen::MatrixXd::Zero(size, size));
-  std::vector<double> memories(flights.count(), 0.0);
-  flights.visit([&](std::size_t number, std::size_t first_offset, FitFlight& fit) {
-    const std::size_t kept = fit.kept().size();
-    if (kept == 0) return;
-    const FlightSamples& samples = fit.residuals().samples();
-    const std::size_t length = samples.time.size();
-    std::vector<std::vector<double>> columns(static_cast<std::size_t>(size),
-                                             std::vector<double>(length, 0.0));
-    std::vector<double> influence(length, nan);
-    constexpr std::size_t chunk = 1024;
-    FitFlight::Rows rows;
-    double slope = 0.0;
-    double squares = 0.0;
-    for (std::size_t first = 0; first < kept; first += chunk) {
-      const std::size_t count = std::min(chunk, kept - first);
-      fit.evaluate(first, count, values_, solution.offsets, first_offset, rows);
-      for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t place = fit.kept()[first + i];
-        const double weight = 1.0 / fit.noise(first + i);
-        const double normal = weight * rows.residual()[i];
-        std::array<double, 3> rho{normal * normal, 1.0, 0.0};
-        if (loss) loss->Evaluate(rho[0], rho.data());
-        influence[place] = rho[1] * normal;
-        squares += influence[place] * influence[place];
-        slope += rho[1] + 2.0 * normal * normal * rho[2];
-        for (std::size_t k = 0; k < columns.size(); ++k) columns[k][place] = weight * rows.columns[k][i];
-      }
-    }
-    slope /= static_cast<double>(kept);
-    const Autoregression noise =
-        autoregression(influence, stretches_of(influence, samples.time, samples.step), infinity);
-    memories[number] = noise.samples_per_independent(std::sqrt(squares / static_cast<double>(kept))) *
-                       static_cast<double>(kept);
-    const std::vector<double> present(length, 0.0);
-    std::vector<const double*> pointers;
-    for (const std::vector<double>& column : columns) pointers.push_back(column.data());
-    const std::vector<double> sums =
-        covariance_of_sums(noise, pointers, stretches_of(present, samples.time, samples.step));
-    scores[number] = Eigen::Map<const Eigen::MatrixXd>(sums.data(), size, size);
-    for (Eigen::Index a = 0; a < size; ++a) {
-      const Eigen::Map<const Eigen::VectorXd> left(columns[static_cast<std::size_t>(a)].data(),
-                                                   as_index(length));
-      for (Eigen::Index b = 0; b <= a; ++b) {
-        const Eigen::Map<const Eigen::VectorXd> right(columns[static_cast<std::size_t>(b)].data(),
-                                                      as_index(length));
-        curvatures[number](a, b) = curvatures[number](b, a) = slope * left.dot(right);
-      }
-    }
-  });
-  Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(size, size);
-  Eigen::MatrixXd score = Eigen::MatrixXd::Zero(size, size);
-  double memory = 0.0;
-  for (std::size_t i = 0; i < flights.count(); ++i) {
-    curvature += curvatures[i];
-    score += scores[i];
-    memory += memories[i];
-  }
-  result_.samples_per_independent = std::max(memory / static_cast<double>(flights.samples()), 1.0);
-  for (std::size_t k = 0; k < setup.wanted.size(); ++k) {
-    const double weight = prior_weight_of(setup.wanted[k]);
-    curvature(as_index(k), as_index(k)) += weight * weight;
-    score(as_index(k), as_index(k)) += weight * weight * prior_strength_ * prior_strength_;
-  }
-  // What is at a bound does not vary.
-  std::vector<Eigen::Index> varying;
-  for (Eigen::Index k = as_index(earlier_count); k < size; ++k) {
-    const auto own = static_cast<std::size_t>(k) - earlier_count;
-    if (own >= solution.at_bound.size() || !solution.at_bound[own]) varying.push_back(k);
-  }
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(size, size);
-  const Eigen::Index early = as_index(earlier_count);
-  const Eigen::Index wanted = as_index(setup.wanted.size());
-  result.topLeftCorner(early, early) = earlier;
-  if (varying.empty()) return result.topLeftCorner(wanted, wanted);
-  const Eigen::MatrixXd inner = curvature(varying, varying);
-  const Eigen::VectorXd lengths = inner.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd inverse = lengths.asDiagonal() *
-                                  (lengths.asDiagonal() * inner * lengths.asDiagonal())
-                                      .completeOrthogonalDecomposition()
-                                      .pseudoInverse() *
-                                  lengths.asDiagonal();
-  Eigen::MatrixXd own = inverse * score(varying, varying) * inverse.transpose();
-  if (early > 0) {
-    std::vector<Eigen::Index> before(earlier_count);
-    std::iota(before.begin(), before.end(), 0);
-    const Eigen::MatrixXd carried = -inverse * curvature(varying, before);
-    own += carried * earlier * carried.transpose();
-    const Eigen::MatrixXd across = carried * earlier;
-    for (std::size_t a = 0; a < varying.size(); ++a) {
-      for (Eigen::Index b = 0; b < early; ++b)
-        result(varying[a], b) = result(b, varying[a]) = across(as_index(a), b);
-    }
-  }
-  for (std::size_t a = 0; a < varying.size(); ++a) {
-    for (std::size_t b = 0; b < varying.size(); ++b)
-      result(varying[a], varying[b]) = own(as_index(a), as_index(b));
-  }
-  const Eigen::MatrixXd corner = result.topLeftCorner(wanted, wanted);
-  return 0.5 * (corner + corner.transpose());
+  const std::unique_ptr<ceres::LossFunction> loss = loss_function(options_.loss, solution.deviation);
+  FitCovariance found = fit_covariance(flights, values_, solution.offsets, loss.get(), earlier,
+                                       solution.at_bound, prior_weights(flights.setup()), prior_strength_);
+  result_.samples_per_independent = found.samples_per_independent;
+  return std::move(found.matrix);
 }
 
 FitSums Refit::sums_at(FitFlights& flights, const Eigen::VectorXd& parameters, double deviation) {
@@ -780,8 +537,7 @@ FitSums Refit::sums_at(FitFlights& flights, const Eigen::VectorXd& parameters, d
 /// with the weights that the samples have.
 void Refit::find_omissions(FitFlights& flights, const Solution& solution, const FitSums& sums) {
   const FitSetup& setup = flights.setup();
-  const std::unique_ptr<ceres::LossFunction> loss =
-      solution.deviation > 0.0 ? loss_function(options_.loss, solution.deviation) : nullptr;
+  const std::unique_ptr<ceres::LossFunction> loss = loss_function(options_.loss, solution.deviation);
   const Eigen::Index size = as_index(setup.wanted.size());
   // Rows of derivatives and residual at some coefficients, with what draws these to their start.
   const auto rows_at = [&](const Eigen::VectorXd& parameters) {
