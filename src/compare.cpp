@@ -284,8 +284,8 @@ double Statistics::rms_over_noise() const { return noise_rms > 0.0 ? rms / noise
 
 bool fails_more(const Statistics& a, const Statistics& b) {
   const auto failure = [](const Statistics& s) {
-    const double ratio = s.rms_over_noise();
-    return std::isnan(ratio) ? 0.0 : ratio;
+    const double excess = s.rms * s.rms - s.noise_rms * s.noise_rms;
+    return std::isnan(excess) ? 0.0 : excess;
   };
   return failure(a) > failure(b);
 }

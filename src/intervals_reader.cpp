@@ -1,11 +1,5 @@
 #include <pcor/offline/regimes.hpp>
 
-// An assertion of toml++ ends the program on input such as `[ = "x`. Without it the same line is refused.
-#ifndef NDEBUG
-#define NDEBUG
-#endif
-#include <toml++/toml.h>
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,6 +12,7 @@
 #include <pcor/offline/error.hpp>
 
 #include "model_names.hpp"
+#include "toml_reader.hpp"
 
 namespace pcor {
 namespace {
@@ -27,18 +22,6 @@ constexpr double day = 86400.0;               // s
 constexpr double longest_of_day = day / 2.0;  // s between two times of the day; more is a mistake
 constexpr const char* wanted_time =
     "a date and time such as 2011-11-17T20:10:00Z, or a time of the day such as \"20:10:00\"";
-
-double seconds_of(const toml::time& time) {
-  return time.hour * 3600.0 + time.minute * 60.0 + time.second + time.nanosecond * 1e-9;
-}
-
-// Days from 1970-01-01 to a date of the Gregorian calendar. The year begins in March, so that the day of leap
-// years is its last (Richards, "Calendars", Explanatory Supplement to the Astronomical Almanac, 2013).
-std::int64_t days_since_1970(const toml::date& date) {
-  const std::int64_t year = date.year - (date.month <= 2 ? 1 : 0);
-  const std::int64_t month = (date.month + 9) % 12;  // March is 0
-  return 365 * year + year / 4 - year / 100 + year / 400 + (153 * month + 2) / 5 + date.day - 1 - 719468;
-}
 
 // "20:10" or "20:10:00.5" as seconds of the day; negative if it is neither.
 double time_of_day(const std::string& text) {
@@ -60,17 +43,12 @@ double time_of_day(const std::string& text) {
 Names names_of_regimes() { return names_of(regime_facts, &RegimeFacts::name); }
 
 // Reads a parsed file, and refuses what has no meaning with the place where it stands.
-class Reader {
+class Reader final : TomlReader {
  public:
-  explicit Reader(std::string_view name) : name_(name) {}
+  explicit Reader(std::string_view name) : TomlReader(name) {}
 
   UserIntervals read(std::string_view text) {
-    toml::table root;
-    try {
-      root = toml::parse(text, name_);
-    } catch (const toml::parse_error& error) {
-      fail(error.source().begin, std::string(error.description()) + "; correct the syntax (TOML) here");
-    }
+    const toml::table root = parse(text);
     check_format(root);
     refuse_unknown(root, "", {"format", "flight", "add", "veto", "exclude"});
     if (const toml::node* flight = root.get("flight")) user_.flight = text_of(*flight, "'flight'");
@@ -86,40 +64,19 @@ class Reader {
     double end;
   };
 
-  [[noreturn]] void fail(toml::source_position place, const std::string& what) const {
-    if (!place) place = {1, 1};
-    throw Error(one_line(fmt::format("{}:{}:{}: {}", name_, place.line, place.column, what)));
-  }
-
-  [[noreturn]] void fail(const toml::node& node, const std::string& what) const {
-    fail(node.source().begin, what);
-  }
-
   void check_format(const toml::table& root) const {
-    const toml::node* format = root.get("format");
-    if (format == nullptr) {
-      fail({1, 1}, fmt::format("the file does not say that it holds intervals; begin it with format = \"{}\"",
-                               intervals_format));
-    }
-    const auto* text = format->as_string();
-    if (text == nullptr || text->get() != intervals_format) {
-      fail(*format, fmt::format("this is not a format of interval files that this program reads; write "
-                                "format = \"{}\"",
-                                intervals_format));
-    }
+    const Entry format = format_of(root, "holds intervals", intervals_format);
+    if (format.node->value<std::string_view>() == intervals_format) return;
+    fail(format, fmt::format("this is not a format of interval files that this program reads; write "
+                             "format = \"{}\"",
+                             intervals_format));
   }
 
   // An error at the first key, in the order of the text, that is not `known`.
   void refuse_unknown(const toml::table& table, const std::string& title, const Names& known) const {
-    const toml::key* first = nullptr;
-    for (const auto& [key, node] : table) {
-      const bool is_known = std::find(known.begin(), known.end(), key.str()) != known.end();
-      if (!is_known && (first == nullptr || key.source().begin < first->source().begin)) first = &key;
+    for (const Entry& entry : entries_of(table, title)) {
+      if (std::find(known.begin(), known.end(), entry.key) == known.end()) refuse(entry, known);
     }
-    if (first == nullptr) return;
-    fail(first->source().begin,
-         fmt::format("there is no key {}{}; {}", in_quotes(first->str()), title.empty() ? "" : " in " + title,
-                     instead_of(first->str(), known)));
   }
 
   void each(const toml::table& root, const std::string& key, const Names& known,
@@ -127,13 +84,11 @@ class Reader {
     const toml::node* node = root.get(key);
     if (node == nullptr) return;
     const std::string title = "[[" + key + "]]";
-    const toml::array* tables = node->as_array();
-    if (tables == nullptr) fail(*node, fmt::format("'{}' is no list of tables; write {}", key, title));
-    for (const toml::node& element : *tables) {
-      const toml::table* table = element.as_table();
-      if (table == nullptr) fail(element, fmt::format("'{}' is no list of tables; write {}", key, title));
-      refuse_unknown(*table, title, known);
-      (this->*read_one)(*table, title);
+    const std::string otherwise = fmt::format("'{}' is no list of tables; write {}", key, title);
+    for (const toml::node& element : as<toml::array>(*node, otherwise)) {
+      const auto& table = as<toml::table>(element, otherwise);
+      refuse_unknown(table, title, known);
+      (this->*read_one)(table, title);
     }
   }
 
@@ -165,8 +120,7 @@ class Reader {
   }
 
   std::string text_of(const toml::node& node, const std::string& what) const {
-    if (const auto* text = node.as_string()) return text->get();
-    fail(node, what + " is not a text; give a text in quotes");
+    return as<std::string>(node, what + " is not a text; give a text in quotes");
   }
 
   Regime regime_of(const toml::node& node) const {
@@ -217,8 +171,7 @@ class Reader {
     if (const auto* moment = node.as_date_time()) {
       const toml::date_time& value = moment->get();
       const double minutes_east = value.offset ? value.offset->minutes : 0;
-      const double seconds = static_cast<double>(days_since_1970(value.date)) * day + seconds_of(value.time) -
-                             minutes_east * 60.0;
+      const double seconds = seconds_of(value) - minutes_east * 60.0;
       if (seconds < day) fail(node, "the time is before 1970-01-02; correct the date");
       return seconds;
     }
@@ -229,7 +182,6 @@ class Reader {
     return seconds;
   }
 
-  std::string name_;
   UserIntervals user_;
 };
 

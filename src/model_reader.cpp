@@ -1,11 +1,5 @@
 #include "model_reader.hpp"
 
-// An assertion of toml++ ends the program on input such as `[ = "x`. Without it the same line is refused.
-#ifndef NDEBUG
-#define NDEBUG
-#endif
-#include <toml++/toml.h>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -13,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <initializer_list>
 #include <limits>
 #include <locale>
@@ -26,6 +19,7 @@
 #include <pcor/realtime/formula.hpp>
 
 #include "model_names.hpp"
+#include "toml_reader.hpp"
 
 namespace pcor {
 namespace {
@@ -69,25 +63,6 @@ bool is_date(std::string_view text) {
   return day >= 1 && day <= last;
 }
 
-// A key of a table with its value.
-struct Entry {
-  std::string key;
-  toml::source_position place;  // of the key
-  const toml::node* node;
-  std::string title;  // of the table
-};
-
-// The entries of a table in the order of the text; toml++ sorts them by name.
-std::vector<Entry> entries_of(const toml::table& table, const std::string& title) {
-  std::vector<Entry> entries;
-  for (const auto& [key, node] : table) {
-    entries.push_back({std::string(key.str()), key.source().begin, &node, title});
-  }
-  std::stable_sort(entries.begin(), entries.end(),
-                   [](const Entry& a, const Entry& b) { return a.place < b.place; });
-  return entries;
-}
-
 std::string_view kind_of(const toml::node& node) {
   switch (node.type()) {
     case toml::node_type::table:
@@ -107,57 +82,24 @@ std::string_view kind_of(const toml::node& node) {
 }
 
 // Reads a parsed file into a model, and refuses what has no meaning with the place where it stands.
-class Reader {
+class Reader final : TomlReader {
  public:
-  explicit Reader(std::string_view name) : name_(name) {}
+  explicit Reader(std::string_view name) : TomlReader(name) {}
 
   ModelFile read(std::string_view text) {
-    toml::table root;
-    try {
-      root = toml::parse(text, name_);
-    } catch (const toml::parse_error& error) {
-      fail(error.source().begin, std::string(error.description()) + "; correct the syntax (TOML) here");
-    }
+    const toml::table root = parse(text);
     check_format(root);
     read_root(root);
     return std::move(file_);
   }
 
  private:
-  using Action = std::function<void(const Entry&)>;
-
-  [[noreturn]] void fail(toml::source_position place, const std::string& what) const {
-    if (!place) place = {1, 1};
-    throw Error(one_line(fmt::format("{}:{}:{}: {}", name_, place.line, place.column, what)));
+  std::string unknown(const Entry& entry) const override {
+    return (entry.title.empty() && entry.node->is_table() ? "table " : "key ") + called(entry);
   }
 
-  [[noreturn]] void fail(const toml::node& node, const std::string& what) const {
-    fail(node.source().begin, what);
-  }
-
-  // Does for each key what `actions` say; a key that they do not know is an error.
-  void each(const toml::table& table, const std::string& title,
-            std::initializer_list<std::pair<std::string_view, Action>> actions) const {
-    for (const Entry& entry : entries_of(table, title)) {
-      const auto action = std::find_if(actions.begin(), actions.end(),
-                                       [&](const auto& candidate) { return candidate.first == entry.key; });
-      if (action == actions.end()) {
-        Names known;
-        for (const auto& candidate : actions) known.emplace_back(candidate.first);
-        const std::string_view what = entry.node->is_table() && title.empty() ? "table" : "key";
-        fail(entry.place, fmt::format("there is no {} {}{}; {}", what, in_quotes(entry.key),
-                                      title.empty() ? "" : " in " + title, instead_of(entry.key, known)));
-      }
-      action->second(entry);
-    }
-  }
-
-  [[noreturn]] void wrong_kind(const Entry& entry, const std::string& wanted) const {
-    fail(*entry.node, fmt::format("{} is {}; give {}", called(entry), kind_of(*entry.node), wanted));
-  }
-
-  static std::string called(const Entry& entry) {
-    return in_quotes(entry.key) + (entry.title.empty() ? "" : " in " + entry.title);
+  static std::string wrong_kind(const Entry& entry, const std::string& wanted) {
+    return fmt::format("{} is {}; give {}", called(entry), kind_of(*entry.node), wanted);
   }
 
   double finite(const toml::node& node, const std::string& what) const {
@@ -176,25 +118,19 @@ class Reader {
   double number(const Entry& entry) const { return finite(*entry.node, called(entry)); }
 
   std::string text(const Entry& entry, const std::string& wanted = "a text in quotes") const {
-    if (const auto* value = entry.node->as_string()) return value->get();
-    wrong_kind(entry, wanted);
+    return as<std::string>(*entry.node, wrong_kind(entry, wanted));
   }
 
-  bool boolean(const Entry& entry) const {
-    if (const auto* value = entry.node->as_boolean()) return value->get();
-    wrong_kind(entry, "true or false");
-  }
+  bool boolean(const Entry& entry) const { return as<bool>(*entry.node, wrong_kind(entry, "true or false")); }
 
   const toml::table& table(const Entry& entry, const std::string& wanted) const {
-    if (const auto* value = entry.node->as_table()) return *value;
-    wrong_kind(entry, wanted);
+    return as<toml::table>(*entry.node, wrong_kind(entry, wanted));
   }
 
   const toml::table& section(const Entry& entry) const { return table(entry, "a table [" + entry.key + "]"); }
 
   const toml::array& array(const Entry& entry, const std::string& wanted) const {
-    if (const auto* value = entry.node->as_array()) return *value;
-    wrong_kind(entry, wanted);
+    return as<toml::array>(*entry.node, wrong_kind(entry, wanted));
   }
 
   std::vector<double> numbers(const Entry& entry, const std::string& wanted) const {
@@ -209,11 +145,11 @@ class Reader {
     const std::string wanted = "[lower, upper]";
     const std::vector<double> ends = numbers(entry, wanted);
     if (ends.size() != 2) {
-      fail(*entry.node, fmt::format("{} has {} numbers; give {}", called(entry), ends.size(), wanted));
+      fail(entry, fmt::format("{} has {} numbers; give {}", called(entry), ends.size(), wanted));
     }
     if (!(ends[0] < ends[1])) {
-      fail(*entry.node, fmt::format("{}: the lower end {} is not below the upper end {}; give {}",
-                                    called(entry), ends[0], ends[1], wanted));
+      fail(entry, fmt::format("{}: the lower end {} is not below the upper end {}; give {}", called(entry),
+                              ends[0], ends[1], wanted));
     }
     return {ends[0], ends[1]};
   }
@@ -221,8 +157,8 @@ class Reader {
   std::string variable_name(const Entry& entry) const {
     std::string name = text(entry, "the name of a variable in quotes");
     if (!is_variable_name(name)) {
-      fail(*entry.node, fmt::format("{}: {} cannot be the name of a netCDF variable; give another",
-                                    called(entry), in_quotes(name)));
+      fail(entry, fmt::format("{}: {} cannot be the name of a netCDF variable; give another", called(entry),
+                              in_quotes(name)));
     }
     return name;
   }
@@ -239,20 +175,16 @@ class Reader {
   }
 
   void check_format(const toml::table& root) const {
+    const Entry entry = format_of(root, "is a model file", model_format);
+    const std::string format = text(entry, in_quotes(model_format));
+    if (format == model_format) return;
     const std::string wanted = fmt::format("format = \"{}\"", model_format);
-    for (const Entry& entry : entries_of(root, "")) {
-      if (entry.key != "format") continue;
-      const std::string format = text(entry, in_quotes(model_format));
-      if (format == model_format) return;
-      if (format.rfind("pcor-model/", 0) == 0) {
-        fail(*entry.node, fmt::format("the file has the format {}, this program reads {} only; use the pcor "
-                                      "that wrote it, or write {}",
-                                      in_quotes(format), in_quotes(model_format), wanted));
-      }
-      fail(*entry.node,
-           fmt::format("{} is not a format of model files; write {}", in_quotes(format), wanted));
+    if (format.rfind("pcor-model/", 0) == 0) {
+      fail(entry, fmt::format("the file has the format {}, this program reads {} only; use the pcor "
+                              "that wrote it, or write {}",
+                              in_quotes(format), in_quotes(model_format), wanted));
     }
-    fail({1, 1}, "the file does not say that it is a model file; begin it with " + wanted);
+    fail(entry, fmt::format("{} is not a format of model files; write {}", in_quotes(format), wanted));
   }
 
   void read_root(const toml::table& root) {
@@ -281,7 +213,7 @@ class Reader {
     };
     with("variables", &Reader::read_variables);
     const auto variables = sections.find("variables");
-    require_pressures(variables == sections.end() ? toml::source_position{1, 1} : variables->second.place);
+    require_pressures(variables == sections.end() ? Place{1, 1} : variables->second.place);
     with("units", &Reader::read_units);
     with("output", &Reader::read_output);
     with("lams", &Reader::read_lams);
@@ -305,7 +237,7 @@ class Reader {
     }
   }
 
-  void require_pressures(toml::source_position place) const {
+  void require_pressures(Place place) const {
     for (const Quantity quantity : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
       if (file_.variables.count(quantity) != 0) continue;
       const std::string_view name = facts_of(quantity).name;
@@ -367,14 +299,14 @@ class Reader {
                                     in_quotes(entry.key)));
     }
     if (!is_known_unit(unit)) {
-      fail(*entry.node, fmt::format("{}: the unit {} is not known; give one that converts to {}",
-                                    called(entry), in_quotes(unit), wanted));
+      fail(entry, fmt::format("{}: the unit {} is not known; give one that converts to {}", called(entry),
+                              in_quotes(unit), wanted));
     }
     try {
       UnitConversion::between(unit, wanted, {});
     } catch (const Error&) {
-      fail(*entry.node, fmt::format("{}: the unit {} does not convert to {}; give one that does",
-                                    called(entry), in_quotes(unit), wanted));
+      fail(entry, fmt::format("{}: the unit {} does not convert to {}; give one that does", called(entry),
+                              in_quotes(unit), wanted));
     }
     if (!file_.units.emplace(quantity, unit).second) {
       fail(entry.place, fmt::format("the unit of {} is stated twice; remove one", in_quotes(entry.key)));
@@ -394,8 +326,8 @@ class Reader {
     for (const Entry& entry : entries) {
       for (const std::string& other : known) {
         if (other == entry.key || file_.output_name(other) != file_.output[entry.key]) continue;
-        fail(*entry.node, fmt::format("{} and '{}' would both be written as {}; give one another name",
-                                      in_quotes(entry.key), other, in_quotes(file_.output[entry.key])));
+        fail(entry, fmt::format("{} and '{}' would both be written as {}; give one another name",
+                                in_quotes(entry.key), other, in_quotes(file_.output[entry.key])));
       }
     }
   }
@@ -409,12 +341,10 @@ class Reader {
   }
 
   LamsApproach approach(const Entry& entry) const {
-    const auto* value = entry.node->as_integer();
-    if (value == nullptr) wrong_kind(entry, "a whole number: 1, 2 or 3");
-    const std::int64_t which = value->get();
-    if (which == 4) fail(*entry.node, std::string(approach_4_refusal));
+    const auto which = as<std::int64_t>(*entry.node, wrong_kind(entry, "a whole number: 1, 2 or 3"));
+    if (which == 4) fail(entry, std::string(approach_4_refusal));
     if (which < 1 || which > 3) {
-      fail(*entry.node, fmt::format("there is no approach {}; give 1, 2 or 3", which));
+      fail(entry, fmt::format("there is no approach {}; give 1, 2 or 3", which));
     }
     return static_cast<LamsApproach>(which);
   }
@@ -431,8 +361,8 @@ class Reader {
       const PublishedRecoveryFactor* law = published_recovery_factor(name);
       if (law == nullptr) {
         const Names known = names_of(published_recovery_factors, &PublishedRecoveryFactor::name);
-        fail(*entry.node, fmt::format("there is no published recovery factor {}; {}", in_quotes(name),
-                                      instead_of(name, known)));
+        fail(entry, fmt::format("there is no published recovery factor {}; {}", in_quotes(name),
+                                instead_of(name, known)));
       }
       recovery = law->law;
       file_.recovery_factor_name = name;
@@ -442,19 +372,18 @@ class Reader {
     if (entry.node->is_array()) {
       const std::vector<double> coefficients = numbers(entry, wanted);
       if (coefficients.size() != recovery.coefficients.size()) {
-        fail(*entry.node,
-             fmt::format("{} has {} numbers; give {}", called(entry), coefficients.size(), wanted));
+        fail(entry, fmt::format("{} has {} numbers; give {}", called(entry), coefficients.size(), wanted));
       }
       std::copy(coefficients.begin(), coefficients.end(), recovery.coefficients.begin());
     } else if (entry.node->is_number()) {
       recovery.coefficients = {number(entry), 0.0, 0.0, 0.0};
     } else {
-      wrong_kind(entry, wanted);
+      fail(entry, wrong_kind(entry, wanted));
     }
     const double constant = recovery.coefficients[0];
     if (!(constant > 0.0 && constant <= largest_recovery_factor)) {
-      fail(*entry.node, fmt::format("a recovery factor of {} is impossible; give one above 0, not above {}",
-                                    constant, largest_recovery_factor));
+      fail(entry, fmt::format("a recovery factor of {} is impossible; give one above 0, not above {}",
+                              constant, largest_recovery_factor));
     }
   }
 
@@ -473,7 +402,7 @@ class Reader {
     const std::string wanted = "[offset, slope] or [offset, slope, slope for a unit of Mach number]";
     std::vector<double> values = numbers(entry, wanted);
     if (values.size() != 2 && values.size() != 3) {
-      fail(*entry.node, fmt::format("{} has {} numbers; give {}", called(entry), values.size(), wanted));
+      fail(entry, fmt::format("{} has {} numbers; give {}", called(entry), values.size(), wanted));
     }
     values.resize(3);
     return {values[0], values[1], values[2]};
@@ -484,7 +413,7 @@ class Reader {
     const auto not_negative = [&](const Entry& entry) {
       const double value = number(entry);
       if (value < 0.0) {
-        fail(*entry.node, fmt::format("{} is negative; give a number of 0 or above", called(entry)));
+        fail(entry, fmt::format("{} is negative; give a number of 0 or above", called(entry)));
       }
       return value;
     };
@@ -514,9 +443,7 @@ class Reader {
   void read_effects(const Entry& section_entry) {
     const std::string wanted = "each effect under a heading [[effect]]";
     for (const toml::node& node : array(section_entry, wanted)) {
-      const toml::table* effect = node.as_table();
-      if (effect == nullptr) fail(node, fmt::format("an effect is {}; give {}", kind_of(node), wanted));
-      read_effect(*effect);
+      read_effect(as<toml::table>(node, fmt::format("an effect is {}; give {}", kind_of(node), wanted)));
     }
   }
 
@@ -549,8 +476,8 @@ class Reader {
   void check_new(const std::string& id, const Entry& entry) {
     const auto [first, is_new] = effect_lines_.emplace(id, entry.place.line);
     if (is_new) return;
-    fail(*entry.node, fmt::format("effect {} is in the model already, at line {}; remove one", in_quotes(id),
-                                  first->second));
+    fail(entry, fmt::format("effect {} is in the model already, at line {}; remove one", in_quotes(id),
+                            first->second));
   }
 
   ModelEffect catalogue_effect(const std::string& id, const EffectEntries& given) const {
@@ -580,7 +507,7 @@ class Reader {
   double possible(const Entry& entry, const ParameterFacts& facts) const {
     const double value = number(entry);
     if (value < facts.lower || value > facts.upper) {
-      fail(*entry.node,
+      fail(entry,
            fmt::format("{} = {} is outside the bounds of the catalogue; give a value within [{}, {}]{}",
                        in_quotes(entry.key), value, facts.lower, facts.upper,
                        facts.unit == "1" ? "" : fmt::format(" {}", facts.unit)));
@@ -639,8 +566,8 @@ class Reader {
     const std::string name = text(entry);
     const Where where = where_named(name);
     if (where == Where::count) {
-      fail(*entry.node, fmt::format("there is no place {} where an effect acts; {}", in_quotes(name),
-                                    instead_of(name, names_of(where_facts, &WhereFacts::name))));
+      fail(entry, fmt::format("there is no place {} where an effect acts; {}", in_quotes(name),
+                              instead_of(name, names_of(where_facts, &WhereFacts::name))));
     }
     return where;
   }
@@ -649,9 +576,9 @@ class Reader {
     std::string unit = text(entry, "a unit in quotes");
     const std::string wanted(facts_of(where).unit);
     if (standard_unit(unit) != standard_unit(wanted)) {
-      fail(*entry.node, fmt::format("what acts at '{}' is in {}, not in {}; write the formula in {} and say "
-                                    "unit = \"{}\"",
-                                    facts_of(where).name, wanted, in_quotes(unit), wanted, wanted));
+      fail(entry, fmt::format("what acts at '{}' is in {}, not in {}; write the formula in {} and say "
+                              "unit = \"{}\"",
+                              facts_of(where).name, wanted, in_quotes(unit), wanted, wanted));
     }
     return unit;
   }
@@ -668,8 +595,7 @@ class Reader {
     }
   }
 
-  std::size_t parameter_number(const std::string& name, toml::source_position place,
-                               const ModelEffect& effect) const {
+  std::size_t parameter_number(const std::string& name, Place place, const ModelEffect& effect) const {
     const Names known = parameter_names(effect);
     const auto found = std::find(known.begin(), known.end(), name);
     if (found == known.end()) {
@@ -685,8 +611,8 @@ class Reader {
       each_parameter(*given.standard_errors, effect, [&](std::size_t i, const Entry& entry) {
         const double value = number(entry);
         if (value < 0.0) {
-          fail(*entry.node, fmt::format("the standard error of {} is negative; give a number of 0 or above",
-                                        in_quotes(entry.key)));
+          fail(entry, fmt::format("the standard error of {} is negative; give a number of 0 or above",
+                                  in_quotes(entry.key)));
         }
         fit[i].standard_error = value;
       });
@@ -696,8 +622,8 @@ class Reader {
         const Bounds bounds = range(entry);
         const double value = effect.parameters[i];
         if (value < bounds.lower || value > bounds.upper) {
-          fail(*entry.node, fmt::format("the value {} of {} is outside its bounds; change one of them", value,
-                                        in_quotes(entry.key)));
+          fail(entry, fmt::format("the value {} of {} is outside its bounds; change one of them", value,
+                                  in_quotes(entry.key)));
         }
         check_bounds(bounds, effect, i, entry);
         fit[i].bounds = bounds;
@@ -713,9 +639,8 @@ class Reader {
     if (effect.is_formula()) return;
     const ParameterFacts& facts = effect_facts[effect_named(effect.id)].parameters[number];
     if (bounds.lower >= facts.lower && bounds.upper <= facts.upper) return;
-    fail(*entry.node,
-         fmt::format("the bounds of {} go beyond those of the catalogue; give bounds within [{}, {}]",
-                     in_quotes(entry.key), facts.lower, facts.upper));
+    fail(entry, fmt::format("the bounds of {} go beyond those of the catalogue; give bounds within [{}, {}]",
+                            in_quotes(entry.key), facts.lower, facts.upper));
   }
 
   void read_fixed(const Entry& entry, const ModelEffect& effect, EffectFit& fit) const {
@@ -730,11 +655,8 @@ class Reader {
                                                                const std::string& wanted) const {
     std::vector<std::pair<const toml::node*, std::string>> values;
     for (const toml::node& node : array(entry, wanted)) {
-      const auto* value = node.as_string();
-      if (value == nullptr) {
-        fail(node, fmt::format("{} holds {}; give {}", called(entry), kind_of(node), wanted));
-      }
-      values.emplace_back(&node, value->get());
+      const std::string otherwise = fmt::format("{} holds {}; give {}", called(entry), kind_of(node), wanted);
+      values.emplace_back(&node, as<std::string>(node, otherwise));
     }
     return values;
   }
@@ -760,7 +682,7 @@ class Reader {
 
   double rms(const Entry& entry) const {
     const double value = number(entry);
-    if (value < 0.0) fail(*entry.node, called(entry) + " is negative; give a number of 0 or above");
+    if (value < 0.0) fail(entry, called(entry) + " is negative; give a number of 0 or above");
     return value;
   }
 
@@ -772,8 +694,7 @@ class Reader {
     const std::string wanted = "a date like \"2011-11-02\"";
     std::string value = text(entry, wanted);
     if (!is_date(value)) {
-      fail(*entry.node,
-           fmt::format("{}: {} is not a date; give {}", called(entry), in_quotes(value), wanted));
+      fail(entry, fmt::format("{}: {} is not a date; give {}", called(entry), in_quotes(value), wanted));
     }
     return value;
   }
@@ -819,12 +740,12 @@ class Reader {
       }
     }
     if (matrix.size() != size) {
-      fail(*entry.node, fmt::format("the matrix has {} rows; give {}", matrix.size(), wanted));
+      fail(entry, fmt::format("the matrix has {} rows; give {}", matrix.size(), wanted));
     }
     for (std::size_t i = 0; i < size; ++i) {
-      if (matrix[i][i] < 0.0) fail(*entry.node, "a variance of the matrix is negative; refit the model");
+      if (matrix[i][i] < 0.0) fail(entry, "a variance of the matrix is negative; refit the model");
       for (std::size_t j = 0; j < i; ++j) {
-        if (matrix[i][j] != matrix[j][i]) fail(*entry.node, "the matrix is not symmetric; refit the model");
+        if (matrix[i][j] != matrix[j][i]) fail(entry, "the matrix is not symmetric; refit the model");
       }
     }
   }
@@ -860,9 +781,8 @@ class Reader {
     return moment.str();
   }
 
-  std::string name_;
   ModelFile file_;
-  std::map<Quantity, toml::source_position> variable_places_;
+  std::map<Quantity, Place> variable_places_;
   std::map<std::string, toml::source_index> effect_lines_;
 };
 

@@ -1,14 +1,8 @@
-// An assertion of toml++ ends the program on input such as `[ = "x`. Without it the same line is refused.
-#ifndef NDEBUG
-#define NDEBUG
-#endif
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <functional>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -18,6 +12,7 @@
 #include <utility>
 
 #include "../model_names.hpp"
+#include "../toml_reader.hpp"
 #include "aircraft.hpp"
 #include "effects.hpp"
 #include "flight_plan.hpp"
@@ -27,27 +22,8 @@ namespace pcor {
 namespace {
 
 using namespace simulate;
-using Place = toml::source_position;
 
 constexpr std::string_view scenario_format = "pcor-scenario/1";
-
-/// A key of a table with its value.
-struct Entry {
-  std::string key;
-  Place place;
-  const toml::node* node;
-};
-
-/// The entries of a table in the order of the text; toml++ sorts them by name.
-std::vector<Entry> entries_of(const toml::table& table) {
-  std::vector<Entry> entries;
-  for (const auto& [key, node] : table) {
-    entries.push_back({std::string(key.str()), key.source().begin, &node});
-  }
-  std::stable_sort(entries.begin(), entries.end(),
-                   [](const Entry& a, const Entry& b) { return a.place < b.place; });
-  return entries;
-}
 
 /// The values that a number may have, with its unit for the message.
 struct Domain {
@@ -151,53 +127,19 @@ Names words_of(std::string_view text) {
 }
 
 /// Reads a parsed file into a scenario, and refuses what has no meaning with the place where it stands.
-class Reader {
+class Reader final : TomlReader {
  public:
-  explicit Reader(std::string_view name) : name_(name) { scenario_.file = name; }
+  explicit Reader(std::string_view name) : TomlReader(name) { scenario_.file = name; }
 
   Scenario read(std::string_view text) {
-    toml::table root;
-    try {
-      root = toml::parse(text, name_);
-    } catch (const toml::parse_error& error) {
-      fail(error.source().begin, std::string(error.description()) + "; correct the syntax (TOML) here");
-    }
+    const toml::table root = parse(text);
     check_format(root);
     read_root(root);
     return std::move(scenario_);
   }
 
  private:
-  using Action = std::function<void(const Entry&)>;
-  using Actions = std::vector<std::pair<std::string, Action>>;
-
-  std::string place_of(Place place) const {
-    if (!place) place = {1, 1};
-    return fmt::format("{}:{}:{}", name_, place.line, place.column);
-  }
-
-  [[noreturn]] void fail(Place place, const std::string& what) const {
-    throw Error(one_line(place_of(place) + ": " + what));
-  }
-
-  [[noreturn]] void fail(const Entry& entry, const std::string& what) const {
-    fail(entry.node->source().begin, what);
-  }
-
-  /// Does for each key what `actions` say; a key that they do not know is an error.
-  void each(const toml::table& table, const std::string& title, const Actions& actions) const {
-    for (const Entry& entry : entries_of(table)) {
-      const auto action = std::find_if(actions.begin(), actions.end(),
-                                       [&](const auto& candidate) { return candidate.first == entry.key; });
-      if (action == actions.end()) {
-        Names known;
-        for (const auto& candidate : actions) known.push_back(candidate.first);
-        fail(entry.place, fmt::format("there is no {}{}; {}", in_quotes(entry.key), " in " + title,
-                                      instead_of(entry.key, known)));
-      }
-      action->second(entry);
-    }
-  }
+  std::string unknown(const Entry& entry) const override { return called(entry); }
 
   double number(const Entry& entry, const Domain& domain) const {
     const std::optional<double> value = entry.node->value<double>();
@@ -212,15 +154,11 @@ class Reader {
   }
 
   std::int64_t whole(const Entry& entry) const {
-    const auto* value = entry.node->as_integer();
-    if (value == nullptr) fail(entry, in_quotes(entry.key) + " is not a whole number; give one");
-    return value->get();
+    return as<std::int64_t>(*entry.node, in_quotes(entry.key) + " is not a whole number; give one");
   }
 
   std::string text(const Entry& entry) const {
-    const auto* value = entry.node->as_string();
-    if (value == nullptr) fail(entry, in_quotes(entry.key) + " is not a text; give one in quotes");
-    return value->get();
+    return as<std::string>(*entry.node, in_quotes(entry.key) + " is not a text; give one in quotes");
   }
 
   std::string one_of(const Entry& entry, const Names& known) const {
@@ -232,26 +170,19 @@ class Reader {
   }
 
   bool boolean(const Entry& entry) const {
-    const auto* value = entry.node->as_boolean();
-    if (value == nullptr) fail(entry, in_quotes(entry.key) + " is not true or false; give one of them");
-    return value->get();
+    return as<bool>(*entry.node, in_quotes(entry.key) + " is not true or false; give one of them");
   }
 
   const toml::table& table(const Entry& entry) const {
-    const auto* value = entry.node->as_table();
-    if (value == nullptr) fail(entry, fmt::format("{} is not a table; write [{}]", entry.key, entry.key));
-    return *value;
+    return as<toml::table>(*entry.node, fmt::format("{} is not a table; write [{}]", entry.key, entry.key));
   }
 
   /// Calls `read(table, place)` for each table of a list of tables.
   template <class Read>
   void tables(const Entry& entry, Read read) const {
-    const auto* list = entry.node->as_array();
-    if (list == nullptr) fail(entry, fmt::format("{} is not a list; write [[{}]]", entry.key, entry.key));
-    for (const toml::node& node : *list) {
-      if (!node.is_table())
-        fail(node.source().begin, fmt::format("this is not a table; write [[{}]]", entry.key));
-      read(*node.as_table(), node.source().begin);
+    const std::string wanted = fmt::format("write [[{}]]", entry.key);
+    for (const toml::node& node : as<toml::array>(*entry.node, entry.key + " is not a list; " + wanted)) {
+      read(as<toml::table>(node, "this is not a table; " + wanted), node.source().begin);
     }
   }
 
@@ -267,15 +198,12 @@ class Reader {
   }
 
   void check_format(const toml::table& root) const {
-    const std::string wanted = fmt::format("format = \"{}\"", scenario_format);
-    for (const Entry& entry : entries_of(root)) {
-      if (entry.key != "format") continue;
-      const std::string format = text(entry);
-      if (format == scenario_format) return;
-      fail(entry, fmt::format("{} is not the format of a scenario that this program reads; write {}",
-                              in_quotes(format), wanted));
-    }
-    fail(Place{1, 1}, "the file does not say that it is a scenario; begin it with " + wanted);
+    const Entry entry = format_of(root, "is a scenario", scenario_format);
+    const std::string format = text(entry);
+    if (format == scenario_format) return;
+    fail(entry,
+         fmt::format("{} is not the format of a scenario that this program reads; write format = \"{}\"",
+                     in_quotes(format), scenario_format));
   }
 
   void read_root(const toml::table& root) {
@@ -351,22 +279,13 @@ class Reader {
   }
 
   void read_start(const Entry& entry) {
-    const auto* value = entry.node->as_date_time();
-    if (value == nullptr) fail(entry, "'start' is not a time; write it as 2011-11-17T20:00:00Z");
-    const toml::date_time& time = value->get();
+    const auto& time =
+        as<toml::date_time>(*entry.node, "'start' is not a time; write it as 2011-11-17T20:00:00Z");
     if (time.offset && time.offset->minutes != 0)
       fail(entry, "'start' is not UTC; write it as 2011-11-17T20:00:00Z");
     if (time.time.nanosecond != 0)
       fail(entry, "'start' is not a whole second; write it as 2011-11-17T20:00:00Z");
-    // Days from the civil calendar: Hinnant, "chrono-compatible low-level date algorithms".
-    const int year = time.date.year - (time.date.month <= 2 ? 1 : 0);
-    const int era = (year >= 0 ? year : year - 399) / 400;
-    const int year_of_era = year - era * 400;
-    const int month = time.date.month + (time.date.month > 2 ? -3 : 9);
-    const int day_of_year = (153 * month + 2) / 5 + time.date.day - 1;
-    const int day_of_era = year_of_era * 365 + year_of_era / 4 - year_of_era / 100 + day_of_year;
-    const double days = era * 146097.0 + day_of_era - 719468.0;
-    scenario_.start = days * 86400.0 + time.time.hour * 3600.0 + time.time.minute * 60.0 + time.time.second;
+    scenario_.start = seconds_of(time);
   }
 
   void read_rate(const Entry& entry) {
@@ -483,9 +402,8 @@ class Reader {
   }
 
   const LegFacts& leg_kind(const toml::table& items, Place place) const {
-    for (const Entry& entry : entries_of(items)) {
-      if (entry.key != "kind") continue;
-      const std::string kind = one_of(entry, names_of(leg_facts, &LegFacts::name));
+    if (const std::optional<Entry> entry = entry_of(items, "kind")) {
+      const std::string kind = one_of(*entry, names_of(leg_facts, &LegFacts::name));
       return *std::find_if(leg_facts.begin(), leg_facts.end(),
                            [&](const LegFacts& each) { return each.name == kind; });
     }
@@ -618,12 +536,11 @@ class Reader {
   }
 
   const FaultFacts& effect_facts(const toml::table& items, Place place) const {
-    for (const Entry& entry : entries_of(items)) {
-      if (entry.key != "id") continue;
-      const std::string id = text(entry);
+    if (const std::optional<Entry> entry = entry_of(items, "id")) {
+      const std::string id = text(*entry);
       if (const FaultFacts* facts = find_fault(id)) return *facts;
-      fail(entry, fmt::format("no effect {} can be simulated; {}", in_quotes(id),
-                              instead_of(id, names_of(fault_facts(), &FaultFacts::id))));
+      fail(*entry, fmt::format("no effect {} can be simulated; {}", in_quotes(id),
+                               instead_of(id, names_of(fault_facts(), &FaultFacts::id))));
     }
     fail(place, "the effect has no id; add id = \"static-lag\" or another");
   }
@@ -673,7 +590,6 @@ class Reader {
     return names;
   }
 
-  std::string name_;
   Scenario scenario_;
   bool has_aircraft_ = false;
 };

@@ -149,7 +149,7 @@ TEST(Compare, PointsToTheWorstMinutes) {
   for (std::size_t i = 1; i < worst.size(); ++i)
     EXPECT_FALSE(pcor::fails_more(worst[i].statistics, worst[i - 1].statistics));
   EXPECT_NEAR(worst[0].end - worst[0].begin, 60.0, 1.0);
-  EXPECT_GT(worst[0].statistics.rms_over_noise(), result.models.front().all.rms_over_noise());
+  EXPECT_GT(worst[0].statistics.rms, result.models.front().all.rms);
 }
 
 TEST(Compare, OfTwoSystemsGivesTheFiguresOfTheMemo) {

@@ -196,9 +196,11 @@ void write_fit_report(const RefitResult& result, const ModelFile& model, const R
   flights.insert(flights.end(), options.holdout.begin(), options.holdout.end());
   Reference fitted = reference;
   if (result.reference) fitted.system = result.reference;
-  const Comparison comparison =
-      compare(flights, {{"before the fit", model, reference}, {"after the fit", result.model, fitted}},
-              compare_options);
+  const bool holds_out = !options.holdout.empty() || options.training_share < 1.0;
+  const std::string part = holds_out ? ", fitted and held-out samples" : "";
+  const Comparison comparison = compare(
+      flights, {{"before the fit" + part, model, reference}, {"after the fit" + part, result.model, fitted}},
+      compare_options);
   write_report(refit_report(result, comparison), options.common.report);
 }
 

@@ -28,8 +28,8 @@ struct Statistics {
   double rms_over_noise() const;
 };
 
-/// Whether a model fails more in `a` than in `b`: by rms over noise. Where the noise is not known nothing is
-/// said to fail.
+/// Whether a model fails more in `a` than in `b`: by how much the mean square is above that of the noise.
+/// Where the noise is not known nothing is said to fail.
 bool fails_more(const Statistics& a, const Statistics& b);
 
 /// Statistics of a part of the samples: a regime, or a band of a variable.
