@@ -115,6 +115,8 @@ class Refit {
   void find_omissions(FitFlights& flights, const Solution& solution, const FitSums& sums);
   void compare_flights(FitFlights& flights);
   std::vector<FlightFit> before_and_after(const Residuals& residuals, double training_share) const;
+  void list_results(const Eigen::MatrixXd& errors, const std::vector<std::size_t>& fitted,
+                    const std::vector<int>& stage_of, const std::vector<bool>& at_bound);
   void explain_errors(const Eigen::MatrixXd& covariance, const std::vector<std::size_t>& wanted);
   void write_models(const Eigen::MatrixXd& covariance, const std::vector<std::size_t>& fitted);
   void tell();
@@ -669,6 +671,42 @@ void Refit::compare_flights(FitFlights& flights) {
   }
 }
 
+/// The coefficients after the fit, and their covariance.
+void Refit::list_results(const Eigen::MatrixXd& errors, const std::vector<std::size_t>& fitted,
+                         const std::vector<int>& stage_of, const std::vector<bool>& at_bound) {
+  for (std::size_t p = 0; p < parameters_.size(); ++p) {
+    FittedParameter parameter;
+    parameter.name = parameters_[p].name;
+    parameter.unit = parameters_[p].unit;
+    parameter.start = start_[as_index(p)];
+    parameter.value = values_[as_index(p)];
+    parameter.standard_error = nan;
+    parameter.stage = stage_of[p];
+    parameter.fitted = parameter.stage > 0;
+    parameter.at_bound = at_bound[p];
+    const auto place = std::find(fitted.begin(), fitted.end(), p);
+    if (place != fitted.end() && !parameter.at_bound) {
+      const auto k = as_index(static_cast<std::size_t>(place - fitted.begin()));
+      parameter.standard_error = std::sqrt(errors(k, k));
+    }
+    if (parameter.at_bound) {
+      result_.notes.push_back(fmt::format(
+          "{} is held at its bound {:.6g}: the flights want it beyond; the errors of the others hold "
+          "only if that bound is true; {}",
+          parameter.name, parameter.value,
+          result_.condition_number > collinear_condition
+              ? "the coefficients are hard to tell apart here, so rather hold one of them with --fix"
+              : "if it is not meant, widen it in the model file"));
+    }
+    result_.parameters.push_back(std::move(parameter));
+  }
+  for (Eigen::Index a = 0; a < errors.rows(); ++a) {
+    result_.covariance_names.push_back(parameters_[fitted[static_cast<std::size_t>(a)]].name);
+    result_.covariance.emplace_back();
+    for (Eigen::Index b = 0; b < errors.cols(); ++b) result_.covariance.back().push_back(errors(a, b));
+  }
+}
+
 /// In words: which coefficients these flights do not determine, and what would.
 void Refit::explain_errors(const Eigen::MatrixXd& covariance, const std::vector<std::size_t>& wanted) {
   const Eigen::Index size = covariance.rows();
@@ -859,37 +897,7 @@ RefitResult Refit::run() {
   result_.noise_rms = std::sqrt(noise / static_cast<double>(result_.samples));
   result_.bulk_rms = sums.bulk_rms();
 
-  for (std::size_t p = 0; p < parameters_.size(); ++p) {
-    FittedParameter parameter;
-    parameter.name = parameters_[p].name;
-    parameter.unit = parameters_[p].unit;
-    parameter.start = start_[as_index(p)];
-    parameter.value = values_[as_index(p)];
-    parameter.standard_error = nan;
-    parameter.stage = stage_of[p];
-    parameter.fitted = parameter.stage > 0;
-    parameter.at_bound = at_bound[p];
-    const auto place = std::find(fitted.begin(), fitted.end(), p);
-    if (place != fitted.end() && !parameter.at_bound) {
-      const auto k = as_index(static_cast<std::size_t>(place - fitted.begin()));
-      parameter.standard_error = std::sqrt(errors(k, k));
-    }
-    if (parameter.at_bound) {
-      result_.notes.push_back(fmt::format(
-          "{} is held at its bound {:.6g}: the flights want it beyond; the errors of the others hold "
-          "only if that bound is true; {}",
-          parameter.name, parameter.value,
-          result_.condition_number > collinear_condition
-              ? "the coefficients are hard to tell apart here, so rather hold one of them with --fix"
-              : "if it is not meant, widen it in the model file"));
-    }
-    result_.parameters.push_back(std::move(parameter));
-  }
-  for (Eigen::Index a = 0; a < errors.rows(); ++a) {
-    result_.covariance_names.push_back(parameters_[fitted[static_cast<std::size_t>(a)]].name);
-    result_.covariance.emplace_back();
-    for (Eigen::Index b = 0; b < errors.cols(); ++b) result_.covariance.back().push_back(errors(a, b));
-  }
+  list_results(errors, fitted, stage_of, at_bound);
   explain_errors(errors, fitted);
   if (result_.rms > 1.02 * result_.rms_before) {
     result_.notes.insert(
