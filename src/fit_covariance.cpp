@@ -15,8 +15,6 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-Eigen::Index as_index(std::size_t n) { return static_cast<Eigen::Index>(n); }
-
 }  // namespace
 
 FitCovariance fit_covariance(FitFlights& flights, const Eigen::VectorXd& parameters,
@@ -37,12 +35,11 @@ FitCovariance fit_covariance(FitFlights& flights, const Eigen::VectorXd& paramet
     std::vector<std::vector<double>> columns(static_cast<std::size_t>(size),
                                              std::vector<double>(length, 0.0));
     std::vector<double> influence(length, nan);
-    constexpr std::size_t chunk = 1024;
     FitFlight::Rows rows;
     double slope = 0.0;
     double squares = 0.0;
-    for (std::size_t first = 0; first < kept; first += chunk) {
-      const std::size_t count = std::min(chunk, kept - first);
+    for (std::size_t first = 0; first < kept; first += samples_per_chunk) {
+      const std::size_t count = std::min(samples_per_chunk, kept - first);
       fit.evaluate(first, count, parameters, offsets, first_offset, rows);
       for (std::size_t i = 0; i < count; ++i) {
         const std::size_t place = fit.kept()[first + i];

@@ -15,9 +15,6 @@ namespace pcor {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t chunk = 1024;
-
-Eigen::Index as_index(std::size_t n) { return static_cast<Eigen::Index>(n); }
 
 std::size_t bytes_of(const FlightSamples& samples) {
   const std::size_t columns = samples.model.columns.size() + samples.reference.columns.size() + 12;
@@ -68,9 +65,9 @@ void FitFlight::keep_derivatives() {
   const std::size_t count = kept_.size();
   std::vector<double> residual(count);
   std::vector<double> derivatives(setup_->wanted.size() * count);
-  std::vector<double> part(setup_->wanted.size() * chunk);
-  for (std::size_t first = 0; first < count; first += chunk) {
-    const std::size_t length = std::min(chunk, count - first);
+  std::vector<double> part(setup_->wanted.size() * samples_per_chunk);
+  for (std::size_t first = 0; first < count; first += samples_per_chunk) {
+    const std::size_t length = std::min(samples_per_chunk, count - first);
     residuals_.evaluate(kept_.data() + first, length, kept_parameters_.data(), setup_->wanted,
                         residual.data() + first, part.data());
     for (std::size_t k = 0; k < setup_->wanted.size(); ++k)
@@ -112,8 +109,9 @@ void FitFlight::find_residuals(std::size_t first, std::size_t count, const Eigen
 
 std::vector<double> FitFlight::values(const Eigen::VectorXd& parameters, const double* offsets) const {
   std::vector<double> result(kept_.size());
-  for (std::size_t first = 0; first < kept_.size(); first += chunk) {
-    find_residuals(first, std::min(chunk, kept_.size() - first), parameters, offsets, result.data() + first);
+  for (std::size_t first = 0; first < kept_.size(); first += samples_per_chunk) {
+    find_residuals(first, std::min(samples_per_chunk, kept_.size() - first), parameters, offsets,
+                   result.data() + first);
   }
   return result;
 }
@@ -249,11 +247,11 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const Eigen::Vec
     Reduction& part = parts[number];
     TriangularFactor factor(columns);
     FitFlight::Rows rows;
-    std::array<double, chunk> scale{};
+    std::array<double, samples_per_chunk> scale{};
     double slopes = 0.0;
     double curvatures = 0.0;
-    for (std::size_t first = 0; first < fit.kept().size(); first += chunk) {
-      const std::size_t length = std::min(chunk, fit.kept().size() - first);
+    for (std::size_t first = 0; first < fit.kept().size(); first += samples_per_chunk) {
+      const std::size_t length = std::min(samples_per_chunk, fit.kept().size() - first);
       fit.evaluate(first, length, parameters, offsets, first_offset, rows);
       for (std::size_t i = 0; i < length; ++i) {
         const double noise = fit.noise(first + i);
@@ -288,13 +286,13 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const Eigen::Vec
 
 Eigen::MatrixXd FitFlights::unweighted_factor(const Eigen::VectorXd& parameters) {
   const Eigen::Index columns = as_index(setup_.wanted.size() + 1);
-  const std::vector<double> ones(chunk, 1.0);
+  const std::vector<double> ones(samples_per_chunk, 1.0);
   std::vector<Eigen::MatrixXd> parts(count());
   visit([&](std::size_t number, std::size_t, FitFlight& fit) {
     TriangularFactor factor(columns);
     FitFlight::Rows rows;
-    for (std::size_t first = 0; first < fit.kept().size(); first += chunk) {
-      const std::size_t length = std::min(chunk, fit.kept().size() - first);
+    for (std::size_t first = 0; first < fit.kept().size(); first += samples_per_chunk) {
+      const std::size_t length = std::min(samples_per_chunk, fit.kept().size() - first);
       fit.evaluate(first, length, parameters, Eigen::VectorXd(), 0, rows);
       factor.add(rows.columns, ones.data(), length);
     }

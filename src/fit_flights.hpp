@@ -20,6 +20,9 @@ class LossFunction;
 
 namespace pcor {
 
+/// Passes over a flight take so many samples at a time, which fit into the processor's cache.
+inline constexpr std::size_t samples_per_chunk = 1024;
+
 /// Where a flight of a fit comes from: a file, or memory.
 struct FlightSource {
   std::filesystem::path path{};

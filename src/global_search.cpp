@@ -11,8 +11,6 @@
 namespace pcor {
 namespace {
 
-Eigen::Index as_index(std::size_t n) { return static_cast<Eigen::Index>(n); }
-
 constexpr unsigned long seed = 20120106;
 constexpr int trials_per_dimension = 500;
 

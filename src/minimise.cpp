@@ -15,8 +15,6 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-Eigen::Index as_index(std::size_t n) { return static_cast<Eigen::Index>(n); }
-
 /// Keeps Ceres from writing on standard error of trials that failed: what matters is in its summary.
 class QuietLog {
  public:

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <ctime>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <thread>
 
@@ -37,8 +36,6 @@ constexpr double collinear_condition = 300.0;
 constexpr double weak_share = 0.25;
 constexpr int most_omission_steps = 8;
 constexpr int passes_expected = 40;
-
-Eigen::Index as_index(std::size_t n) { return static_cast<Eigen::Index>(n); }
 
 /// What a fit knows of one parameter beside its value.
 struct ParameterState {

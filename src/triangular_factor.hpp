@@ -7,6 +7,9 @@
 
 namespace pcor {
 
+/// A size as Eigen counts.
+inline Eigen::Index as_index(std::size_t n) { return static_cast<Eigen::Index>(n); }
+
 /// The triangular factor R of rows (derivatives, residual), of which all that a least-squares step needs can
 /// be had: rows' rows = R' R. Factors of parts add up to that of the whole.
 class TriangularFactor {
@@ -17,7 +20,7 @@ class TriangularFactor {
   void add(const std::vector<const double*>& by_columns, const double* scale, std::size_t count) {
     for (std::size_t from = 0; from < count;) {
       if (filled_ == block) reduce();
-      const Eigen::Index part = std::min(block - filled_, static_cast<Eigen::Index>(count - from));
+      const Eigen::Index part = std::min(block - filled_, as_index(count - from));
       const Eigen::Map<const Eigen::ArrayXd> scales(scale + from, part);
       for (Eigen::Index c = 0; c < columns(); ++c) {
         const Eigen::Map<const Eigen::ArrayXd> column(by_columns[static_cast<std::size_t>(c)] + from, part);

@@ -12,6 +12,9 @@
 
 namespace pcor::tool {
 
+/// How JSON results spell a time: the pattern for `utc_text`.
+inline constexpr const char* iso_time = "%Y-%m-%dT%H:%M:%SZ";
+
 /// The options that every sub-command has.
 struct CommonOptions {
   std::string json{};  ///< where the machine-readable result goes, `-` for standard output; empty for nowhere

@@ -22,8 +22,6 @@ struct Options {
   std::string residuals;
 };
 
-constexpr const char* iso_time = "%Y-%m-%dT%H:%M:%SZ";
-
 using tool::as_json;
 
 nlohmann::ordered_json as_json(const std::vector<PartStatistics>& parts) {

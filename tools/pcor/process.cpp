@@ -13,8 +13,6 @@
 namespace pcor::tool {
 namespace {
 
-constexpr const char* iso_time = "%Y-%m-%dT%H:%M:%SZ";
-
 struct Options {
   CommonOptions common;
   std::string input;
