@@ -16,12 +16,13 @@ Chain built(const Model& model, const std::vector<Quantity>& recorded, CorrectWi
   std::string why;
   std::optional<Chain> chain = Chain::build(model, recorded, &why);
   if (!chain) throw Error(fmt::format("model '{}': {}", model.name, why));
-  for (const Quantity rate : {Quantity::static_pressure_rate, Quantity::dynamic_pressure_rate}) {
-    if (chain->derives(rate)) {
-      throw Error(fmt::format("model '{}': over whole arrays it needs '{}' among them", model.name,
-                              facts_of(rate).name));
-    }
-  }
+  const auto require = [&](Quantity quantity) {
+    if (!chain->derives(quantity)) return;
+    throw Error(fmt::format("model '{}': over whole arrays it needs '{}' among them", model.name,
+                            facts_of(quantity).name));
+  };
+  require(Quantity::time);
+  for (const Rate& each : rates) require(each.rate);
   if (with == CorrectWith::lams && !chain->has_lams()) {
     throw Error(fmt::format("model '{}': correction with LAMS needs the role 'lams_airspeed'", model.name));
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <xsimd/xsimd.hpp>
 
@@ -109,7 +110,9 @@ class Pack {
   friend Pack log10(const Pack& a) { return decimal_logarithm(a); }
   friend Pack sqrt(const Pack& a) { return {xsimd::sqrt(a.first_), xsimd::sqrt(a.second_)}; }
   friend Pack abs(const Pack& a) { return {xsimd::abs(a.first_), xsimd::abs(a.second_)}; }
-  friend Pack sin(const Pack& a) { return {xsimd::sin(a.first_), xsimd::sin(a.second_)}; }
+  // Lane by lane: the reduction of large angles in xsimd is a function of its own, which the kernel for AVX2
+  // may not share with the rest of the program.
+  friend Pack sin(const Pack& a) { return {Pack::by_lane(a.first_), Pack::by_lane(a.second_)}; }
   friend Pack cos(const Pack& a) { return {xsimd::cos(a.first_), xsimd::cos(a.second_)}; }
   friend Pack tan(const Pack& a) { return {xsimd::tan(a.first_), xsimd::tan(a.second_)}; }
   friend Pack tanh(const Pack& a) { return {xsimd::tanh(a.first_), xsimd::tanh(a.second_)}; }
@@ -118,6 +121,13 @@ class Pack {
   }
 
  private:
+  static Register by_lane(const Register& values) {
+    alignas(Register) std::array<double, Register::size> lanes;
+    values.store_aligned(lanes.data());
+    for (double& lane : lanes) lane = std::sin(lane);
+    return Register::load_aligned(lanes.data());
+  }
+
   Register first_;
   Register second_;
 };

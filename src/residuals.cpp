@@ -72,15 +72,17 @@ ModelSamples read_model_samples(const Flight& flight, const ModelFile& file, boo
     samples.columns.emplace_back(input.quantity, read_column(flight, input.variable, input.conversion));
     if (is_role(input.quantity)) samples.roles.push_back(input.quantity);
   }
-  const std::array<std::pair<Quantity, Quantity>, 2> rates{{
-      {Quantity::static_pressure, Quantity::static_pressure_rate},
-      {Quantity::dynamic_pressure, Quantity::dynamic_pressure_rate},
-  }};
-  for (const auto& [pressure, rate] : rates) {
-    if (!chain.derives(rate)) continue;
-    std::vector<double> values = rate_of(*samples.find(pressure), time, flight.time().step);
-    samples.columns.emplace_back(rate, std::move(values));
-    samples.roles.push_back(rate);
+  const auto add = [&samples](Quantity quantity, std::vector<double> values) {
+    samples.columns.emplace_back(quantity, std::move(values));
+    samples.roles.push_back(quantity);
+  };
+  if (chain.derives(Quantity::time)) {
+    std::vector<double> since_first = time;
+    for (double& each : since_first) each -= time.front();
+    add(Quantity::time, std::move(since_first));
+  }
+  for (const auto& [quantity, rate] : rates) {
+    if (chain.derives(rate)) add(rate, rate_of(*samples.find(quantity), time, flight.time().step));
   }
   return samples;
 }
@@ -212,7 +214,8 @@ void add_linear(const Model& model, std::vector<bool>& linear) {
     const std::size_t place = effect_named(effect.id);
     const bool is = !has_minimum && !effect.is_formula() && place != catalogue_size &&
                     effect_facts[place].where == Where::static_defect;
-    linear.insert(linear.end(), effect.parameters.size(), is);
+    for (std::size_t p = 0; p < effect.parameters.size(); ++p)
+      linear.push_back(is && !effect_facts[place].parameters[p].shape);
   }
 }
 
@@ -311,6 +314,17 @@ struct Residuals::Implementation {
         state[Quantity::lams_airspeed] / measured;  // cosine of the beam, but for effects on its speed
     chain.air(state, all, flags);
     return S(sensitivity[sample]) * along * (measured - state[Quantity::corrected_airspeed]);
+  }
+
+  double predicted_beam_speed_at(std::size_t sample, const double* all) const {
+    State<double> state;
+    NoQualityFlags flags;
+    const Chain& chain = bound->chain();
+    bound->corrected_static_pressure(sample, all, state);
+    chain.correct(state, state[Quantity::static_defect], flags);
+    const double along = state[Quantity::lams_airspeed] / chain.lams_airspeed(state, all);
+    chain.air(state, all, flags);
+    return along * state[Quantity::corrected_airspeed];
   }
 
   /// Derivatives by dual numbers of the parameters `places` among those `wanted`, into their columns.
@@ -548,6 +562,13 @@ void Residuals::evaluate_speed(const std::size_t* samples, std::size_t count, co
   own.differentiate(
       samples, count, parameters, wanted, all, derivatives,
       [&own](std::size_t sample, const Jet* dual) { return own.speed_residual_at(sample, dual); });
+}
+
+std::vector<double> Residuals::predicted_beam_speed(const double* parameters) const {
+  std::vector<double> result(size());
+  for (std::size_t i = 0; i < result.size(); ++i)
+    result[i] = implementation_->predicted_beam_speed_at(i, parameters);
+  return result;
 }
 
 std::vector<double> Residuals::wanted_defect(const double* parameters) const {

@@ -62,9 +62,18 @@ using pcor::Quantity;
 Model everything(pcor::LamsApproach approach) {
   Model model;
   model.effects = {
-      {"static-constant", {0.004127875}}, {"static-alpha", {0.021279816}},
-      {"static-mach2", {0.01}},           {"static-lag", {0.15}},
+      {"static-constant", {0.004127875}},
+      {"static-alpha", {0.021279816}},
+      {"static-mach2", {0.01}},
+      {"static-lag", {0.15}},
       {"lams-elevation", {0.1}},
+      {"adif-drift", {0.05, 0.01, 0.005}},
+      {"qcr-angle", {0.0273, 0.0562}},
+      {"clock-skew", {0.5}},
+      {"temp-lag", {2.3}},
+      {"temp-deice-heat", {1.0}},
+      {"humidity-error", {0.1}},
+      {"total-lag", {0.1}},
   };
   pcor::ModelEffect thrust;
   thrust.id = "my-thrust";

@@ -467,6 +467,186 @@ TEST(Upstream, StaticLagMovesBothPressuresAtThePorts) {
   EXPECT_FALSE(build(truth.model(), truth.recorded()).needs_rates());
 }
 
+// A record with the pressures of the radome in place of the angles, of which the ratios are -0.3 and 0.02.
+Recorded radome_record() {
+  Recorded recorded = without(without(truth.recorded(), Quantity::attack), Quantity::sideslip);
+  recorded[Quantity::radome_dynamic_pressure] = 68;
+  recorded[Quantity::attack_differential_pressure] = -0.3 * 68;
+  recorded[Quantity::sideslip_differential_pressure] = 0.02 * 68;
+  return recorded;
+}
+
+Model radome_model() {
+  Model model = with(truth.model(), catalogued("static-alpha", {0.02}));
+  model.attack_radome = {4.9, 13.4, 0};
+  model.sideslip_radome = {0.1, 11.8, 0};
+  return model;
+}
+
+TEST(Upstream, TheRadomeRatioMovesItsEffectsAndTheAngleOfAttack) {
+  // Sensitivity 5 % high, zero 0.01 high, and 0.005 higher each hour: at two hours 0.95 (-0.3) - 0.02.
+  const Model drifting = with(radome_model(), catalogued("adif-drift", {0.05, 0.01, 0.005}));
+  const Recorded recorded = with(radome_record(), Quantity::time, 7200);
+  const Sample s = fly(drifting, recorded), still = fly(radome_model(), recorded);
+  EXPECT_NEAR(s[Quantity::attack_ratio], -0.305, 1e-12);
+  EXPECT_NEAR(s[Quantity::attack] - still[Quantity::attack], 13.4 * -0.005, 1e-12);
+  const double p = recorded.at(Quantity::static_pressure);
+  EXPECT_NEAR(s[Quantity::static_defect] - still[Quantity::static_defect], 0.02 * -0.005 * p, 1e-12);
+  for (const Quantity other : {Quantity::sideslip, Quantity::port_static_pressure,
+                               Quantity::port_dynamic_pressure, Quantity::radome_dynamic_pressure})
+    EXPECT_EQ(s[other], still[other]) << facts_of(other).name;
+}
+
+TEST(Upstream, TheRadomePressureMovesBothRatios) {
+  const Model with_loss = with(radome_model(), written(Where::radome, "k", {"k"}, {2}));
+  const Sample s = fly(with_loss, radome_record()), still = fly(radome_model(), radome_record());
+  EXPECT_NEAR(s[Quantity::radome_dynamic_pressure], 70, 1e-12);
+  EXPECT_NEAR(s[Quantity::attack_ratio], -0.3 * 68 / 70, 1e-12);
+  EXPECT_NEAR(s[Quantity::attack], 4.9 + 13.4 * -0.3 * 68 / 70, 1e-12);
+  EXPECT_NEAR(s[Quantity::sideslip], 0.1 + 11.8 * 0.02 * 68 / 70, 1e-12);
+  EXPECT_EQ(s[Quantity::port_dynamic_pressure], still[Quantity::port_dynamic_pressure]);
+  EXPECT_EQ(s[Quantity::port_static_pressure], still[Quantity::port_static_pressure]);
+}
+
+TEST(Upstream, TheLossOfTheRadomeFollowsTheAnglesWithoutIt) {
+  const Model model = with(radome_model(), catalogued("qcr-angle", {0.0273, 0.0562}));
+  const Sample s = fly(model, radome_record()), still = fly(radome_model(), radome_record());
+  const double alpha = still[Quantity::attack], beta = still[Quantity::sideslip];
+  EXPECT_NEAR(s[Quantity::radome_dynamic_pressure], 68 + 0.0273 * alpha * alpha + 0.0562 * beta * beta,
+              1e-12);
+}
+
+TEST(Upstream, ARecordedAngleIsNotOfTheRadomeRatio) {
+  const Recorded recorded = with(radome_record(), Quantity::attack, 2.5);
+  const Model drifting = with(radome_model(), written(Where::attack_ratio, "k", {"k"}, {0.1}));
+  EXPECT_EQ(fly(drifting, recorded)[Quantity::attack], 2.5);
+  EXPECT_NEAR(fly(drifting, recorded)[Quantity::attack_ratio], -0.2, 1e-12);
+}
+
+TEST(Upstream, VapourThatIsNeglectedAndCountedAgainGivesMoistAir) {
+  // To the rounding of the chain, whatever the humidity is recorded as; with supersaturated air at its limit.
+  const Recorded dry = without(truth.recorded(), Quantity::vapor_pressure);
+  for (const auto& [humidity, value] : {std::pair{Quantity::vapor_pressure, 3.0},
+                                        {Quantity::vapor_pressure, 30.0},
+                                        {Quantity::dew_point, 265.0},
+                                        {Quantity::frost_point, 263.0}}) {
+    const Recorded recorded = with(dry, humidity, value);
+    const Sample moist = fly(truth.model(), recorded);
+    Model model = truth.model();
+    model.moist = false;
+    const Sample without_vapor = fly(model, recorded);
+    const Sample counted = fly(with(model, catalogued("humidity-neglected", {1.0})), recorded);
+    const Sample neutral = fly(with(model, catalogued("humidity-neglected", {0.0})), recorded);
+    EXPECT_EQ(without_vapor[Quantity::humidity], 0);
+    for (const Quantity result : {Quantity::humidity, Quantity::corrected_mach, Quantity::ambient_temperature,
+                                  Quantity::corrected_airspeed, Quantity::lams_static_defect}) {
+      EXPECT_NEAR(counted[result] / moist[result], 1.0, 1e-12) << facts_of(result).name;
+      EXPECT_EQ(neutral[result], without_vapor[result]) << facts_of(result).name;
+    }
+    EXPECT_EQ(counted.flags.bits(), moist.flags.bits());
+    EXPECT_GT(std::abs(counted[Quantity::lams_static_defect] - without_vapor[Quantity::lams_static_defect]),
+              0.01);
+  }
+}
+
+TEST(Upstream, DryConstantsAskForADeltaPThatIsTooLow) {
+  // -0.378 k1 q e/p with k1 = 0.912, q = 67.6 hPa: -0.033 hPa for 1 hPa of vapour, within 8 %: at one
+  // recovery temperature the ambient one moves, too.
+  Model model = truth.model();
+  model.moist = false;
+  const double dry = fly(model, truth.recorded())[Quantity::lams_static_defect];
+  const double moist = fly(truth.model(), truth.recorded())[Quantity::lams_static_defect];
+  const double q = truth.total() - truth.p;
+  const double expected = -0.378 * truth.p / truth.total() * q * truth.e / truth.p;
+  EXPECT_NEAR(dry - moist, expected, 0.08 * std::abs(expected));
+}
+
+TEST(Upstream, AnErrorOfTheHumidityIsTakenOut) {
+  const Recorded high = with(truth.recorded(), Quantity::vapor_pressure, truth.e / 0.9);
+  const Sample s = fly(with(truth.model(), catalogued("humidity-error", {0.1})), high);
+  EXPECT_NEAR(s[Quantity::humidity], truth.e / truth.p, 1e-14);
+}
+
+TEST(Upstream, VapourPressureIsKnownToFormulasFromADewPoint) {
+  const Recorded recorded =
+      with(without(truth.recorded(), Quantity::vapor_pressure), Quantity::dew_point, 265);
+  const Model model = with(truth.model(), written(Where::static_defect, "k * vapor_pressure", {"k"}, {1.0}));
+  const double p = recorded.at(Quantity::static_pressure);
+  const double e = pcor::vapor_pressure_from_dew_point(265.0, p);
+  EXPECT_NEAR(fly(model, recorded)[Quantity::static_defect] - 0.005 * p, e, 1e-12);
+  EXPECT_THAT(error_of(model, without(recorded, Quantity::dew_point)), HasSubstr("'vapor_pressure'"));
+}
+
+// What a C-130 with dry air records while it speeds up by 0.5 m/s2 in a climb with a lapse of 6.5 K/km.
+Recorded speeding_up(double time) {
+  const double v = 120 + 0.5 * time, height = 8 * time, T = 270 - 0.0065 * height;
+  const double p = 700 * std::exp(-height / 7900);
+  const double total = p * std::pow(1 + v * v / (7 * pcor::constants::gas_constant_dry_air * T), 3.5);
+  const double recovery = T + 0.975 * v * v / (7 * pcor::constants::gas_constant_dry_air);
+  return {{Quantity::static_pressure, p},
+          {Quantity::dynamic_pressure, total - p},
+          {Quantity::recovery_temperature, recovery},
+          {Quantity::ambient_temperature, T},
+          {Quantity::attack, truth.alpha},
+          {Quantity::sideslip, truth.beta},
+          {Quantity::lams_airspeed, v}};
+}
+
+TEST(Upstream, TheRateOfTheAirspeedIsItsDifference) {
+  // From central differences over 0.2 s, whose error is 1e-6 here.
+  Recorded recorded = speeding_up(10);
+  const Recorded before = speeding_up(9.9), after = speeding_up(10.1);
+  for (const auto& each : pcor::rates)
+    recorded[each.rate] = (after.at(each.quantity) - before.at(each.quantity)) / 0.2;
+  const Model model = with(truth.model(), catalogued("clock-skew", {0.5}));
+  const Recorded recovered =
+      without(without(recorded, Quantity::ambient_temperature), Quantity::ambient_temperature_rate);
+  Model law = model;  // of which the recovery factor at this Mach number, 0.38, is 0.975
+  const double logarithm = std::log10(125 / std::sqrt(1.4 * pcor::constants::gas_constant_dry_air * 269.48));
+  law.recovery = {{0.975 - 0.05 * logarithm, 0.05, 0, 0}};
+  EXPECT_NEAR(fly(model, recorded)[Quantity::airspeed_rate], 0.5, 2e-6);
+  EXPECT_NEAR(fly(model, recovered)[Quantity::airspeed_rate], 0.5, 2e-6);
+  EXPECT_NEAR(fly(law, recovered)[Quantity::airspeed_rate], 0.5, 0.01) << "its own rate is left out";
+  EXPECT_TRUE(
+      std::isnan(fly(model, with(recovered, Quantity::dynamic_pressure, 0))[Quantity::airspeed_rate]));
+}
+
+TEST(Upstream, ALateLaserIsBroughtForward) {
+  const Model model = with(truth.model(), catalogued("clock-skew", {0.5}));
+  Recorded recorded = truth.recorded();
+  for (const auto& each : pcor::rates) recorded[each.rate] = 0;
+  recorded[Quantity::dynamic_pressure_rate] = 0.5;
+  const Sample s = fly(model, recorded);
+  EXPECT_GT(s[Quantity::airspeed_rate], 0.1);
+  const Model shifted =
+      with(truth.model(), written(Where::beam_speed, "k", {"k"}, {0.5 * s[Quantity::airspeed_rate]}));
+  EXPECT_NEAR(s[Quantity::lams_static_defect], fly(shifted, recorded)[Quantity::lams_static_defect], 1e-12);
+  const Recorded unknown = without(truth.recorded(), Quantity::recovery_temperature);
+  EXPECT_THAT(error_of(model, unknown), HasSubstr("'recovery_temperature'"));
+}
+
+TEST(Upstream, WhatActsOnTheBeamNeedsNothingWithoutALaser) {
+  Model model;
+  model.effects = {catalogued("lams-scale", {0.001}), catalogued("lams-pod-flex", {0.3}),
+                   catalogued("static-constant", {0.005})};
+  const Model own = with(model, written(Where::beam_azimuth, "k * ROLLX", {"k"}, {0.1}));
+  const Recorded recorded{{Quantity::static_pressure, 700}, {Quantity::dynamic_pressure, 67.6}};
+  for (const Model& each : {model, own}) {
+    const Chain chain = build(each, recorded);
+    EXPECT_FALSE(chain.acts(Where::beam_speed));
+    EXPECT_TRUE(chain.extra_names().empty());
+    EXPECT_EQ(chain.parameters().size(), each.effects.size()) << "the coefficients keep their places";
+    EXPECT_NEAR(fly(chain, recorded)[Quantity::static_defect], 3.5, 1e-12);
+  }
+}
+
+TEST(Upstream, WhatActsOnTheRadomeNeedsItsPressures) {
+  for (const Where where : {Where::radome, Where::attack_ratio}) {
+    EXPECT_THAT(error_of(with(truth.model(), written(where, "k", {"k"}, {0.1})), truth.recorded()),
+                AllOf(HasSubstr("of-the-user"), HasSubstr("_pressure'")));
+  }
+}
+
 TEST(Formula, ActsAtEveryPlace) {
   const auto change = [](Where where, double amount, Quantity of) {
     const Model model = with(truth.model(), written(where, "k", {"k"}, {amount}));

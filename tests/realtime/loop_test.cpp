@@ -275,6 +275,50 @@ TEST(Loop, KeepsItsStateFromOtherLoops) {
   expect_same(fast, alone_fast);
 }
 
+TEST(Loop, FindsTheRatesThatEffectsNeed) {
+  Model model = c130();
+  model.effects.push_back({"temp-lag", {2.0}});
+  model.effects.push_back({"clock-skew", {0.5}});
+  const auto sample = [](double time) {
+    return with(level, {{Quantity::static_pressure, 700.0 - 0.8 * time},
+                        {Quantity::dynamic_pressure, 67.6 + 0.5 * time},
+                        {Quantity::recovery_temperature, 280.0 - 0.06 * time}});
+  };
+  for (const double rate : {1.0, 25.0}) {
+    Loop loop = build(model, level, rate);
+    run(loop, sample(0.0), 0.0);
+    EXPECT_TRUE(loop.quality().has(Quality::after_gap));
+    EXPECT_TRUE(loop.quality().has(Quality::temperature_missing));
+    EXPECT_TRUE(loop.quality().has(Quality::lams_missing));
+    EXPECT_TRUE(std::isfinite(loop.state()[Quantity::corrected_static_pressure])) << "which needs no rate";
+    EXPECT_THAT(loop.state()[Quantity::ambient_temperature], IsNan());
+
+    run(loop, sample(1.0 / rate), 1.0 / rate);
+    const State<double> s = loop.state();
+    EXPECT_EQ(loop.quality().bits(), 0U);
+    EXPECT_NEAR(s[Quantity::static_pressure_rate], -0.8, 1e-10);
+    EXPECT_NEAR(s[Quantity::dynamic_pressure_rate], 0.5, 1e-10);
+    EXPECT_NEAR(s[Quantity::recovery_temperature_rate], -0.06, 1e-10);
+    // The measured pair and temperature 10 ms apart, in dry air.
+    const auto airspeed = [](double p, double q, double recovery) {
+      const double heating = std::pow(1 + q / p, 2.0 / 7.0) - 1;
+      return std::sqrt(7 * pcor::constants::gas_constant_dry_air * recovery / (1 + 0.95 * heating) * heating);
+    };
+    const double p = s[Quantity::static_pressure], q = s[Quantity::dynamic_pressure];
+    const double recovery = s[Quantity::recovery_temperature];
+    const double difference = airspeed(p - 0.004, q + 0.0025, recovery - 0.0003) -
+                              airspeed(p + 0.004, q - 0.0025, recovery + 0.0003);
+    EXPECT_NEAR(s[Quantity::airspeed_rate], difference / 0.01, 1e-8);
+
+    // The lag makes the air colder by 0.12 K at the thermometer, the late laser reads low.
+    Loop still = build(c130(), level, rate);
+    run(still, sample(1.0 / rate), 1.0 / rate);
+    EXPECT_NEAR(s[Quantity::ambient_temperature] - still.state()[Quantity::ambient_temperature],
+                -0.12 / (1 + 0.95 * 0.2 * 0.36 * 0.36), 1e-3);
+    EXPECT_LT(s[Quantity::lams_static_defect], still.state()[Quantity::lams_static_defect]);
+  }
+}
+
 TEST(LoopGap, StartsAnewAtGapsAndWhereTimeDoesNotAdvance) {
   struct Case {
     double rate;

@@ -54,7 +54,10 @@ TEST(Quantity, RolesAreThoseOfTheModelFile) {
                          "ground_speed",
                          "ground_track",
                          "normal_acceleration",
+                         "longitudinal_acceleration",
                          "flaps",
+                         "engine_torque",
+                         "height_above_ground",
                          "liquid_water",
                          "transducer_temperature",
                          "cabin_pressure"};
@@ -65,6 +68,14 @@ TEST(Quantity, RolesAreThoseOfTheModelFile) {
   EXPECT_FALSE(is_role(Quantity::time));
   EXPECT_FALSE(is_role(Quantity::static_defect));
   EXPECT_FALSE(is_role(Quantity::dynamic_ratio));
+}
+
+TEST(Quantity, RatesHaveTheUnitOfTheirQuantityPerSecond) {
+  for (const auto& each : pcor::rates) {
+    EXPECT_EQ(std::string(facts_of(each.rate).unit), std::string(facts_of(each.quantity).unit) + "/s");
+    EXPECT_EQ(std::string(facts_of(each.rate).name), std::string(facts_of(each.quantity).name) + "_rate");
+    EXPECT_FALSE(is_role(each.rate));
+  }
 }
 
 TEST(State, KnowsNothingUntilItIsTold) {

@@ -124,6 +124,13 @@ class Done(ToolTest):
         one = self.run_tool("effects", "static-qp", "--json", "-")
         self.assertEqual(json.loads(one.stdout)["parameters"][0]["name"], "a2")
 
+    def test_says_why_an_effect_leaves_no_trace(self):
+        self.assertIn("lams-fold", self.run_tool("effects").stdout)
+        result = self.run_tool("effects", "lams-fold")
+        self.assertEqual(result.returncode, 0)
+        self.assertIn("left out", result.stdout)
+        self.assertIn("lams-fold", self.run_tool("effects", "lams-fod").stderr)
+
     def test_prints_its_version(self):
         self.assertRegex(self.run_tool("--version").stdout, r"^pcor \d+\.\d+\.\d+\n$")
 

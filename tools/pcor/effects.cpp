@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "command.hpp"
 #include "pcor/effects/catalogue.hpp"
+#include "pcor/effects/without_trace.hpp"
 #include "pcor/offline/error.hpp"
 #include "pcor/offline/suggest.hpp"
 
@@ -17,11 +19,18 @@ struct Options {
   std::string id;
 };
 
+const EffectWithoutTrace* find_without_trace(const std::string& id) {
+  const auto found = std::find_if(effects_without_trace.begin(), effects_without_trace.end(),
+                                  [&id](const EffectWithoutTrace& effect) { return effect.id == id; });
+  return found == effects_without_trace.end() ? nullptr : &*found;
+}
+
 const EffectFacts& find(const std::string& id) {
   const std::size_t place = effect_named(id);
   if (place < catalogue_size) return effect_facts[place];
   std::vector<std::string> ids;
   for (const EffectFacts& facts : effect_facts) ids.emplace_back(facts.id);
+  for (const EffectWithoutTrace& effect : effects_without_trace) ids.emplace_back(effect.id);
   const std::string hint = did_you_mean(id, ids);
   throw Error(fmt::format("there is no effect '{}'{}{} 'pcor effects' lists them all", id,
                           hint.empty() ? ";" : "; ", hint));
@@ -50,7 +59,8 @@ nlohmann::ordered_json as_json(const EffectFacts& facts) {
                                     {"unit", parameter.unit},
                                     {"neutral", parameter.neutral},
                                     {"bounds", {parameter.lower, parameter.upper}},
-                                    {"typical", parameter.typical}});
+                                    {"typical", parameter.typical},
+                                    {"shape", parameter.shape}});
   }
   effect["needs"] = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < facts.need_count(); ++i)
@@ -62,15 +72,25 @@ nlohmann::ordered_json as_json(const EffectFacts& facts) {
   return effect;
 }
 
+nlohmann::ordered_json as_json(const EffectWithoutTrace& effect) {
+  return {{"id", effect.id}, {"title", effect.title}, {"reason", effect.reason}};
+}
+
+std::string_view text_of(GasConstants constants) {
+  return constants == GasConstants::dry ? "models with dry constants" : "models with moist constants";
+}
+
 void print_one(const EffectFacts& facts) {
   const WhereFacts& where = facts_of(facts.where);
   fmt::print("{}: {}\n\n", facts.id, facts.title);
   fmt::print("  formula      {}  [{}]\n  acts on      {}\n", facts.formula, where.unit, where.adds_to);
   for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
     const ParameterFacts& parameter = facts.parameters[i];
-    fmt::print("  parameter    {}  [{}], neutral {}, from {} to {}, typically {}\n", parameter.name,
-               parameter.unit, parameter.neutral, parameter.lower, parameter.upper, parameter.typical);
+    const std::string neutral = parameter.shape ? "shape" : fmt::format("neutral {}", parameter.neutral);
+    fmt::print("  parameter    {}  [{}], {}, from {} to {}, typically {}\n", parameter.name, parameter.unit,
+               neutral, parameter.lower, parameter.upper, parameter.typical);
   }
+  if (facts.constants != GasConstants::any) fmt::print("  only in      {}\n", text_of(facts.constants));
   fmt::print("  needs        {}\n", names_of_needs(facts));
   fmt::print("  size         {}\n", facts.size);
   fmt::print("  look-alikes  {}\n", facts.look_alikes);
@@ -93,15 +113,25 @@ void print_one(const EffectFacts& facts) {
 }
 
 void print_all() {
-  fmt::print("{:<18} {:<15} {:<52} {}\n", "effect", "where", "formula", "what");
+  fmt::print("{:<18} {:<18} {:<70} {}\n", "effect", "where", "what", "formula");
   for (const EffectFacts& facts : effect_facts) {
-    fmt::print("{:<18} {:<15} {:<52} {}\n", facts.id, facts_of(facts.where).name, facts.formula, facts.title);
+    fmt::print("{:<18} {:<18} {:<70} {}\n", facts.id, facts_of(facts.where).name, facts.title, facts.formula);
   }
+  fmt::print("\nKnown, but without a trace that a term of a model could follow\n\n");
+  for (const EffectWithoutTrace& effect : effects_without_trace)
+    fmt::print("{:<22} {}\n", effect.id, effect.title);
   fmt::print("\nTo read more of one: pcor effects {}\n", effect_facts.front().id);
 }
 
 void run(const Options& options) {
   JsonResult json(options.common);
+  if (const EffectWithoutTrace* const effect = find_without_trace(options.id)) {
+    json.write(as_json(*effect));
+    if (wants_text(options.common))
+      fmt::print("{}: {}\n\nNo term of a model describes it: {}.\n", effect->id, effect->title,
+                 effect->reason);
+    return;
+  }
   if (!options.id.empty()) {
     const EffectFacts& facts = find(options.id);
     json.write(as_json(facts));
@@ -110,7 +140,9 @@ void run(const Options& options) {
   }
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const EffectFacts& facts : effect_facts) all.push_back(as_json(facts));
-  json.write({{"effects", all}});
+  nlohmann::ordered_json without_trace = nlohmann::ordered_json::array();
+  for (const EffectWithoutTrace& effect : effects_without_trace) without_trace.push_back(as_json(effect));
+  json.write({{"effects", all}, {"without_trace", without_trace}});
   if (wants_text(options.common)) print_all();
 }
 

@@ -8,6 +8,7 @@
 #include <exception>
 #include <functional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "command.hpp"
@@ -84,9 +85,10 @@ int main(int argc, char** argv) {
   program.require_subcommand(1);
   program.footer("Exit status: 0 done, 1 the work could not be done, 2 usage.");
 
-  constexpr std::array<pcor::tool::AddCommand, 5> commands{&pcor::tool::add_process, &pcor::tool::add_compare,
-                                                           &pcor::tool::add_refit, &pcor::tool::add_simulate,
-                                                           &pcor::tool::add_effects};
+  constexpr std::array<pcor::tool::AddCommand, 8> commands{
+      &pcor::tool::add_process,  &pcor::tool::add_compare, &pcor::tool::add_diagnose,
+      &pcor::tool::add_add,      &pcor::tool::add_refit,   &pcor::tool::add_improve,
+      &pcor::tool::add_simulate, &pcor::tool::add_effects};
   std::vector<std::function<void()>> runs;
   runs.reserve(commands.size());
   for (const auto add : commands) runs.push_back(add(program));
@@ -110,6 +112,10 @@ int main(int argc, char** argv) {
     }
   } catch (const pcor::Error& error) {
     fmt::print(stderr, "pcor: {}\n", error.what());
+    return work_not_done;
+  } catch (const std::system_error& error) {
+    // fmt::print throws it where the text does not go out.
+    fmt::print(stderr, "pcor: standard output: {}; check the space where it goes\n", error.code().message());
     return work_not_done;
   } catch (const std::exception& error) {
     fmt::print(stderr, "pcor: a fault of the program itself, please report it: {}\n", error.what());

@@ -5,8 +5,29 @@
 #include <string_view>
 #include <tuple>
 
+#include "pcor/effects/adif_drift.hpp"
+#include "pcor/effects/clock_skew.hpp"
+#include "pcor/effects/flaps_gear.hpp"
+#include "pcor/effects/ground_effect.hpp"
+#include "pcor/effects/humidity_error.hpp"
+#include "pcor/effects/humidity_neglected.hpp"
+#include "pcor/effects/lams_azimuth.hpp"
+#include "pcor/effects/lams_cloud.hpp"
 #include "pcor/effects/lams_elevation.hpp"
+#include "pcor/effects/lams_induction.hpp"
+#include "pcor/effects/lams_pod_flex.hpp"
+#include "pcor/effects/lams_scale.hpp"
+#include "pcor/effects/line_head.hpp"
+#include "pcor/effects/load_factor.hpp"
+#include "pcor/effects/pitot_angle.hpp"
+#include "pcor/effects/psfd_bias.hpp"
+#include "pcor/effects/qcf_gain.hpp"
+#include "pcor/effects/qcf_lag.hpp"
+#include "pcor/effects/qcf_zero.hpp"
+#include "pcor/effects/qcr_angle.hpp"
 #include "pcor/effects/recovery_factor.hpp"
+#include "pcor/effects/roll_static.hpp"
+#include "pcor/effects/speedbrake_thrust.hpp"
 #include "pcor/effects/static_alpha.hpp"
 #include "pcor/effects/static_alpha_quad.hpp"
 #include "pcor/effects/static_attack.hpp"
@@ -14,10 +35,19 @@
 #include "pcor/effects/static_beta_odd.hpp"
 #include "pcor/effects/static_constant.hpp"
 #include "pcor/effects/static_lag.hpp"
+#include "pcor/effects/static_leak.hpp"
 #include "pcor/effects/static_mach.hpp"
 #include "pcor/effects/static_mach2.hpp"
 #include "pcor/effects/static_mach3.hpp"
 #include "pcor/effects/static_qp.hpp"
+#include "pcor/effects/static_transonic.hpp"
+#include "pcor/effects/temp_deice_heat.hpp"
+#include "pcor/effects/temp_lag.hpp"
+#include "pcor/effects/temp_offset.hpp"
+#include "pcor/effects/temp_wetting.hpp"
+#include "pcor/effects/time_drift.hpp"
+#include "pcor/effects/total_lag.hpp"
+#include "pcor/effects/transducer_thermal.hpp"
 #include "pcor/physics/scalar.hpp"
 #include "pcor/realtime/state.hpp"
 
@@ -36,7 +66,37 @@ using Catalogue = std::tuple<effects::StaticLag,            //
                              effects::StaticMach2,          //
                              effects::StaticMach3,          //
                              effects::StaticBetaOdd,        //
-                             effects::StaticBetaEven>;
+                             effects::StaticBetaEven,       //
+                             effects::StaticTransonic,      //
+                             effects::FlapsGear,            //
+                             effects::SpeedbrakeThrust,     //
+                             effects::GroundEffect,         //
+                             effects::LoadFactor,           //
+                             effects::RollStatic,           //
+                             effects::TimeDrift,            //
+                             effects::PitotAngle,           //
+                             effects::QcfLag,             //
+                             effects::QcfZero,            //
+                             effects::QcfGain,            //
+                             effects::PsfdBias,           //
+                             effects::TransducerThermal,  //
+                             effects::TotalLag,           //
+                             effects::StaticLeak,         //
+                             effects::LineHead,           //
+                             effects::QcrAngle,           //
+                             effects::AdifDrift,          //
+                             effects::LamsAzimuth,        //
+                             effects::LamsPodFlex,        //
+                             effects::LamsScale,          //
+                             effects::LamsInduction,      //
+                             effects::LamsCloud,          //
+                             effects::ClockSkew,          //
+                             effects::TempOffset,         //
+                             effects::TempLag,            //
+                             effects::TempDeiceHeat,      //
+                             effects::TempWetting,        //
+                             effects::HumidityNeglected,  //
+                             effects::HumidityError>;
 
 inline constexpr std::size_t catalogue_size = std::tuple_size_v<Catalogue>;
 

@@ -15,7 +15,7 @@ struct StaticMach {
     facts.needs = {Quantity::mach, Quantity::static_pressure, Quantity::count, Quantity::count};
     facts.size = "C-130 0.015 to 0.037; GV -0.06, nearly cancelled by the other powers";
     facts.look_alikes =
-        "static-qp and the other powers of the Mach number, lams-scale, temp-offset, recovery-factor";
+        "static-qp, static-mach2, static-mach3, lams-scale, temp-offset, recovery-factor, qcf-gain";
     facts.manoeuvre = "speed run at two altitudes";
     facts.source = "memo eq. 19-20";
     facts.example.inputs[0] = {Quantity::mach, 0.75};

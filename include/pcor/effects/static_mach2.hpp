@@ -15,7 +15,7 @@ struct StaticMach2 {
     facts.needs = {Quantity::mach, Quantity::static_pressure, Quantity::count, Quantity::count};
     facts.size = "C-130 0.019 (PSFD)";
     facts.look_alikes =
-        "static-qp and the other powers of the Mach number, lams-scale, temp-offset, recovery-factor";
+        "static-qp, static-mach, static-mach3, lams-scale, temp-offset, recovery-factor, qcf-gain";
     facts.manoeuvre = "speed run at two altitudes";
     facts.source = "memo eq. 19-20";
     facts.example.inputs[0] = {Quantity::mach, 0.75};

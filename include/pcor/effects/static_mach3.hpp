@@ -15,7 +15,7 @@ struct StaticMach3 {
     facts.needs = {Quantity::mach, Quantity::static_pressure, Quantity::count, Quantity::count};
     facts.size = "GV -0.0875: -10 hPa at 250 hPa, Mach 0.78, nearly cancelled by static-qp";
     facts.look_alikes =
-        "static-qp and the other powers of the Mach number, lams-scale, temp-offset, recovery-factor";
+        "static-qp, static-mach, static-mach2, lams-scale, temp-offset, recovery-factor, qcf-gain";
     facts.manoeuvre = "speed run at two altitudes";
     facts.source = "memo eq. 20; NCAR processing algorithms eq. 4.5";
     facts.example.inputs[0] = {Quantity::mach, 0.75};

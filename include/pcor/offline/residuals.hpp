@@ -135,6 +135,10 @@ class Residuals {
   void evaluate_speed(const std::size_t* samples, std::size_t count, const double* parameters,
                       const std::vector<std::size_t>& wanted, double* residual, double* derivatives) const;
 
+  /// The speed along the beam, m/s, at which LAMS would agree with the model at every sample: what the laser
+  /// would show where the model says that the air is, without its noise. NaN where missing; for LAMS.
+  std::vector<double> predicted_beam_speed(const double* parameters) const;
+
   /// Delta-p that the reference asks for, p(reference) - p at the port, hPa; NaN where missing.
   std::vector<double> wanted_defect(const double* parameters) const;
 

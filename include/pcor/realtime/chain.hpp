@@ -70,7 +70,7 @@ class Chain {
   }
   bool has_lams() const { return recorded(Quantity::lams_airspeed); }
   bool needs_rates() const {
-    return needs(Quantity::static_pressure_rate) || needs(Quantity::dynamic_pressure_rate);
+    return std::any_of(rates.begin(), rates.end(), [this](const Rate& each) { return needs(each.rate); });
   }
 
   /// The quantities in which the laws stand, and the pressures at the ports. A recorded value that is
@@ -87,12 +87,15 @@ class Chain {
 
     if (derives(Quantity::dynamic_ratio)) state[Quantity::dynamic_ratio] = q / p;
     if (derives(Quantity::mach)) state[Quantity::mach] = mach_number(p, q, dry_air<S>());
-    if (needs(Quantity::attack_ratio) || needs(Quantity::sideslip_ratio)) radome_ratios(state, flags);
-    if (derives(Quantity::attack)) {
-      state[Quantity::attack] = radome_angle(attack_radome_, Quantity::attack_ratio, state);
+    if (derives(Quantity::airspeed_rate)) state[Quantity::airspeed_rate] = airspeed_rate(state);
+    if (derives(Quantity::vapor_pressure)) {
+      state[Quantity::vapor_pressure] = recorded_vapor_pressure(state, p);
     }
-    if (derives(Quantity::sideslip)) {
-      state[Quantity::sideslip] = radome_angle(sideslip_radome_, Quantity::sideslip_ratio, state);
+    flow_angles(state, parameters, flags);
+    if (acts(Where::radome)) {
+      // What the radome loses at an angle is found from the angles without that loss, which is small.
+      add(Where::radome, Quantity::radome_dynamic_pressure, state, parameters);
+      flow_angles(state, parameters, flags);
     }
     add(Where::attack, Quantity::attack, state, parameters);
     add(Where::sideslip, Quantity::sideslip, state, parameters);
@@ -168,7 +171,8 @@ class Chain {
     S humidity = recorded_humidity(state, parameters, p, flags);
     MoistAir<S> constants = solve_air(state, humidity, thermometer, delta);
     // Most air is far from saturation; only where it may not be is saturation itself computed.
-    if (moist_ && any(humidity * p > vapor_pressure_below_saturation(state[Quantity::ambient_temperature]))) {
+    if (counts_vapor() &&
+        any(humidity * p > vapor_pressure_below_saturation(state[Quantity::ambient_temperature]))) {
       const S saturation = vapor_pressure_over_water(state[Quantity::ambient_temperature]) / p;
       const auto above = humidity > saturation;
       flags.set(above, Quality::humidity_limited);
@@ -194,7 +198,7 @@ class Chain {
     const S delta = sum<S>(Where::recovery, state, parameters);
     const auto recovery = [this, &delta](const S& mach) { return recovery_(mach) + delta; };
     LamsSolution<S> solution = solve_lams(p, q, v, e, state, thermometer, recovery);
-    if (moist_ && any(e > vapor_pressure_below_saturation(solution.temperature))) {
+    if (counts_vapor() && any(e > vapor_pressure_below_saturation(solution.temperature))) {
       const S saturation = vapor_pressure_over_water(solution.temperature);
       const auto above = e > saturation;
       flags.set(above, Quality::humidity_limited);
@@ -290,6 +294,19 @@ class Chain {
     if (acts(where)) state[quantity] = state[quantity] + sum<S>(where, state, parameters);
   }
 
+  // The ratios of the radome pressures, and the angles of flow where they are found from these.
+  template <class S, class P, class Flags>
+  void flow_angles(State<S>& state, const P* parameters, Flags& flags) const {
+    if (needs(Quantity::attack_ratio) || needs(Quantity::sideslip_ratio)) radome_ratios(state, flags);
+    add(Where::attack_ratio, Quantity::attack_ratio, state, parameters);
+    if (derives(Quantity::attack)) {
+      state[Quantity::attack] = radome_angle(attack_radome_, Quantity::attack_ratio, state);
+    }
+    if (derives(Quantity::sideslip)) {
+      state[Quantity::sideslip] = radome_angle(sideslip_radome_, Quantity::sideslip_ratio, state);
+    }
+  }
+
   template <class S, class Flags>
   void radome_ratios(State<S>& state, Flags& flags) const {
     const S q = state[Quantity::radome_dynamic_pressure];
@@ -308,6 +325,36 @@ class Chain {
   template <class S>
   S radome_angle(const RadomeCalibration& radome, Quantity ratio, const State<S>& state) const {
     return radome.needs_mach() ? radome(state[ratio], state[Quantity::mach]) : radome(state[ratio]);
+  }
+
+  // Rate of change of the airspeed, m/s2, from the measured pressures, the temperature and their rates:
+  //
+  //     v^2 = 7 R_d T h,   h = (1 + q/p)^(2/7) - 1 = M^2/5,   T = T_r/(1 + a_r h)
+  //     dv/dt = v/2 (dh/dt / h + dT/dt / T)
+  //
+  // in dry air and without the effects of the model, within some percent. NaN where q is not above zero.
+  // Source: memo eq. 5-7.
+  template <class S>
+  S airspeed_rate(const State<S>& state) const {
+    using std::sqrt;
+    const S p = state[Quantity::static_pressure];
+    const S q = state[Quantity::dynamic_pressure];
+    const S heating = power_less_one(q, p, S(2.0 / 7.0));
+    const S ratio_rate =
+        (state[Quantity::dynamic_pressure_rate] - q / p * state[Quantity::static_pressure_rate]) / p;
+    const S heating_rate = S(2.0 / 7.0) * (S(1.0) + heating) * p / (p + q) * ratio_rate;
+    S temperature = state[Quantity::ambient_temperature];
+    S relative_rate = state[Quantity::ambient_temperature_rate] / temperature;
+    if (derives_temperature()) {
+      const S recovered = state[Quantity::recovery_temperature];
+      const S factor = recovery_(sqrt(S(5.0) * heating));
+      const S warming = S(1.0) + factor * heating;
+      temperature = recovered / warming;
+      relative_rate =
+          state[Quantity::recovery_temperature_rate] / recovered - factor * heating_rate / warming;
+    }
+    const S airspeed = sqrt(S(7.0 * constants::gas_constant_dry_air) * temperature * heating);
+    return S(0.5) * airspeed * (heating_rate / heating + relative_rate);
   }
 
   bool has_minimum() const { return policy_.minimum > -std::numeric_limits<double>::infinity(); }
@@ -329,16 +376,32 @@ class Chain {
     return select(temperature > S(0.0), temperature, missing<S>());
   }
 
+  // True where water vapour changes the constants of the air: with moist constants, or by an effect.
+  bool counts_vapor() const { return moist_ || acts(Where::humidity); }
+
+  // Vapour pressure as recorded, hPa; a dew point gives one at static pressure p.
+  template <class S>
+  S recorded_vapor_pressure(const State<S>& state, const S& p) const {
+    if (recorded(Quantity::vapor_pressure)) return state[Quantity::vapor_pressure];
+    if (recorded(Quantity::dew_point)) return vapor_pressure_from_dew_point(state[Quantity::dew_point], p);
+    if (recorded(Quantity::frost_point)) {
+      return vapor_pressure_from_frost_point(state[Quantity::frost_point], p);
+    }
+    return missing<S>();
+  }
+
   // e/p at static pressure p, zero or above; zero where dry constants are asked for, nothing is recorded, or
   // e is not below p, which no air is.
   template <class S, class P, class Flags>
   S recorded_humidity(const State<S>& state, const P* parameters, const S& p, Flags& flags) const {
-    if (!moist_) return S(0.0);
-    S e = recorded(Quantity::vapor_pressure) ? state[Quantity::vapor_pressure]
-          : recorded(Quantity::dew_point)    ? vapor_pressure_from_dew_point(state[Quantity::dew_point], p)
-          : recorded(Quantity::frost_point) ? vapor_pressure_from_frost_point(state[Quantity::frost_point], p)
-                                            : missing<S>();
-    e = e + sum<S>(Where::humidity, state, parameters);
+    if (!counts_vapor()) return S(0.0);
+    const S vapor = recorded_vapor_pressure(state, p);
+    S e = moist_ ? vapor : S(0.0);
+    if (acts(Where::humidity)) {
+      State<S> here = state;
+      here[Quantity::vapor_pressure] = vapor;
+      e = e + sum<S>(Where::humidity, here, parameters);
+    }
     const auto unknown = !(e < p) && p > S(0.0);
     const auto negative = e < S(0.0);
     flags.set(unknown, Quality::dry_air_assumed);
@@ -440,14 +503,15 @@ class Chain::Builder {
       return fail("effect " + quoted(effect.id) + " takes " + std::to_string(facts.parameter_count()) +
                   " parameter(s), not " + std::to_string(effect.parameters.size()));
     }
+    if (is_beyond_reach(facts.where)) return add_parameters(effect);
+    if (!require_place(facts.where, "effect " + quoted(effect.id))) return false;
     for (std::size_t i = 0; i < facts.need_count(); ++i) {
       if (!require(facts.needs[i], "effect " + quoted(effect.id))) return false;
     }
     Term term;
     term.effect = place;
     term.where = facts.where;
-    add_term(term, effect);
-    return true;
+    return add_term(term, effect);
   }
 
   bool add_formula(const ModelEffect& effect) {
@@ -462,6 +526,8 @@ class Chain::Builder {
       return fail("formula of effect " + quoted(effect.id) + " uses more than " +
                   std::to_string(formula_variable_capacity) + " variables");
     }
+    if (is_beyond_reach(effect.where)) return add_parameters(effect);
+    if (!require_place(effect.where, "the formula of effect " + quoted(effect.id))) return false;
     BoundFormula bound{std::move(*formula), {}};
     for (const std::string& name : bound.formula.variables()) {
       Quantity quantity = quantity_named(name);
@@ -476,14 +542,32 @@ class Chain::Builder {
     term.formula = chain_.formulas_.size();
     term.where = effect.where;
     chain_.formulas_.push_back(std::move(bound));
-    add_term(term, effect);
+    return add_term(term, effect);
+  }
+
+  // Without a laser nothing acts on its beam, and what such an effect needs may be missing.
+  bool is_beyond_reach(Where where) const {
+    const bool on_beam =
+        where == Where::beam_elevation || where == Where::beam_azimuth || where == Where::beam_speed;
+    return on_beam && !chain_.has_lams();
+  }
+
+  // What an effect on the radome corrects is there, and is computed.
+  bool require_place(Where where, const std::string& who) {
+    if (where == Where::radome) return require(Quantity::radome_dynamic_pressure, who);
+    if (where == Where::attack_ratio) return require(Quantity::attack_ratio, who);
     return true;
   }
 
-  void add_term(Term term, const ModelEffect& effect) {
+  bool add_term(Term term, const ModelEffect& effect) {
     term.first_parameter = chain_.parameters_.size();
-    chain_.parameters_.insert(chain_.parameters_.end(), effect.parameters.begin(), effect.parameters.end());
     chain_.terms_.push_back(term);
+    return add_parameters(effect);
+  }
+
+  bool add_parameters(const ModelEffect& effect) {
+    chain_.parameters_.insert(chain_.parameters_.end(), effect.parameters.begin(), effect.parameters.end());
+    return true;
   }
 
   // Finds the place of a further variable; a new one where the name is new. False where there is no room.
@@ -530,6 +614,14 @@ class Chain::Builder {
       case Quantity::static_pressure_rate:
       case Quantity::dynamic_pressure_rate:
         return true;
+      case Quantity::recovery_temperature_rate:
+        return require(Quantity::recovery_temperature, who);
+      case Quantity::ambient_temperature_rate:
+        return require(Quantity::ambient_temperature, who);
+      case Quantity::airspeed_rate:
+        return require_airspeed_rate(who);
+      case Quantity::vapor_pressure:
+        return require_vapor_pressure(who);
       case Quantity::attack_ratio:
         return require(Quantity::attack_differential_pressure, who) &&
                require(Quantity::radome_dynamic_pressure, who);
@@ -543,6 +635,19 @@ class Chain::Builder {
       default:
         return fail_missing(quantity, who);
     }
+  }
+
+  bool require_airspeed_rate(const std::string& who) {
+    const bool ambient = chain_.recorded(Quantity::ambient_temperature);
+    return require(Quantity::static_pressure_rate, who) && require(Quantity::dynamic_pressure_rate, who) &&
+           require(ambient ? Quantity::ambient_temperature_rate : Quantity::recovery_temperature_rate, who);
+  }
+
+  bool require_vapor_pressure(const std::string& who) {
+    for (const Quantity mirror : {Quantity::dew_point, Quantity::frost_point}) {
+      if (chain_.recorded(mirror)) return require(mirror, who);
+    }
+    return fail_missing(Quantity::vapor_pressure, who);
   }
 
   bool require_angle(const RadomeCalibration& radome, Quantity angle, Quantity ratio,

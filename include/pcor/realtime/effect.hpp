@@ -17,6 +17,8 @@ enum class Where : std::uint8_t {
   dynamic_transducer,
   static_line,
   total_line,
+  radome,
+  attack_ratio,
   attack,
   sideslip,
   temperature,
@@ -45,6 +47,8 @@ inline constexpr std::array<WhereFacts, where_count> where_facts{{
     {"dynamic-transducer", "hPa", "measured dynamic pressure"},
     {"static-line", "hPa", "measured static pressure, and taken from the dynamic pressure"},
     {"total-line", "hPa", "measured dynamic pressure"},
+    {"radome", "hPa", "radome dynamic pressure"},
+    {"attack-ratio", "1", "radome attack ratio ADIFR/QCR"},
     {"attack", "deg", "angle of attack"},
     {"sideslip", "deg", "sideslip"},
     {"temperature", "K", "recovery temperature"},
@@ -75,10 +79,16 @@ struct ParameterFacts {
   double lower = -std::numeric_limits<double>::infinity();  ///< bounds of what physics allows
   double upper = std::numeric_limits<double>::infinity();
   double typical = 0.0;  ///< size met in practice
+  /// True where it only shapes the effect, as the Mach number from which the effect acts does. It is neutral
+  /// at its typical value, and the effect is absent, whatever the shape, when all others are neutral.
+  bool shape = false;
 };
 
 inline constexpr std::size_t parameter_capacity = 3;
 inline constexpr std::size_t need_capacity = 4;
+
+/// The gas constants of a model in which an effect has a meaning.
+enum class GasConstants : std::uint8_t { any, dry, moist };
 
 /// A worked example of an effect: its inputs, coefficients and value, from outside this program.
 struct EffectExample {
@@ -98,8 +108,8 @@ struct EffectExample {
 ///
 ///     template <class State, class P> static auto value(const State& state, const P* parameters)
 ///
-/// which gives what is added at its place. The value is smooth in its parameters and zero at the neutral
-/// ones.
+/// which gives what is added at its place: the correction, which brings what was recorded to what is true.
+/// The value is smooth in its parameters and zero at the neutral ones.
 struct EffectFacts {
   std::string_view id;
   std::string_view title;
@@ -113,6 +123,7 @@ struct EffectFacts {
   std::string_view manoeuvre;    ///< what separates it from them
   std::string_view source;
   EffectExample example{};
+  GasConstants constants = GasConstants::any;
 
   constexpr std::size_t parameter_count() const {
     std::size_t n = 0;

@@ -23,13 +23,17 @@ class MeasuredQuantities final : public Functor {
  private:
   static std::vector<Quantity> outputs_of(const Chain& chain) {
     std::vector<Quantity> outputs{Quantity::port_static_pressure, Quantity::port_dynamic_pressure};
-    for (const Quantity derived : {Quantity::dynamic_ratio, Quantity::mach, Quantity::attack_ratio,
-                                   Quantity::sideslip_ratio, Quantity::attack, Quantity::sideslip}) {
+    for (const Quantity derived :
+         {Quantity::dynamic_ratio, Quantity::mach, Quantity::attack_ratio, Quantity::sideslip_ratio,
+          Quantity::attack, Quantity::sideslip, Quantity::vapor_pressure, Quantity::airspeed_rate}) {
       if (chain.derives(derived)) outputs.push_back(derived);
     }
-    if (chain.acts(Where::attack) && chain.recorded(Quantity::attack)) outputs.push_back(Quantity::attack);
-    if (chain.acts(Where::sideslip) && chain.recorded(Quantity::sideslip))
-      outputs.push_back(Quantity::sideslip);
+    const auto completes = [&](Where where, Quantity quantity) {
+      if (chain.acts(where) && chain.recorded(quantity)) outputs.push_back(quantity);
+    };
+    completes(Where::radome, Quantity::radome_dynamic_pressure);
+    completes(Where::attack, Quantity::attack);
+    completes(Where::sideslip, Quantity::sideslip);
     return outputs;
   }
 
@@ -38,8 +42,8 @@ class MeasuredQuantities final : public Functor {
     for (const Quantity input : chain.inputs()) {
       if (chain.needs(input)) inputs.push_back(input);
     }
-    for (const Quantity rate : {Quantity::static_pressure_rate, Quantity::dynamic_pressure_rate}) {
-      if (chain.derives(rate)) inputs.push_back(rate);
+    for (const Rate& each : rates) {
+      if (chain.derives(each.rate)) inputs.push_back(each.rate);
     }
     return inputs;
   }

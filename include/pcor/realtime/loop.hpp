@@ -172,11 +172,8 @@ inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, doubl
   }
   Loop loop(rate);
   for (const std::string& name : chain->extra_names()) loop.add_variable(name);
-  if (chain->derives(Quantity::static_pressure_rate)) {
-    loop.add(std::make_unique<RateOfChange>(Quantity::static_pressure, Quantity::static_pressure_rate));
-  }
-  if (chain->derives(Quantity::dynamic_pressure_rate)) {
-    loop.add(std::make_unique<RateOfChange>(Quantity::dynamic_pressure, Quantity::dynamic_pressure_rate));
+  for (const Rate& each : rates) {
+    if (chain->derives(each.rate)) loop.add(std::make_unique<RateOfChange>(each.quantity, each.rate));
   }
   loop.add(std::make_unique<MeasuredQuantities>(chain));
   loop.add(std::make_unique<StaticDefect>(chain));

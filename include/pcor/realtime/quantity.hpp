@@ -34,7 +34,10 @@ enum class Quantity : std::uint8_t {
   ground_speed,
   ground_track,
   normal_acceleration,
+  longitudinal_acceleration,
   flaps,
+  engine_torque,
+  height_above_ground,
   liquid_water,
   transducer_temperature,
   cabin_pressure,
@@ -45,6 +48,9 @@ enum class Quantity : std::uint8_t {
   sideslip_ratio,
   static_pressure_rate,
   dynamic_pressure_rate,
+  recovery_temperature_rate,
+  ambient_temperature_rate,
+  airspeed_rate,
   port_static_pressure,
   port_dynamic_pressure,
 
@@ -111,8 +117,12 @@ inline constexpr std::array<QuantityFacts, quantity_count> quantity_facts{{
     {"heading", "deg", "true heading"},
     {"ground_speed", "m/s", "ground speed"},
     {"ground_track", "deg", "true ground track"},
-    {"normal_acceleration", "m/s2", "acceleration along the normal axis"},
+    {"normal_acceleration", "m/s2", "acceleration along the normal axis, up positive, without gravity"},
+    {"longitudinal_acceleration", "m/s2",
+     "acceleration along the longitudinal axis, forward positive, as an accelerometer shows it"},
     {"flaps", "percent", "flap position"},
+    {"engine_torque", "percent", "torque of the engines"},
+    {"height_above_ground", "m", "height above the ground"},
     {"liquid_water", "g/m3", "liquid water content"},
     {"transducer_temperature", "K", "temperature of the pressure transducers"},
     {"cabin_pressure", "hPa", "cabin pressure"},
@@ -123,6 +133,10 @@ inline constexpr std::array<QuantityFacts, quantity_count> quantity_facts{{
     {"sideslip_ratio", "1", "BDIFR/QCR"},
     {"static_pressure_rate", "hPa/s", "rate of change of the measured static pressure"},
     {"dynamic_pressure_rate", "hPa/s", "rate of change of the measured dynamic pressure"},
+    {"recovery_temperature_rate", "K/s", "rate of change of the recovery temperature"},
+    {"ambient_temperature_rate", "K/s", "rate of change of the ambient temperature"},
+    {"airspeed_rate", "m/s2",
+     "rate of change of the airspeed, from the measured pressures and the temperature"},
     {"port_static_pressure", "hPa", "static pressure at the port, after effects of transducer and line"},
     {"port_dynamic_pressure", "hPa", "dynamic pressure at the ports, after effects of transducer and line"},
 
@@ -146,6 +160,20 @@ constexpr Quantity quantity_named(std::string_view name) {
   }
   return Quantity::count;
 }
+
+/// A rate of change that is found from earlier and later samples, and the quantity that changes.
+struct Rate {
+  Quantity quantity;
+  Quantity rate;
+};
+
+/// All such rates.
+inline constexpr std::array<Rate, 4> rates{{
+    {Quantity::static_pressure, Quantity::static_pressure_rate},
+    {Quantity::dynamic_pressure, Quantity::dynamic_pressure_rate},
+    {Quantity::recovery_temperature, Quantity::recovery_temperature_rate},
+    {Quantity::ambient_temperature, Quantity::ambient_temperature_rate},
+}};
 
 constexpr bool is_role(Quantity quantity) { return index(quantity) < role_count; }
 

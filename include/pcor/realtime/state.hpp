@@ -11,6 +11,8 @@ namespace pcor {
 template <class S>
 class State {
  public:
+  using Scalar = S;
+
   State() { values_.fill(missing<S>()); }
 
   S& operator[](Quantity quantity) { return values_[index(quantity)]; }

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "pcor/realtime/effect.hpp"
+
+namespace pcor::effects {
+
+struct AdifDrift {
+  static constexpr EffectFacts facts() {
+    EffectFacts facts;
+    facts.id = "adif-drift";
+    facts.title = "change of the zero or the sensitivity of the radome";
+    facts.where = Where::attack_ratio;
+    facts.formula = "-(gain * attack_ratio + offset + per_hour * time / 3600)";
+    facts.parameters[0] = {"gain", "1", 0.0, -0.3, 0.3, 0.05};
+    facts.parameters[1] = {"offset", "1", 0.0, -0.06, 0.06, 0.01};
+    facts.parameters[2] = {"per_hour", "1/h", 0.0, -0.03, 0.03, 0.005};
+    facts.needs = {Quantity::attack_ratio, Quantity::time, Quantity::count, Quantity::count};
+    facts.size =
+        "slope 13.85 to 16.0 from flight to flight (C-130): 5 % of a ratio of 0.25 is 0.19 hPa at 700 hPa";
+    facts.look_alikes = "static-alpha, transducer-thermal, lams-elevation, qcr-angle";
+    facts.manoeuvre = "angle of attack from pitch and vertical speed in a speed run";
+    facts.source = "NCAR memos AKRDC130 and PcorCalculation eq. 4-6; ARISTO memo table 2";
+    facts.example.inputs[0] = {Quantity::attack_ratio, -0.2};
+    facts.example.inputs[1] = {Quantity::time, 7200.0};
+    facts.example.parameters = {0.05, 0.01, 0.005};
+    facts.example.value = -0.01;
+    return facts;
+  }
+
+  template <class State, class P>
+  static auto value(const State& state, const P* parameter) {
+    using S = typename State::Scalar;
+    return -(parameter[0] * state[Quantity::attack_ratio] + parameter[1] +
+             parameter[2] * (state[Quantity::time] * S(1.0 / 3600.0)));
+  }
+};
+
+}  // namespace pcor::effects

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "pcor/physics/scalar.hpp"
+#include "pcor/realtime/effect.hpp"
+
+namespace pcor::effects {
+
+struct GroundEffect {
+  static constexpr EffectFacts facts() {
+    EffectFacts facts;
+    facts.id = "ground-effect";
+    facts.title = "image of the wing vortices in the ground";
+    facts.where = Where::static_defect;
+    facts.formula = "defect * (span / (4 * max(height_above_ground, span / 4)))^2";
+    facts.parameters[0] = {"defect", "hPa", 0.0, -2.0, 2.0, 0.3};
+    facts.parameters[1] = {"span", "m", 40.0, 10.0, 80.0, 40.0, true};
+    facts.needs = {Quantity::height_above_ground, Quantity::count, Quantity::count, Quantity::count};
+    facts.size =
+        "below 0.5 hPa, and only within one span (C-130 40 m, GV 28 m) of the ground; a sample without "
+        "height has no delta-p";
+    facts.look_alikes = "flaps-gear";
+    facts.manoeuvre = "fly-by of a tower or low pass at constant speed";
+    facts.source = "Gracey, NASA RP-1046; Haering, NASA TM-104316, 1995";
+    facts.example.inputs[0] = {Quantity::height_above_ground, 20.0};
+    facts.example.parameters = {0.4, 40.0};
+    facts.example.value = 0.1;
+    return facts;
+  }
+
+  template <class State, class P>
+  static auto value(const State& state, const P* parameter) {
+    using S = typename State::Scalar;
+    using R = Promoted<S, P>;
+    const R height(state[Quantity::height_above_ground]);
+    const R nearest(parameter[1] * P(0.25));
+    const R ratio = nearest / select(height < nearest, nearest, height);
+    return parameter[0] * (ratio * ratio);
+  }
+};
+
+}  // namespace pcor::effects

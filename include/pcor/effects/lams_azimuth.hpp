@@ -1,0 +1,30 @@
+#pragma once
+
+#include "pcor/realtime/effect.hpp"
+
+namespace pcor::effects {
+
+struct LamsAzimuth {
+  static constexpr EffectFacts facts() {
+    EffectFacts facts;
+    facts.id = "lams-azimuth";
+    facts.title = "error of the azimuth of the laser beam";
+    facts.where = Where::beam_azimuth;
+    facts.formula = "dtheta2";
+    facts.parameters[0] = {"dtheta2", "deg", 0.0, -3.0, 3.0, 0.5};
+    facts.size = "survey 0.02 to 0.2 deg: 0.15 m/s for 0.5 deg at 4 deg of sideslip";
+    facts.look_alikes = "static-beta-odd, roll-static";
+    facts.manoeuvre = "yaw manoeuvre with a second static pair";
+    facts.source = "memo, Effect of LAMS orientation";
+    facts.example.parameters = {0.5};
+    facts.example.value = 0.5;
+    return facts;
+  }
+
+  template <class State, class P>
+  static auto value(const State&, const P* parameter) {
+    return parameter[0];
+  }
+};
+
+}  // namespace pcor::effects

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "pcor/realtime/effect.hpp"
+
+namespace pcor::effects {
+
+struct LineHead {
+  static constexpr EffectFacts facts() {
+    EffectFacts facts;
+    facts.id = "line-head";
+    facts.title = "weight and inertia of the air in the static line";
+    facts.where = Where::static_line;
+    facts.formula =
+        "-(aft * longitudinal_acceleration + below * (9.80665 + normal_acceleration)) * static_pressure / "
+        "(287.06 * 290)";
+    facts.parameters[0] = {"aft", "m", 0.0, -30.0, 30.0, 5.0};
+    facts.parameters[1] = {"below", "m", 0.0, -6.0, 6.0, 1.0};
+    facts.needs = {Quantity::longitudinal_acceleration, Quantity::normal_acceleration,
+                   Quantity::static_pressure, Quantity::count};
+    facts.size =
+        "0.12 hPa for each metre at sea level, 0.04 at 300 hPa, with the transducer at aft and below behind "
+        "and under the port; the line lies in the cabin, so its air is at 290 K";
+    facts.look_alikes = "load-factor, static-alpha, static-constant";
+    facts.manoeuvre = "acceleration at constant angle of attack";
+    facts.source = "hydrostatics of the line, dp = rho a h; estimate";
+    facts.example.inputs[0] = {Quantity::longitudinal_acceleration, 2.0};
+    facts.example.inputs[1] = {Quantity::normal_acceleration, 1.19335};
+    facts.example.inputs[2] = {Quantity::static_pressure, 832.474};
+    facts.example.parameters = {5.0, 1.0};
+    facts.example.value = -0.21;
+    return facts;
+  }
+
+  template <class State, class P>
+  static auto value(const State& state, const P* parameter) {
+    using S = typename State::Scalar;
+    constexpr double gravity = 9.80665;              // m/s2
+    constexpr double line = 1.0 / (287.06 * 290.0);  // 1/(R T) of the air in the line, s2/m2
+    return -((parameter[0] * state[Quantity::longitudinal_acceleration] +
+              parameter[1] * (state[Quantity::normal_acceleration] + S(gravity))) *
+             (state[Quantity::static_pressure] * S(line)));
+  }
+};
+
+}  // namespace pcor::effects

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "pcor/realtime/effect.hpp"
+
+namespace pcor::effects {
+
+struct PitotAngle {
+  static constexpr EffectFacts facts() {
+    EffectFacts facts;
+    facts.id = "pitot-angle";
+    facts.title = "loss of total pressure where the flow meets the pitot at an angle";
+    facts.where = Where::pitot;
+    facts.formula = "k * dynamic_pressure * (attack^2 + sideslip^2)";
+    facts.parameters[0] = {"k", "1/deg2", 0.0, 0.0, 0.0006, 0.0001};
+    facts.needs = {Quantity::dynamic_pressure, Quantity::attack, Quantity::sideslip, Quantity::count};
+    facts.size = "below 0.2 % of q at 5 deg, below 1 % at 10 deg, always low: -0.12 and -0.6 hPa (C-130)";
+    facts.look_alikes = "static-alpha-quad, static-beta-even, lams-elevation, qcr-angle";
+    facts.manoeuvre = "pitch and yaw manoeuvres to large angles; a second pitot pair";
+    facts.source = "memo, footnote 3";
+    facts.example.inputs[0] = {Quantity::dynamic_pressure, 70.0};
+    facts.example.inputs[1] = {Quantity::attack, 4.0};
+    facts.example.inputs[2] = {Quantity::sideslip, 3.0};
+    facts.example.parameters = {0.0001};
+    facts.example.value = 0.175;
+    return facts;
+  }
+
+  template <class State, class P>
+  static auto value(const State& state, const P* parameter) {
+    const auto& attack = state[Quantity::attack];
+    const auto& sideslip = state[Quantity::sideslip];
+    return parameter[0] * (state[Quantity::dynamic_pressure] * (attack * attack + sideslip * sideslip));
+  }
+};
+
+}  // namespace pcor::effects

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "pcor/physics/scalar.hpp"
+#include "pcor/realtime/effect.hpp"
+
+namespace pcor::effects {
+
+struct StaticTransonic {
+  static constexpr EffectFacts facts() {
+    EffectFacts facts;
+    facts.id = "static-transonic";
+    facts.title = "supersonic pocket near the static port at high Mach number";
+    facts.where = Where::static_defect;
+    facts.formula = "strength * max(mach - onset, 0)^2 * static_pressure";
+    facts.parameters[0] = {"strength", "1", 0.0, -5.0, 5.0, 1.0};
+    facts.parameters[1] = {"onset", "1", 0.82, 0.7, 0.95, 0.82, true};
+    facts.needs = {Quantity::mach, Quantity::static_pressure, Quantity::count, Quantity::count};
+    facts.size = "estimated 0.1 to 1 hPa on the GV from Mach 0.82 to 0.86";
+    facts.look_alikes = "static-mach3, static-mach2, lams-fold";
+    facts.manoeuvre = "speed run past Mach 0.82 at high altitude; one Mach number at two angles of attack";
+    facts.source = "Haering, NASA TM-104316, 1995; Gracey, NASA RP-1046";
+    facts.example.inputs[0] = {Quantity::mach, 0.86};
+    facts.example.inputs[1] = {Quantity::static_pressure, 250.0};
+    facts.example.parameters = {1.0, 0.82};
+    facts.example.value = 0.4;
+    return facts;
+  }
+
+  template <class State, class P>
+  static auto value(const State& state, const P* parameter) {
+    using S = typename State::Scalar;
+    using R = Promoted<S, P>;
+    const R above = state[Quantity::mach] - parameter[1];
+    const R excess = select(above < R(0.0), R(0.0), above);
+    return parameter[0] * (excess * excess * state[Quantity::static_pressure]);
+  }
+};
+
+}  // namespace pcor::effects
