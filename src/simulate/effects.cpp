@@ -4,6 +4,7 @@
 #include <cmath>
 #include <pcor/physics/constants.hpp>
 
+#include "air.hpp"
 #include "aircraft.hpp"
 
 namespace pcor::simulate {
@@ -93,6 +94,29 @@ void thrust(const Effect& effect, const Truth& truth, SystemFaults* system, Faul
   add(system->static_defect, truth, [&](std::size_t i) { return defect * 0.01 * truth.torque[i]; });
 }
 
+// The vortices of the wing have images below the ground, at 2 h: far above it d falls as (b/4h)^2.
+void ground_effect(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
+  const double defect = number(effect, "defect");
+  const double span = number(effect, "span");
+  add(system->static_defect, truth, [&](std::size_t i) {
+    const double ratio = 4.0 * truth.height[i] / span;
+    return defect / (1.0 + ratio * ratio);
+  });
+}
+
+// Weight and inertia of the air between the port and the transducer `below` and `behind` it, which has the
+// temperature of the bay: dp = rho (f_normal below + f_forward behind), f what an accelerometer feels.
+void line_head(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
+  constexpr double pascal_per_hpa = 100.0;
+  const double below = number(effect, "below");
+  const double behind = number(effect, "behind");
+  add(system->static_head, truth, [&](std::size_t i) {
+    const Air line{truth.pressure[i], truth.bay_temperature[i], 0.0};
+    const double normal = truth.normal_acceleration[i] + standard_gravity;
+    return density(line) * (normal * below + truth.forward_acceleration[i] * behind) / pascal_per_hpa;
+  });
+}
+
 void load_factor(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
   const double per_g = number(effect, "per_g");
   add(system->static_defect, truth,
@@ -171,6 +195,20 @@ void recovery_factor(const Effect& effect, const Truth&, SystemFaults*, Faults& 
   faults.recovery += number(effect, "error");
 }
 
+// The heat of de-icing warms the element the more, the less air passes it: Z is a measure of the flow of
+// mass, and below 0.18 nobody has measured.
+void temp_deice_heat(const Effect& effect, const Truth& truth, SystemFaults*, Faults& faults) {
+  constexpr double flow_scale = 0.269589;  // K/hPa
+  constexpr double least_flow = 0.18;
+  constexpr double usual_flow = 0.3;
+  const double heat = number(effect, "heat");
+  const double power = number(effect, "power");
+  add(faults.temperature_error, truth, [&](std::size_t i) {
+    const double flow = flow_scale * truth.pressure[i] * truth.mach[i] / truth.temperature[i];
+    return heat * std::pow(std::max(flow, least_flow) / usual_flow, power);
+  });
+}
+
 void temp_lag(const Effect& effect, const Truth&, SystemFaults*, Faults& faults) {
   faults.temperature_lag += number(effect, "tau");
 }
@@ -188,6 +226,7 @@ void temp_wetting(const Effect& effect, const Truth& truth, SystemFaults*, Fault
 
 void humidity_error(const Effect& effect, const Truth&, SystemFaults*, Faults& faults) {
   faults.humidity_gain += number(effect, "gain");
+  faults.dew_point += number(effect, "dew_point");
 }
 
 void clock_skew(const Effect& effect, const Truth&, SystemFaults*, Faults& faults) {
@@ -247,6 +286,11 @@ const std::vector<FaultFacts>& fault_facts() {
        static_transonic},
       {"flaps-gear", Target::system, {{"defect", "hPa at 50 %"}}, flaps_gear},
       {"speedbrake-thrust", Target::system, {{"defect", "hPa at 100 %"}}, thrust},
+      {"ground-effect",
+       Target::system,
+       {{"defect", "hPa at the ground"}, {"span", "m", 40.4}},
+       ground_effect},
+      {"line-head", Target::system, {{"below", "m", 0.0}, {"behind", "m", 0.0}}, line_head},
       {"load-factor", Target::system, {{"per_g", "hPa"}}, load_factor},
       {"roll-static", Target::system, {{"defect", "hPa"}}, roll_static},
       {"pitot-angle",
@@ -285,7 +329,11 @@ const std::vector<FaultFacts>& fault_facts() {
       {"recovery-factor", Target::instrument, {{"error", "1"}}, recovery_factor},
       {"temp-lag", Target::instrument, {{"tau", "s"}}, temp_lag},
       {"temp-wetting", Target::instrument, {{"error", "K"}, {"drying", "s", 10.0}}, temp_wetting},
-      {"humidity-error", Target::instrument, {{"gain", "1"}}, humidity_error},
+      {"temp-deice-heat",
+       Target::instrument,
+       {{"heat", "K at Z = 0.3"}, {"power", "1", -1.78}},
+       temp_deice_heat},
+      {"humidity-error", Target::instrument, {{"gain", "1", 0.0}, {"dew_point", "K", 0.0}}, humidity_error},
       {"clock-skew", Target::variable, {{"seconds", "s"}}, clock_skew},
       {"sensor-response", Target::variable, {{"tau", "s"}}, sensor_response},
       {"unknown",

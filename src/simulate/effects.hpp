@@ -17,6 +17,7 @@ struct SystemFaults {
   Series total_loss;        ///< at the pitot, hPa: pt_port = pt - l
   double static_lag = 0.0;  ///< time constant of the line, s
   double total_lag = 0.0;   ///< s
+  Series static_head;       ///< of the air in the static line, which the transducer feels more, hPa
   double leak = 0.0;        ///< the part of the cabin's excess pressure that reaches the static line
   Series static_error;      ///< of the reading, hPa
   Series dynamic_error;     ///< hPa
@@ -37,6 +38,7 @@ struct Faults {
   double attack_gain = 0.0;                ///< of ADIFR
   Series radome_loss;                      ///< of QCR, hPa
   double humidity_gain = 0.0;              ///< of the vapour pressure
+  double dew_point = 0.0;                  ///< error of the dew point, K
   std::map<std::string, double> clock;     ///< by variable: its samples are so many seconds late
   std::map<std::string, double> response;  ///< by variable: time constant of the sensor, s
 };

@@ -19,6 +19,7 @@ std::map<std::string, Scenario::Noise> usual_noise(const Scenario& scenario) {
       {"GGVSPD", {0.03, 0.0, 0.0, 0.0}},   {"BNORMA", {0.02, 0.0, 0.0, 0.0}},
       {"PLWCC", {0.003, 0.0, 0.0, 0.0}},   {"PCAB", {0.2, 0.0, 0.0, 0.0}},
       {"ENGTRQ", {0.3, 0.0, 0.0, 0.0}},    {"TBAY", {0.05, 0.0, 0.0, 0.0}},
+      {"RALT", {0.3, 0.0, 0.0, 0.0}},      {"BLONA", {0.02, 0.0, 0.0, 0.0}},
   };
   const AircraftFacts& aircraft = facts_of(scenario.aircraft);
   for (const Thermometer& thermometer : {aircraft.thermometer, aircraft.second_thermometer})

@@ -169,7 +169,11 @@ void Pilot::step(const Command& command, const Scenario::Leg& leg) {
   truth_.latitude.push_back(scenario_.latitude + north_ / metres_per_degree);
   truth_.longitude.push_back(scenario_.longitude +
                              east_ / (metres_per_degree * std::cos(radians * scenario_.latitude)));
+  truth_.height.push_back(height_ - atmosphere.ground_height);
   truth_.normal_acceleration.push_back((load - 1.0) * g);
+  const double pitch = radians * truth_.pitch.back();
+  truth_.forward_acceleration.push_back(command.acceleration * std::cos(pitch) +
+                                        (command.vertical_acceleration + g) * std::sin(pitch));
   truth_.flaps.push_back(flaps_);
   truth_.liquid_water.push_back(liquid_water());
   truth_.weight.push_back(weight_);

@@ -33,6 +33,7 @@ struct Domain {
 };
 
 constexpr double any = 1e9;
+constexpr double least_height = 10.0;  // m above the ground, of a low pass
 
 /// A number of a table: its key, where it goes, what it may be.
 template <class Object>
@@ -447,8 +448,9 @@ class Reader final : TomlReader {
     if (changes_height && std::isnan(leg.altitude))
       fail(place, fmt::format("the {} has no altitude; add altitude = ... (m)", facts.name));
     if ((changes_height || leg.kind == Kind::take_off) &&
-        leg.altitude < scenario_.atmosphere.ground_height + 50.0)
-      fail(place, fmt::format("altitude = {} m is not 50 m above the ground; give more", leg.altitude));
+        leg.altitude < scenario_.atmosphere.ground_height + least_height)
+      fail(place, fmt::format("altitude = {} m is not {} m above the ground; give more", leg.altitude,
+                              least_height));
     if (leg.kind == Kind::climb && leg.altitude <= height)
       fail(place, fmt::format("the climb to {} m begins at {} m; make it a descent", leg.altitude, height));
     if (leg.kind == Kind::descent && leg.altitude >= height)

@@ -120,7 +120,7 @@ PairReading read_pair(const Scenario::System& system, const SystemFaults& faults
     const double defect = static_defect(faults.law, state);
     const double port = truth.pressure[i] - defect;
     reading.defect[i] = defect;
-    line[i] = port + faults.leak * (truth.cabin_pressure[i] - port);
+    line[i] = port + faults.leak * (truth.cabin_pressure[i] - port) + at(faults.static_head, i);
   }
   line = with_response(std::move(line), faults.static_lag);
   total = with_response(std::move(total), faults.total_lag);

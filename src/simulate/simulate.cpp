@@ -120,6 +120,10 @@ class Recording {
     for (double& value : vapor) value *= 1.0 + faults_.humidity_gain;
     Series dew(vapor.size());
     std::transform(vapor.begin(), vapor.end(), dew.begin(), dew_point);
+    if (faults_.dew_point != 0.0) {
+      for (double& value : dew) value += faults_.dew_point;
+      std::transform(dew.begin(), dew.end(), vapor.begin(), saturation_pressure);
+    }
     const std::vector<double> recorded =
         record("EDPC", "hPa", "ambient water vapour pressure", std::move(vapor), slow);
     put("EWX", "hPa", "ambient water vapour pressure, reference", recorded, slow);

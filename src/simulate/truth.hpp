@@ -16,34 +16,36 @@ using Series = std::vector<double>;
 
 /// What really was, step by step. Angles go on beyond 360 deg, so that means need no care.
 struct Truth {
-  Series pressure;             ///< of the undisturbed air, hPa
-  Series total_pressure;       ///< hPa
-  Series temperature;          ///< K
-  Series vapor_pressure;       ///< hPa
-  Series airspeed;             ///< m/s, gusts included
-  Series mach;                 ///< 1
-  Series attack;               ///< deg, gusts included
-  Series sideslip;             ///< deg, positive for wind from starboard
-  Series pitch;                ///< deg
-  Series roll;                 ///< deg
-  Series heading;              ///< deg
-  Series track;                ///< deg
-  Series ground_speed;         ///< m/s
-  Series altitude;             ///< m
-  Series vertical_speed;       ///< m/s
-  Series latitude;             ///< deg
-  Series longitude;            ///< deg
-  Series normal_acceleration;  ///< without gravity, upwards in the aircraft, m/s2
-  Series flaps;                ///< percent
-  Series liquid_water;         ///< g/m3
-  Series cabin_pressure;       ///< hPa
-  Series torque;               ///< of the engines, percent
-  Series bay_temperature;      ///< of the transducers, K
-  Series weight;               ///< kg
-  Series wind_east;            ///< where the air moves to, m/s
-  Series wind_north;           ///< m/s
-  Series dissipation;          ///< of the turbulence, m2/s3
-  Series hidden;               ///< a slow wave that nothing in the file records, rms 1
+  Series pressure;              ///< of the undisturbed air, hPa
+  Series total_pressure;        ///< hPa
+  Series temperature;           ///< K
+  Series vapor_pressure;        ///< hPa
+  Series airspeed;              ///< m/s, gusts included
+  Series mach;                  ///< 1
+  Series attack;                ///< deg, gusts included
+  Series sideslip;              ///< deg, positive for wind from starboard
+  Series pitch;                 ///< deg
+  Series roll;                  ///< deg
+  Series heading;               ///< deg
+  Series track;                 ///< deg
+  Series ground_speed;          ///< m/s
+  Series altitude;              ///< m
+  Series vertical_speed;        ///< m/s
+  Series latitude;              ///< deg
+  Series longitude;             ///< deg
+  Series height;                ///< above the ground, m
+  Series normal_acceleration;   ///< without gravity, upwards in the aircraft, m/s2
+  Series forward_acceleration;  ///< along the aircraft, with gravity: what an accelerometer shows, m/s2
+  Series flaps;                 ///< percent
+  Series liquid_water;          ///< g/m3
+  Series cabin_pressure;        ///< hPa
+  Series torque;                ///< of the engines, percent
+  Series bay_temperature;       ///< of the transducers, K
+  Series weight;                ///< kg
+  Series wind_east;             ///< where the air moves to, m/s
+  Series wind_north;            ///< m/s
+  Series dissipation;           ///< of the turbulence, m2/s3
+  Series hidden;                ///< a slow wave that nothing in the file records, rms 1
 
   std::size_t size() const { return pressure.size(); }
 };
@@ -59,7 +61,7 @@ struct TruthFacts {
   bool angle = false;  ///< brought to 0..360 deg
 };
 
-inline constexpr std::array<TruthFacts, 28> truth_facts{{
+inline constexpr std::array<TruthFacts, 30> truth_facts{{
     {"", "TRUE_PS", "hPa", "static pressure", &Truth::pressure, true},
     {"", "TRUE_PT", "hPa", "total pressure", &Truth::total_pressure, true},
     {"", "TRUE_AT", "degC", "ambient temperature", &Truth::temperature, true},
@@ -74,11 +76,13 @@ inline constexpr std::array<TruthFacts, 28> truth_facts{{
     {"GGTRK", "", "degree", "GPS ground track", &Truth::track, false, true},
     {"GGSPD", "", "m/s", "GPS ground speed", &Truth::ground_speed},
     {"GGALT", "TRUE_ALT", "m", "height", &Truth::altitude},
+    {"RALT", "", "m", "radio altimeter, height above the ground", &Truth::height},
     {"GGVSPD", "TRUE_VSPD", "m/s", "vertical speed", &Truth::vertical_speed},
     {"GGLAT", "", "degree_N", "GPS latitude", &Truth::latitude},
     {"GGLON", "", "degree_E", "GPS longitude", &Truth::longitude},
     {"BNORMA", "TRUE_NORMA", "m/s2", "body normal acceleration less gravity", &Truth::normal_acceleration,
      true},
+    {"BLONA", "", "m/s2", "body longitudinal acceleration, with gravity", &Truth::forward_acceleration, true},
     {"FLAPS", "", "percent", "flap position", &Truth::flaps},
     {"PLWCC", "TRUE_LWC", "gram/m3", "liquid water content", &Truth::liquid_water},
     {"PCAB", "", "hPa", "cabin pressure", &Truth::cabin_pressure},

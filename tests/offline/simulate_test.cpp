@@ -467,6 +467,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Change{"\"static-beta-odd\"\non = \"PSFRD\"\nb1 = -0.002", static_of_second},
         Change{"\"load-factor\"\non = \"PSFRD\"\nper_g = 1.0", static_of_second},
+        Change{"\"ground-effect\"\non = \"PSFRD\"\ndefect = 0.5", static_of_second},
+        Change{"\"line-head\"\non = \"PSFRD\"\nbelow = 1.0", {"PSFRD", "QCFR"}},
         Change{"\"roll-static\"\non = \"PSFRD\"\ndefect = 0.5", static_of_second},
         Change{"\"flaps-gear\"\non = \"PSFRD\"\ndefect = 1.5", static_of_second},
         Change{"\"speedbrake-thrust\"\non = \"PSFD\"\ndefect = 1.0", with_angles(static_of_first)},
@@ -489,8 +491,10 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"\"temp-offset\"\noffset = 0.5", {"TTRR", "RTF1"}},
         Change{"\"recovery-factor\"\nerror = 0.02", {"TTRR", "RTF1"}},
         Change{"\"temp-lag\"\ntau = 2.3", {"TTRR", "RTF1"}},
+        Change{"\"temp-deice-heat\"\nheat = 0.5", {"TTRR", "RTF1"}},
         Change{"\"temp-wetting\"\nerror = -1.0", {"TTRR", "RTF1"}},
         Change{"\"humidity-error\"\ngain = 0.1", {"EDPC", "EWX", "DPXC"}},
+        Change{"\"humidity-error\"\ndew_point = -2.0", {"EDPC", "EWX", "DPXC"}},
         Change{"\"sensor-response\"\non = \"ADIFR\"\ntau = 0.2", {"ADIFR", "ATTACK"}},
         Change{"\"unknown\"\nof = \"hidden\"\nwhere = \"lams\"\nstrength = 0.3", {"VLAMS"}},
         Change{"\"unknown\"\nof = \"TBAY\"\nwhere = \"temperature\"\nshape = \"quadratic\"\nstrength = 0.01",
@@ -508,6 +512,91 @@ TEST(Simulate, PitotLosesPressureAtAnAngle) {
     // The mean of squares over a second in which the sideslip changes by 2.1 deg: 0.37 deg^2 more.
     EXPECT_NEAR(total[i] - p[i] - q[i], loss, 2.7e-3);
     EXPECT_GT(total[i] - p[i] - q[i], 0.0);
+  }
+}
+
+TEST(Simulate, NearTheGroundTheImageOfTheWingActs) {
+  const std::string text = head + noiseless + systems + aloft + leg("descent", "altitude = 120\nrate = 8") +
+                           leg("level", "duration = 30\nspeed = 90");
+  const Simulated without(text);
+  const Simulated with(text +
+                       "[[effect]]\nid = \"ground-effect\"\non = \"PSFRD\"\ndefect = 0.5\nspan = 40\n");
+  const auto d0 = without("TRUE_PCOR_PSFRD", "hPa"), d1 = with("TRUE_PCOR_PSFRD", "hPa"),
+             height = with("RALT", "m");
+  const auto [first, last] = with.leg("level", 15.0);
+  for (std::size_t i = first; i < last; ++i) {
+    EXPECT_NEAR(height[i], 20.0, 2.0);
+    // By hand: 4 h/b = 2, so a fifth. The law answers to the extra defect with some percent of it.
+    EXPECT_NEAR(d1[i] - d0[i], 0.1, 0.02);
+  }
+  const auto [high, end] = with.leg("descent");
+  EXPECT_LT(end - high, 400U);
+  EXPECT_LT(std::abs(d1[high] - d0[high]), 1e-4);
+}
+
+TEST(Simulate, AirInTheLineHasWeight) {
+  const std::string text = head + noiseless + calm + systems + aloft + leg("level", "duration = 60") +
+                           leg("pitch", "cycles = 2") + leg("speed-run", "low = 100\nhigh = 130\nrate = 0.5");
+  const Simulated without(text);
+  const std::string effect = "[[effect]]\nid = \"line-head\"\non = \"PSFRD\"\n";
+  const Simulated below(text + effect + "below = 2.0\n");
+  const Simulated behind(text + effect + "behind = 5.0\n");
+  const auto p = without("PSFRD", "hPa"), lower = below("PSFRD", "hPa"), aft = behind("PSFRD", "hPa"),
+             normal = without("BNORMA", "m/s2"), forward = without("BLONA", "m/s2"),
+             bay = without("TBAY", "K");
+  for (const std::string kind : {"pitch", "speed-run"}) {
+    const auto [first, last] = without.leg(kind);
+    for (std::size_t i = first; i < last; ++i) {
+      const double density = 100.0 * p[i] / (287.05 * bay[i]);
+      // The line's density is that of the true pressure, 1 % from the measured one.
+      EXPECT_NEAR(lower[i] - p[i], 0.01 * density * 2.0 * (9.80665 + normal[i]), 5e-3);
+      EXPECT_NEAR(aft[i] - p[i], 0.01 * density * 5.0 * forward[i], 3e-3);
+    }
+  }
+}
+
+TEST(Simulate, ForwardAccelerationIsThatOfTheSpeedAndOfGravity) {
+  const Simulated flight(head + noiseless + calm + systems + aloft +
+                         leg("speed-run", "low = 100\nhigh = 130\nrate = 0.5"));
+  const auto speed = flight("TASX", "m/s"), forward = flight("BLONA", "m/s2"),
+             pitch = flight("PITCH", "degree");
+  const auto [first, last] = flight.leg("speed-run");
+  double square = 0.0;
+  for (std::size_t i = first + 1; i + 1 < last; ++i) {
+    const double of_speed = forward[i] - 9.8 * std::sin(pitch[i] * M_PI / 180.0);
+    const double miss = of_speed - 0.5 * (speed[i + 1] - speed[i - 1]);
+    // Where the run turns from -0.5 to 0.5 m/s2, a difference over two seconds lags behind.
+    EXPECT_LT(std::abs(miss), 0.2) << i;
+    square += miss * miss;
+  }
+  EXPECT_LT(std::sqrt(square / static_cast<double>(last - first)), 0.02);
+}
+
+TEST(Simulate, DeicingHeatsTheMoreTheLessAirPasses) {
+  const std::string text =
+      head + noiseless + calm + systems + aloft + leg("speed-run", "low = 90\nhigh = 130\nrate = 0.5");
+  const Simulated cold(text);
+  const Simulated heated(text + "[[effect]]\nid = \"temp-deice-heat\"\nheat = 0.5\npower = -1\n");
+  const auto a = cold("TTRR", "K"), b = heated("TTRR", "K"), p = cold("TRUE_PS", "hPa"),
+             t = cold("TRUE_AT", "K"), m = cold("TRUE_MACH", "1");
+  const auto [first, last] = cold.leg("speed-run");
+  for (std::size_t i = first; i < last; ++i)
+    EXPECT_NEAR(b[i] - a[i], 0.5 * 0.3 / (0.269589 * p[i] * m[i] / t[i]), 2e-4);
+}
+
+TEST(Simulate, DewPointErrsInEveryHumidity) {
+  const std::string text = head + noiseless + calm + systems + aloft + leg("level", "duration = 60");
+  const Simulated right(text);
+  const Simulated wrong(text + "[[effect]]\nid = \"humidity-error\"\ndew_point = -2.0\n");
+  const auto d0 = right("DPXC", "K"), d1 = wrong("DPXC", "K"), e0 = right("EDPC", "hPa"),
+             e1 = wrong("EDPC", "hPa");
+  for (std::size_t i = 0; i < d0.size(); ++i) {
+    EXPECT_NEAR(d1[i] - d0[i], -2.0, 5e-5);
+    // Clausius and Clapeyron: d ln e/dT = L/(R_v T^2), L = 2.5e6 - 2370 (T - 273) J/kg, at the middle of the
+    // step.
+    const double middle = d0[i] - 1.0;
+    const double latent = 2.5008e6 - 2370.0 * (middle - 273.15);
+    EXPECT_NEAR(std::log(e1[i] / e0[i]), -2.0 * latent / (461.5 * middle * middle), 2e-3);
   }
 }
 
