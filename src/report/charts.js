@@ -43,7 +43,9 @@ function shadeIntervals(pen, box, x, samples, theme) {
     const colour = theme.regimes[names.indexOf(name) % theme.regimes.length];
     pen.rect(left, box.y, right - left, box.height, colour, chosen ? 0.08 : 0.02);
     pen.rect(left, box.y, right - left, 4, colour, chosen ? 0.8 : 0.2);
-    if (textWidth(name, 10) < right - left - 6)
+    const covered = samples.intervals.some((other) =>
+      other.end - other.begin < end - begin && other.begin <= (begin + end) / 2 && other.end >= (begin + end) / 2);
+    if (!covered && textWidth(name, 10) < right - left - 6)
       pen.text((left + right) / 2, box.y + 15, name, {fill: theme.quiet, size: 10, align: 'middle'});
   }
 }
@@ -208,7 +210,7 @@ function colourBar(pen, box, colours, {from, to}, label, theme) {
   const y = scale(from, to, box.y + box.height, box.y);
   for (const tick of numberTicks(from, to, box.height, 30))
     pen.text(x + width + 5, y(tick.value) + 4, tick.label, small(theme));
-  pen.text(x + width + 50, box.y + box.height / 2, label, {...small(theme, 'middle'), turn: -90});
+  pen.text(x + width + 56, box.y + box.height / 2, label, {...small(theme, 'middle'), turn: -90});
 }
 
 function drawPlane(pen, width, height, item, samples, theme) {

@@ -57,8 +57,13 @@ bool is_numeric(const std::string& cell) {
   return end != cell.c_str() && (*end == '\0' || *end == ' ');
 }
 
+// A cell with more letters may take several lines.
+constexpr std::size_t most_on_a_line = 60;
+
 std::string table(const ReportTable& table) {
-  const auto kind = [](const std::string& cell) { return is_numeric(cell) ? R"( class="number")" : ""; };
+  const auto kind = [](const std::string& cell) {
+    return is_numeric(cell) ? R"( class="number")" : cell.size() > most_on_a_line ? R"( class="words")" : "";
+  };
   std::string head, body;
   for (std::size_t i = 0; i < table.headers.size(); ++i)
     head +=

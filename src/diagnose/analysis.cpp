@@ -1,0 +1,235 @@
+#include "analysis.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "../triangular_factor.hpp"
+#include "outliers.hpp"
+
+namespace pcor {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr int most_rounds = 4;
+/// For the first noise: whatever might be an effect is taken off, a claim it is not.
+constexpr double generous_threshold = 9.0;
+constexpr std::size_t generous_effects = 6;
+/// Twice the gain in log-likelihood that makes drift worth its parameter.
+constexpr double least_drift_gain = 2.0;
+constexpr double stretch_time = 300.0;  // s
+constexpr int parts = 5;
+
+/// Least squares with a pseudo-inverse, columns scaled alike.
+Eigen::VectorXd solved(const Eigen::MatrixXd& information, const Eigen::VectorXd& right) {
+  if (information.rows() == 0) return right;
+  const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scale.asDiagonal() * information *
+                                                              scale.asDiagonal());
+  Eigen::VectorXd inverse = solver.eigenvalues();
+  for (double& value : inverse) value = value > 1e-11 ? 1.0 / value : 0.0;
+  return scale.asDiagonal() *
+         (solver.eigenvectors() *
+          (inverse.asDiagonal() * (solver.eigenvectors().transpose() * (scale.asDiagonal() * right))));
+}
+
+}  // namespace
+
+Analysis::Analysis(std::vector<FlightColumns> flights, std::vector<ColumnGroup> groups, std::uint64_t seed,
+                   double explained)
+    : flights_(std::move(flights)), groups_(std::move(groups)), seed_(seed) {
+  base_ = flights_.front().base.cols();
+  for (const FlightColumns& flight : flights_) {
+    const Binning& bins = bins_.emplace_back(flight.given, flight.samples->time, flight.samples->step);
+    Eigen::MatrixXd& columns = columns_.emplace_back(as_index(bins.size()), base_ + flight.candidates.cols());
+    for (Eigen::Index c = 0; c < base_; ++c) columns.col(c) = bins.means(flight.base.col(c));
+    for (Eigen::Index c = 0; c < flight.candidates.cols(); ++c)
+      columns.col(base_ + c) = bins.means(flight.candidates.col(c));
+    residuals_.push_back(bins.means(flight.given));
+  }
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(base_, base_);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(base_);
+  for (std::size_t f = 0; f < flights_.size(); ++f) {
+    information += columns_[f].leftCols(base_).transpose() * columns_[f].leftCols(base_);
+    right += columns_[f].leftCols(base_).transpose() * residuals_[f];
+  }
+  // Slow effects and slow drift contend for the same part of the residuals, so noise is found from both ends:
+  // with whatever might be an effect taken off first, and with none. The likelier end counts.
+  const Eigen::VectorXd start = solved(information, right);
+  const double by_effects = search_from(start, true, explained);
+  if (result_.chosen.empty() || noise_.drift > 0.0) {
+    const SearchResult result = result_;
+    const double by_drift = search_from(start, false, explained);
+    if (by_effects > by_drift && result.chosen != result_.chosen) search_from(start, true, explained);
+  }
+}
+
+double Analysis::search_from(const Eigen::VectorXd& start, bool generous, double explained) {
+  std::vector<std::size_t> chosen;
+  Eigen::VectorXd estimate = start;
+  Eigen::MatrixXd covariance;
+  for (int round = generous ? 0 : 1; round < most_rounds; ++round) {
+    replace_outliers(chosen, estimate);
+    find_noise(chosen, estimate);
+    if (round == 0) noise_.drift = 0.0;
+    find_search();
+    SearchOptions options;
+    options.seed = seed_;
+    options.explained = explained;
+    if (round == 0) {
+      options.threshold = generous_threshold;
+      options.most_effects = generous_effects;
+    }
+    result_ = search_->run(options);
+    const bool stable = round > 1 && result_.chosen == chosen;
+    chosen = result_.chosen;
+    search_->fit(chosen, estimate, covariance);
+    if (stable) break;
+  }
+  Eigen::Index columns = 0;
+  for (const std::size_t group : chosen) columns += as_index(search_->told(group).size());
+  double scale = 0.0;  // the noise models have levels of their own
+  for (const Eigen::VectorXd& level : noise_.level) scale += 2.0 * level.array().log().sum();
+  return drift_.likelihood - scale - static_cast<double>(columns) * result_.threshold;
+}
+
+std::vector<Eigen::MatrixXd> Analysis::columns_of(const std::vector<std::size_t>& groups) const {
+  std::vector<Eigen::Index> places;
+  for (Eigen::Index c = 0; c < base_; ++c) places.push_back(c);
+  for (const std::size_t group : groups) {
+    for (Eigen::Index k = 0; k < groups_[group].count; ++k)
+      places.push_back(base_ + groups_[group].first + k);
+  }
+  std::vector<Eigen::MatrixXd> result;
+  for (const Eigen::MatrixXd& columns : columns_) result.emplace_back(columns(Eigen::all, places));
+  return result;
+}
+
+std::vector<Eigen::VectorXd> Analysis::left_by(const std::vector<std::size_t>& groups,
+                                               const Eigen::VectorXd& estimate) const {
+  std::vector<Eigen::VectorXd> left = residuals_;
+  const std::vector<Eigen::MatrixXd> columns = columns_of(groups);
+  for (std::size_t f = 0; f < left.size(); ++f) left[f] -= columns[f] * estimate;
+  return left;
+}
+
+std::vector<double> Analysis::added(std::size_t flight, const std::vector<std::size_t>& groups,
+                                    const Eigen::VectorXd& estimate) const {
+  const FlightColumns& columns = flights_[flight];
+  std::vector<double> result(columns.given.size(), nan);
+  for (const std::size_t record : bins_[flight].records()) {
+    const Eigen::Index row = as_index(record);
+    double sum = columns.base.row(row).cast<double>().dot(estimate.head(base_));
+    Eigen::Index place = base_;
+    for (const std::size_t group : groups) {
+      for (Eigen::Index k = 0; k < groups_[group].count; ++k)
+        sum += static_cast<double>(columns.candidates(row, groups_[group].first + k)) * estimate[place++];
+    }
+    result[record] = sum;
+  }
+  return result;
+}
+
+std::vector<double> Analysis::added_by(std::size_t flight, const std::vector<std::size_t>& groups,
+                                       std::size_t which, const Eigen::VectorXd& estimate) const {
+  const FlightColumns& columns = flights_[flight];
+  Eigen::Index place = base_;
+  for (std::size_t i = 0; i < which; ++i) place += groups_[groups[i]].count;
+  const ColumnGroup& group = groups_[groups[which]];
+  std::vector<double> result(columns.given.size(), nan);
+  for (const std::size_t record : bins_[flight].records()) {
+    result[record] = columns.candidates.row(as_index(record))
+                         .segment(group.first, group.count)
+                         .cast<double>()
+                         .dot(estimate.segment(place, group.count));
+  }
+  return result;
+}
+
+void Analysis::replace_outliers(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate) {
+  for (std::size_t f = 0; f < flights_.size(); ++f) {
+    FlightColumns& flight = flights_[f];
+    std::size_t count = 0;
+    const std::vector<double> predicted = added(f, groups, estimate);
+    flight.residual =
+        without_outliers(flight.given, predicted, flight.samples->time, flight.samples->step, count);
+    // A record that is in no bin has no prediction; it does not count anyway.
+    residuals_[f] = bins_[f].means(flight.residual);
+  }
+}
+
+void Analysis::find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate) {
+  noise_ = estimate_noise(bins_, left_by(groups, estimate));
+  drift_ = likely_drift(bins_, columns_of(groups), residuals_, noise_);
+  noise_.drift = drift_.gain > least_drift_gain ? drift_.size : 0.0;
+}
+
+void Analysis::find_search() {
+  scores_ = std::make_unique<Scores>(find_scores(bins_, columns_, residuals_, noise_));
+  search_ = std::make_unique<Search>(*scores_, base_, groups_);
+}
+
+double Analysis::held_out_rms(const std::vector<std::size_t>& groups) const {
+  const std::vector<Eigen::MatrixXd> columns = columns_of(groups);
+  const Eigen::Index width = columns.front().cols() + 1;
+  std::vector<Eigen::MatrixXd> information(parts, Eigen::MatrixXd::Zero(width, width));
+  const auto part_of = [](double seconds) {
+    return static_cast<std::size_t>(std::fmod(std::floor(seconds / stretch_time), parts));
+  };
+  for (std::size_t f = 0; f < columns.size(); ++f) {
+    Eigen::MatrixXd all(columns[f].rows(), width);
+    all << columns[f], residuals_[f];
+    const Eigen::MatrixXd white = whitened(all, bins_[f], noise_, f);
+    for (Eigen::Index i = 0; i < white.rows(); ++i) {
+      const std::size_t part =
+          part_of(bins_[f].time()[static_cast<std::size_t>(i)] - flights_[f].samples->time.front());
+      information[part].selfadjointView<Eigen::Lower>().rankUpdate(white.row(i).transpose());
+    }
+  }
+  Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(width, width);
+  for (Eigen::MatrixXd& part : information) {
+    part = part.selfadjointView<Eigen::Lower>();
+    whole += part;
+  }
+  std::vector<Eigen::VectorXd> estimates;
+  for (const Eigen::MatrixXd& part : information) {
+    const Eigen::MatrixXd rest = whole - part;
+    estimates.push_back(
+        solved(rest.topLeftCorner(width - 1, width - 1), rest.col(width - 1).head(width - 1)));
+  }
+  double squares = 0.0;
+  double count = 0.0;
+  for (std::size_t f = 0; f < columns.size(); ++f) {
+    std::vector<std::vector<double>> predicted;
+    for (const Eigen::VectorXd& estimate : estimates) predicted.push_back(added(f, groups, estimate));
+    const FlightSamples& samples = *flights_[f].samples;
+    for (const std::size_t record : bins_[f].records()) {
+      if (flights_[f].residual[record] != flights_[f].given[record]) continue;  // an outlier
+      const std::size_t part = part_of(samples.time[record] - samples.time.front());
+      const double left = flights_[f].given[record] - predicted[part][record];
+      squares += left * left;
+      count += 1.0;
+    }
+  }
+  return std::sqrt(squares / count);
+}
+
+std::vector<double> Analysis::drift(std::size_t flight, const std::vector<std::size_t>& groups) const {
+  std::vector<double> result(flights_[flight].given.size(), nan);
+  const Binning& bins = bins_[flight];
+  for (const std::size_t record : bins.records()) result[record] = 0.0;
+  if (!(noise_.drift > 0.0)) return result;
+  Eigen::VectorXd estimate;
+  Eigen::MatrixXd covariance;
+  search_->fit(groups, estimate, covariance);
+  const Eigen::MatrixXd shapes = drift_shapes(bins);
+  const Eigen::MatrixXd white = whitened(shapes, bins, noise_, flight);
+  const Eigen::VectorXd left = whitened(left_by(groups, estimate)[flight], bins, noise_, flight);
+  Eigen::MatrixXd normal = white.transpose() * white;
+  normal.diagonal().array() += 1.0 / (noise_.drift * noise_.drift);
+  const Eigen::VectorXd series = shapes * normal.ldlt().solve(white.transpose() * left);
+  for (std::size_t k = 0; k < bins.records().size(); ++k) result[bins.records()[k]] = series[bins.bins()[k]];
+  return result;
+}
+
+}  // namespace pcor

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "columns.hpp"
+#include "noise_model.hpp"
+#include "scores.hpp"
+#include "search.hpp"
+
+namespace pcor {
+
+/// The statistics of a diagnosis: noise and missing effects of some flights, found in turn, since each needs
+/// the other.
+class Analysis {
+ public:
+  /// @param groups of columns of the flights' candidates, one for each effect that is tested
+  /// @param explained chi2 by effects that were found before and are in the model now
+  Analysis(std::vector<FlightColumns> flights, std::vector<ColumnGroup> groups, std::uint64_t seed,
+           double explained = 0.0);
+
+  const std::vector<FlightColumns>& flights() const { return flights_; }
+  const std::vector<Binning>& bins() const { return bins_; }
+  const NoiseModel& noise() const { return noise_; }
+  /// Twice the gain in log-likelihood by slow drift.
+  double drift_gain() const { return drift_.gain; }
+  const Search& search() const { return *search_; }
+  const Scores& scores() const { return *scores_; }
+  const std::vector<ColumnGroup>& groups() const { return groups_; }
+  const SearchResult& result() const { return result_; }
+  Eigen::Index base() const { return base_; }
+
+  /// Columns of base and of some groups, in bins, of each flight.
+  std::vector<Eigen::MatrixXd> columns_of(const std::vector<std::size_t>& groups) const;
+  /// Residuals in bins, outliers replaced.
+  const std::vector<Eigen::VectorXd>& residuals() const { return residuals_; }
+
+  /// What base and groups add to the residual of every record of a flight, hPa. @param estimate of base and
+  /// the groups' columns, as `Search::fit` gives it
+  std::vector<double> added(std::size_t flight, const std::vector<std::size_t>& groups,
+                            const Eigen::VectorXd& estimate) const;
+  /// What the group at place `which` of `groups` adds alone.
+  std::vector<double> added_by(std::size_t flight, const std::vector<std::size_t>& groups, std::size_t which,
+                               const Eigen::VectorXd& estimate) const;
+
+  /// The rms of residuals, hPa, on stretches of five minutes that took no part in the fit of base and
+  /// groups: one in five of them at a time. Outliers are left out.
+  double held_out_rms(const std::vector<std::size_t>& groups) const;
+
+  /// The drift of a flight that is most likely after base and `groups`, one value for each record, hPa.
+  std::vector<double> drift(std::size_t flight, const std::vector<std::size_t>& groups) const;
+
+ private:
+  /// Noise and effects in turn until they are stable; the likelihood of what came out, less what its effects
+  /// cost. @param generous the first noise is found with whatever might be an effect taken off
+  double search_from(const Eigen::VectorXd& start, bool generous, double explained);
+  void replace_outliers(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate);
+  void find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate);
+  void find_search();
+  std::vector<Eigen::VectorXd> left_by(const std::vector<std::size_t>& groups,
+                                       const Eigen::VectorXd& estimate) const;
+
+  std::vector<FlightColumns> flights_;
+  std::vector<ColumnGroup> groups_;
+  std::uint64_t seed_;
+  Eigen::Index base_ = 0;
+  std::vector<Binning> bins_{};
+  std::vector<Eigen::MatrixXd> columns_{};  // base and candidates, in bins
+  std::vector<Eigen::VectorXd> residuals_{};
+  NoiseModel noise_{};
+  DriftFit drift_{};
+  std::unique_ptr<Scores> scores_{};
+  std::unique_ptr<Search> search_{};
+  SearchResult result_{};
+};
+
+}  // namespace pcor

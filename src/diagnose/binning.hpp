@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstddef>
+#include <vector>
+
+#include "pcor/offline/noise.hpp"
+
+namespace pcor {
+
+/// Means over about four seconds: long enough that the noise of sensors is not what whitening amplifies,
+/// short enough for every manoeuvre.
+class Binning {
+ public:
+  /// @param residual one value for each record, NaN where not used; @param time s; @param step s
+  Binning(const std::vector<double>& residual, const std::vector<double>& time, double step);
+
+  std::size_t size() const { return time_.size(); }
+  /// Middles of the bins, s.
+  const std::vector<double>& time() const { return time_; }
+  /// Bins that follow one another without a gap.
+  const std::vector<Stretch>& stretches() const { return stretches_; }
+
+  /// The means of a column that has one value for each record, over the records that are used.
+  template <class Column>
+  Eigen::VectorXd means(const Column& values) const {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(size()));
+    for (std::size_t k = 0; k < record_.size(); ++k)
+      sum[bin_[k]] += static_cast<double>(values[static_cast<Eigen::Index>(record_[k])]);
+    return sum.cwiseQuotient(count_);
+  }
+
+  /// The records that are in bins, and the bin of each.
+  const std::vector<std::size_t>& records() const { return record_; }
+  const std::vector<Eigen::Index>& bins() const { return bin_; }
+
+ private:
+  std::vector<std::size_t> record_;
+  std::vector<Eigen::Index> bin_;
+  Eigen::VectorXd count_;
+  std::vector<double> time_;
+  std::vector<Stretch> stretches_;
+};
+
+}  // namespace pcor

@@ -1,0 +1,173 @@
+#include "candidates.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "../usual_variables.hpp"
+#include "pcor/effects/catalogue.hpp"
+#include "pcor/offline/error.hpp"
+#include "pcor/realtime/chain.hpp"
+
+namespace pcor {
+namespace {
+
+bool has_effect(const ModelFile& model, std::string_view id) {
+  const std::vector<ModelEffect>& effects = model.model.effects;
+  return std::any_of(effects.begin(), effects.end(), [id](const ModelEffect& e) { return e.id == id; });
+}
+
+/// Whether every flight records `variable` in a unit that fits the role.
+bool is_recorded(const std::vector<const Flight*>& flights, const std::string& variable, Quantity role) {
+  return std::all_of(flights.begin(), flights.end(), [&](const Flight* flight) {
+    if (!flight->has(variable) || !flight->variable(variable).is_series) return false;
+    try {
+      flight->conversion(variable, std::string(facts_of(role).unit));
+      flight->require_values(variable);
+    } catch (const Error&) {
+      return false;
+    }
+    return true;
+  });
+}
+
+/// Names the usual variables of the roles that the model leaves open. The flow angles stay as they are where
+/// the model computes them from the radome.
+void name_usual_variables(ModelFile& file, const std::vector<const Flight*>& flights) {
+  for (std::size_t i = 0; i < role_count; ++i) {
+    const auto role = static_cast<Quantity>(i);
+    if (file.variables.count(role) != 0) continue;
+    if (role == Quantity::attack && file.model.attack_radome.is_calibrated()) continue;
+    if (role == Quantity::sideslip && file.model.sideslip_radome.is_calibrated()) continue;
+    for (const std::string& variable : usual_variables(role)) {
+      if (!is_recorded(flights, variable, role)) continue;
+      file.variables[role] = variable;
+      break;
+    }
+  }
+}
+
+Candidate candidate_of(const EffectFacts& facts) {
+  Candidate candidate;
+  candidate.effect = neutral_effect(facts.id);
+  candidate.title = std::string(facts.title);
+  for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
+    const ParameterFacts& parameter = facts.parameters[i];
+    if (parameter.shape) continue;
+    candidate.tested.push_back({i,
+                                std::string(parameter.name),
+                                std::string(parameter.unit),
+                                parameter.typical,
+                                {parameter.lower - parameter.neutral, parameter.upper - parameter.neutral}});
+  }
+  return candidate;
+}
+
+/// The candidate in other shapes: its shape parameter at some places between its bounds.
+std::vector<Candidate> variants_of(const Candidate& candidate) {
+  constexpr std::array<double, 4> places{0.15, 0.4, 0.6, 0.85};
+  std::vector<Candidate> variants;
+  if (candidate.effect.is_formula()) return variants;
+  const EffectFacts& facts = effect_facts[effect_named(candidate.effect.id)];
+  for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
+    if (!facts.parameters[i].shape) continue;
+    for (const double place : places) {
+      Candidate& variant = variants.emplace_back(candidate);
+      const ParameterFacts& shape = facts.parameters[i];
+      variant.effect.parameters[i] = shape.lower + place * (shape.upper - shape.lower);
+      variant.is_variant = true;
+    }
+  }
+  return variants;
+}
+
+Candidate candidate_of(const ModelEffect& formula) {
+  Candidate candidate;
+  candidate.effect = formula;
+  candidate.title = fmt::format("formula {}", formula.formula);
+  for (std::size_t i = 0; i < formula.parameter_names.size(); ++i) {
+    candidate.effect.parameters[i] = 0.0;
+    candidate.tested.push_back({i, formula.parameter_names[i], "", 0.0, {}});
+  }
+  return candidate;
+}
+
+/// Why the model cannot have `effect` on what is recorded; nothing where it can.
+std::optional<std::string> obstacle(const Model& model, const ModelEffect& effect,
+                                    const std::vector<Quantity>& roles) {
+  Model with = model;
+  with.effects.push_back(effect);
+  std::string why;
+  if (Chain::build(with, roles, &why)) return std::nullopt;
+  const std::string prefix = fmt::format("effect '{}' ", effect.id);
+  if (why.compare(0, prefix.size(), prefix) == 0) why.erase(0, prefix.size());
+  return why;
+}
+
+/// Of a formula: the variable that some flight lacks; empty where there is none.
+std::string missing_variable(const ModelFile& model, const ModelEffect& effect,
+                             const std::vector<const Flight*>& flights) {
+  const auto formula = Formula::parse(effect.formula, effect.parameter_names, nullptr);
+  if (!formula) return "";
+  for (const std::string& name : formula->variables()) {
+    if (quantity_named(name) != Quantity::count) continue;
+    for (const Flight* flight : flights) {
+      if (!flight->has(name)) return fmt::format("{} has no variable {}", flight->path().string(), name);
+      try {
+        flight->require_values(name);
+      } catch (const Error& error) {
+        return error.what();
+      }
+    }
+  }
+  static_cast<void>(model);
+  return "";
+}
+
+}  // namespace
+
+CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffect>& formulas,
+                             const std::vector<const Flight*>& flights) {
+  CandidateSet set;
+  set.extended = model;
+  name_usual_variables(set.extended, flights);
+  const std::vector<Quantity> roles = set.extended.roles();
+  const auto consider = [&](Candidate candidate) {
+    if (std::optional<std::string> why = obstacle(set.extended.model, candidate.effect, roles)) {
+      set.not_testable.push_back({candidate.effect.id, candidate.title, *why});
+      return;
+    }
+    set.extended.model.effects.push_back(candidate.effect);
+    std::vector<Candidate> variants = variants_of(candidate);
+    set.candidates.push_back(std::move(candidate));
+    for (Candidate& variant : variants) set.candidates.push_back(std::move(variant));
+  };
+  for (const ModelEffect& formula : formulas) {
+    if (has_effect(set.extended, formula.id)) continue;
+    Candidate candidate = candidate_of(formula);
+    if (std::string why = missing_variable(model, formula, flights); !why.empty()) {
+      set.not_testable.push_back({formula.id, candidate.title, std::move(why)});
+      continue;
+    }
+    consider(std::move(candidate));
+  }
+  for (const EffectFacts& facts : effect_facts) {
+    if (has_effect(model, facts.id)) continue;
+    if (facts.constants == GasConstants::dry && model.model.moist) {
+      set.not_testable.push_back(
+          {std::string(facts.id), std::string(facts.title), "the model uses the constants of moist air"});
+      continue;
+    }
+    if (facts.constants == GasConstants::moist && !model.model.moist) {
+      set.not_testable.push_back(
+          {std::string(facts.id), std::string(facts.title), "the model uses the constants of dry air"});
+      continue;
+    }
+    consider(candidate_of(facts));
+  }
+  return set;
+}
+
+}  // namespace pcor

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pcor/offline/diagnose.hpp"
+#include "pcor/offline/flight.hpp"
+#include "pcor/offline/model_file.hpp"
+
+namespace pcor {
+
+/// A parameter of a candidate that is tested.
+struct CandidateParameter {
+  std::size_t place = 0;  ///< among the parameters of its effect
+  std::string name;
+  std::string unit;
+  double typical = 0.0;  ///< 0 where nobody knows
+  Bounds bounds{};       ///< of what physics allows, as a change from the neutral value
+};
+
+/// An effect that the model may lack.
+struct Candidate {
+  ModelEffect effect;  ///< with its neutral parameters, and shapes as they are tried
+  std::string title;
+  std::vector<CandidateParameter> tested{};
+  bool is_variant = false;  ///< the same effect as a candidate before it, in another shape
+};
+
+/// What can be tested on some flights.
+struct CandidateSet {
+  /// The model with every candidate besides, and the variables of all roles that these need.
+  ModelFile extended;
+  std::vector<Candidate> candidates{};
+  std::vector<NotTestable> not_testable{};
+};
+
+/// The effects of the catalogue that are not in the model, and the formulas. An effect whose inputs some
+/// flight lacks is not testable, and told so.
+CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffect>& formulas,
+                             const std::vector<const Flight*>& flights);
+
+}  // namespace pcor

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "candidates.hpp"
+#include "pcor/offline/residuals.hpp"
+
+namespace pcor {
+
+/// What a diagnosis sees of a flight, one value for each record.
+///
+/// Columns are changes of the residual, with the sign turned: what a unit of a coefficient takes away. They
+/// are derivatives through the whole chain where the model says that the air is, never at the noisy speed of
+/// the laser, whose noise is that of the residual.
+struct FlightColumns {
+  std::shared_ptr<const FlightSamples> samples;
+  std::vector<Mask> mask;
+  std::vector<double> given;     ///< the residual with the coefficients of the model, hPa; NaN where not used
+  std::vector<double> residual;  ///< the same; in the diagnosis outliers are replaced, hPa
+  Eigen::MatrixXf base;          ///< of the model's free coefficients, hPa per unit
+  Eigen::MatrixXf candidates;    ///< of the tested parameters of all candidates, one after another
+  /// How the flight was flown, for smooth functions and pictures; NaN everywhere where not known.
+  std::vector<std::pair<Quantity, std::vector<double>>> quantities{};
+  std::vector<double> corrected_pressure{};  ///< static, hPa
+
+  const std::vector<double>& quantity(Quantity quantity) const;
+};
+
+/// Finds the columns of one flight.
+///
+/// @param extended samples that hold what the model and all candidates read
+/// @param first_part only the first part of the samples is used, 0 to 1
+/// @throws Error if the model cannot be used on the samples.
+FlightColumns find_columns(std::shared_ptr<const FlightSamples> extended, const ModelFile& model,
+                           const CandidateSet& set, const Reference& reference, const MaskOptions& mask,
+                           double first_part);
+
+/// The names of the free coefficients of a model, like "static-qp.a2": the base of the columns.
+std::vector<std::string> base_names(const ModelFile& model);
+
+}  // namespace pcor

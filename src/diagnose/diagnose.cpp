@@ -1,0 +1,281 @@
+#include "pcor/offline/diagnose.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "../triangular_factor.hpp"
+#include "advice.hpp"
+#include "analysis.hpp"
+#include "candidates.hpp"
+#include "columns.hpp"
+#include "findings.hpp"
+#include "pcor/offline/compare.hpp"
+#include "pcor/offline/error.hpp"
+#include "unexplained.hpp"
+
+namespace pcor {
+namespace {
+
+constexpr std::size_t fewest_samples = 300;
+
+/// Why a candidate cannot be tested on these columns; empty where it can.
+std::string trouble_of(const std::vector<FlightColumns>& flights, Eigen::Index first, Eigen::Index count) {
+  bool varies = false;
+  for (const FlightColumns& flight : flights) {
+    std::size_t missing = 0;
+    std::size_t used = 0;
+    for (std::size_t i = 0; i < flight.given.size(); ++i) {
+      if (std::isnan(flight.given[i])) continue;
+      ++used;
+      const auto values = flight.candidates.row(as_index(i)).segment(first, count);
+      missing += values.allFinite() ? 0 : 1;
+      varies = varies || values.cwiseAbs().maxCoeff() > 0.0F;
+    }
+    if (missing > 0) {
+      return fmt::format("an input has no value, or an impossible one, in {} of {} samples of {}", missing,
+                         used, flight.samples->name);
+    }
+  }
+  if (!varies)
+    return "nothing of it reaches the residual in the samples used: what it depends on does not occur there, "
+           "or the reference does not see it";
+  return "";
+}
+
+/// Takes out the candidates that cannot be tested, and their columns.
+void drop_untestable(CandidateSet& set, std::vector<FlightColumns>& flights) {
+  std::vector<Eigen::Index> kept;
+  std::vector<Candidate> candidates;
+  Eigen::Index first = 0;
+  for (Candidate& candidate : set.candidates) {
+    const Eigen::Index count = as_index(candidate.tested.size());
+    std::string trouble = trouble_of(flights, first, count);
+    if (trouble.empty()) {
+      for (Eigen::Index k = 0; k < count; ++k) kept.push_back(first + k);
+      candidates.push_back(std::move(candidate));
+    } else if (!candidate.is_variant) {
+      set.not_testable.push_back({candidate.effect.id, candidate.title, std::move(trouble)});
+    }
+    first += count;
+  }
+  set.candidates = std::move(candidates);
+  for (FlightColumns& flight : flights)
+    flight.candidates = Eigen::MatrixXf(flight.candidates(Eigen::all, kept));
+}
+
+std::vector<ColumnGroup> groups_of(const std::vector<Candidate>& candidates) {
+  std::vector<ColumnGroup> groups;
+  Eigen::Index first = 0;
+  std::size_t effect = 0;
+  std::string before;
+  for (const Candidate& candidate : candidates) {
+    if (candidate.effect.id != before) ++effect;
+    before = candidate.effect.id;
+    ColumnGroup& group = groups.emplace_back();
+    group.effect = effect;
+    group.first = first;
+    group.count = as_index(candidate.tested.size());
+    for (const CandidateParameter& parameter : candidate.tested) group.bounds.push_back(parameter.bounds);
+    first += group.count;
+  }
+  return groups;
+}
+
+double given_rms(const std::vector<FlightColumns>& flights) {
+  double squares = 0.0;
+  double count = 0.0;
+  for (const FlightColumns& flight : flights) {
+    for (const double value : flight.given) {
+      if (std::isnan(value)) continue;
+      squares += value * value;
+      count += 1.0;
+    }
+  }
+  return std::sqrt(squares / count);
+}
+
+double rms_of(const std::vector<FlightDiagnosis>& flights, std::vector<double> FlightDiagnosis::*series) {
+  double squares = 0.0;
+  double count = 0.0;
+  for (const FlightDiagnosis& flight : flights) {
+    for (const double value : flight.*series) {
+      if (std::isnan(value)) continue;
+      squares += value * value;
+      count += 1.0;
+    }
+  }
+  return std::sqrt(squares / count);
+}
+
+std::vector<FlightDiagnosis> flights_of(const Analysis& analysis) {
+  const std::vector<std::size_t>& chosen = analysis.result().chosen;
+  const Search& search = analysis.search();
+  Eigen::VectorXd with;
+  Eigen::VectorXd without;
+  Eigen::MatrixXd covariance;
+  search.fit({}, without, covariance);
+  search.fit(chosen, with, covariance);
+  std::vector<FlightDiagnosis> flights;
+  for (std::size_t f = 0; f < analysis.flights().size(); ++f) {
+    const FlightColumns& columns = analysis.flights()[f];
+    FlightDiagnosis& flight = flights.emplace_back();
+    flight.samples = columns.samples;
+    flight.mask = columns.mask;
+    const std::vector<double> base = analysis.added(f, {}, without);
+    const std::vector<double> all = analysis.added(f, chosen, with);
+    flight.before = columns.given;
+    flight.after = columns.given;
+    for (std::size_t i = 0; i < base.size(); ++i) {
+      flight.before[i] -= base[i];
+      flight.after[i] -= all[i];
+    }
+    for (std::size_t k = 0; k < chosen.size(); ++k)
+      flight.added.push_back(analysis.added_by(f, chosen, k, with));
+    flight.evidence = evidence_along(analysis, f);
+    flight.drift = analysis.drift(f, chosen);
+    flight.static_pressure = columns.corrected_pressure;
+    flight.mach = columns.quantity(Quantity::corrected_mach);
+    flight.attack = columns.quantity(Quantity::attack);
+    flight.sideslip = columns.quantity(Quantity::sideslip);
+  }
+  return flights;
+}
+
+double noise_of(const std::vector<FlightDiagnosis>& flights) {
+  double squares = 0.0;
+  double count = 0.0;
+  for (const FlightDiagnosis& flight : flights) {
+    const FlightSamples& samples = *flight.samples;
+    const NoiseFloor floor =
+        noise_floor(flight.after, stretches_of(flight.after, samples.time, samples.step), samples.step);
+    const auto used = static_cast<double>(
+        std::count_if(flight.after.begin(), flight.after.end(), [](double x) { return !std::isnan(x); }));
+    if (!std::isfinite(floor.rms)) continue;
+    squares += floor.rms * floor.rms * used;
+    count += used;
+  }
+  return std::sqrt(squares / count);
+}
+
+Verdict verdict_of(const Diagnosis& diagnosis, double explained, double left) {
+  constexpr double notable = 0.03;  // of what was explained
+  if (diagnosis.findings.empty())
+    return diagnosis.unexplained.significant ? Verdict::unexplained : Verdict::silent;
+  if (diagnosis.unexplained.significant && left > notable * explained) return Verdict::partial;
+  const bool alone = std::all_of(diagnosis.findings.begin(), diagnosis.findings.end(),
+                                 [](const Finding& finding) { return finding.aliases.empty(); });
+  return alone ? Verdict::identified : Verdict::ambiguous;
+}
+
+/// Takes back the findings where one variable of the files explains more than they do.
+void overrule(Diagnosis& diagnosis) {
+  for (const Finding& finding : diagnosis.findings) {
+    diagnosis.notes.push_back(
+        fmt::format("{} explains a part of what is missing, but a line in {} explains more: it is not taken "
+                    "for the cause",
+                    finding.effect.id, diagnosis.unexplained.variables.front().name));
+  }
+  diagnosis.findings.clear();
+  for (FlightDiagnosis& flight : diagnosis.flights) {
+    flight.after = flight.before;
+    flight.added.clear();
+    flight.evidence.clear();
+  }
+}
+
+}  // namespace
+
+std::string_view name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::silent:
+      return "silent";
+    case Verdict::identified:
+      return "identified";
+    case Verdict::ambiguous:
+      return "cannot be told apart";
+    case Verdict::partial:
+      return "partial";
+    case Verdict::unexplained:
+      return "unexplained";
+  }
+  return "";
+}
+
+Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelFile& model,
+                   const Reference& reference, const DiagnoseOptions& options) {
+  if (paths.empty()) throw Error("nothing to diagnose; give at least one flight");
+  std::vector<Flight> files;
+  std::vector<std::pair<std::string, std::string>> aircraft;
+  for (const std::filesystem::path& path : paths) {
+    files.emplace_back(path, options.time_stamp);
+    aircraft.emplace_back(path.filename().string(), files.back().aircraft());
+  }
+  require_one_aircraft(aircraft);
+  std::vector<const Flight*> flights;
+  for (const Flight& file : files) flights.push_back(&file);
+
+  Diagnosis diagnosis;
+  diagnosis.reference = reference.description();
+  CandidateSet set = find_candidates(model, options.formulas, flights);
+  std::vector<FlightColumns> columns;
+  for (const Flight* flight : flights) {
+    auto samples =
+        std::make_shared<FlightSamples>(read_samples(*flight, set.extended, reference, options.mask));
+    diagnosis.notes.insert(diagnosis.notes.end(), samples->notes.begin(), samples->notes.end());
+    columns.push_back(
+        find_columns(std::move(samples), model, set, reference, options.mask, options.training_share));
+    for (const Mask mask : columns.back().mask) ++diagnosis.masks[static_cast<std::size_t>(mask)];
+    if (options.progress) options.progress(columns.size(), flights.size());
+  }
+  for (const FlightColumns& flight : columns) {
+    diagnosis.samples += static_cast<std::size_t>(
+        std::count_if(flight.given.begin(), flight.given.end(), [](double x) { return !std::isnan(x); }));
+  }
+  if (diagnosis.samples < diagnosis.masks[0]) {
+    diagnosis.notes.push_back(fmt::format("{} samples of the later parts of the flights took no part",
+                                          diagnosis.masks[0] - diagnosis.samples));
+  }
+  if (diagnosis.samples < fewest_samples) {
+    throw Error(fmt::format("{} samples are left to diagnose, and {} are the fewest that tell anything: {}",
+                            diagnosis.samples, fewest_samples, mask_text(diagnosis.masks)));
+  }
+  drop_untestable(set, columns);
+  diagnosis.candidates = static_cast<std::size_t>(
+      std::count_if(set.candidates.begin(), set.candidates.end(),
+                    [](const Candidate& candidate) { return !candidate.is_variant; }));
+
+  const auto started = std::chrono::steady_clock::now();
+  const Analysis analysis(std::move(columns), groups_of(set.candidates), options.seed, options.explained);
+  diagnosis.threshold = analysis.result().threshold;
+  diagnosis.findings = findings_of(analysis, set.candidates);
+  advise(analysis, set, model, reference, options.mask, diagnosis.findings);
+  diagnosis.absorbed = absorbed_of(analysis, set.candidates, base_names(model));
+  diagnosis.limits = limits_of(analysis, set.candidates, diagnosis.findings);
+  diagnosis.not_testable = std::move(set.not_testable);
+  diagnosis.flights = flights_of(analysis);
+  diagnosis.rms_given = given_rms(analysis.flights());
+  diagnosis.residual_rms = rms_of(diagnosis.flights, &FlightDiagnosis::before);
+  diagnosis.residual_rms_held_out = analysis.held_out_rms({});
+  diagnosis.noise_rms = noise_of(diagnosis.flights);
+  diagnosis.statistics_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  const double rms_after = rms_of(diagnosis.flights, &FlightDiagnosis::after);
+  UnexplainedStructure structure =
+      find_unexplained(analysis, files, model, reference, options, rms_after, diagnosis.noise_rms);
+  diagnosis.unexplained = std::move(structure.found);
+  for (std::size_t f = 0; f < structure.traced.size(); ++f)
+    diagnosis.flights[f].traced = std::move(structure.traced[f]);
+  if (structure.overrules) overrule(diagnosis);
+  double explained = 0.0;
+  for (const Finding& finding : diagnosis.findings) explained += finding.chi2;
+  diagnosis.verdict = verdict_of(diagnosis, explained, structure.left);
+  std::sort(diagnosis.notes.begin(), diagnosis.notes.end());
+  diagnosis.notes.erase(std::unique(diagnosis.notes.begin(), diagnosis.notes.end()), diagnosis.notes.end());
+  return diagnosis;
+}
+
+}  // namespace pcor

@@ -1,0 +1,364 @@
+#include "findings.hpp"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "../triangular_factor.hpp"
+#include "pcor/effects/catalogue.hpp"
+
+namespace pcor {
+namespace {
+
+constexpr double two_sided_95 = 1.959963984540054;  // standard deviations of a normal distribution
+constexpr double alias_margin = 9.0;                // chance of losing the truth to one rival 0.13 %
+constexpr std::size_t most_evidence = 6;
+
+/// The parameters that these flights tell; the others are imitated by the model's own coefficients.
+std::vector<Estimate> estimates_of(const Candidate& candidate, const std::vector<Eigen::Index>& told,
+                                   const Eigen::VectorXd& values, const Eigen::MatrixXd& covariance) {
+  std::vector<Estimate> estimates;
+  for (const Eigen::Index k : told) {
+    const CandidateParameter& parameter = candidate.tested[static_cast<std::size_t>(k)];
+    estimates.push_back({parameter.name, parameter.unit, values[k],
+                         std::sqrt(std::max(0.0, covariance(k, k))), parameter.typical});
+  }
+  return estimates;
+}
+
+/// A stretch of minutes in a row that speak for an effect.
+struct Event {
+  std::size_t flight = 0;
+  double begin = 0.0;
+  double end = 0.0;
+  double evidence = 0.0;
+};
+
+/// The evidence of every minute for a group: of the rows that only it could explain, the product with what is
+/// left. Its sum is the chi2.
+Eigen::VectorXd evidence_of(const Analysis& analysis, std::size_t group,
+                            const std::vector<std::size_t>& chosen) {
+  const Scores& scores = analysis.scores();
+  const std::vector<Eigen::VectorXd> rows = analysis.search().leftover_rows(group, chosen);
+  std::vector<std::size_t> others = chosen;
+  others.erase(std::find(others.begin(), others.end(), group));
+  const std::vector<Eigen::VectorXd> left = analysis.search().left(others);
+  const double variance = analysis.search().variance(chosen);
+  Eigen::VectorXd evidence = Eigen::VectorXd::Zero(scores.blocks);
+  for (std::size_t f = 0; f < rows.size(); ++f) {
+    for (Eigen::Index i = 0; i < rows[f].size(); ++i)
+      evidence[scores.block[f][static_cast<std::size_t>(i)]] += rows[f][i] * left[f][i] / variance;
+  }
+  return evidence;
+}
+
+std::vector<Event> events_of(const Analysis& analysis, const Eigen::VectorXd& evidence) {
+  constexpr double minute = 60.0;  // s
+  const Scores& scores = analysis.scores();
+  // A minute counts as part of an event where it has more than its share.
+  const double share = evidence.cwiseMax(0.0).sum() / static_cast<double>(evidence.size());
+  std::vector<Event> events;
+  for (std::size_t f = 0; f < scores.block.size(); ++f) {
+    const std::vector<double>& time = analysis.bins()[f].time();
+    Eigen::Index before = -1;
+    bool open = false;
+    for (std::size_t i = 0; i < time.size(); ++i) {
+      const Eigen::Index block = scores.block[f][i];
+      if (block == before) continue;
+      before = block;
+      if (evidence[block] > share) {
+        if (!open || time[i] > events.back().end + minute) events.push_back({f, time[i], time[i], 0.0});
+        open = true;
+        events.back().end = time[i] + minute;
+        events.back().evidence += evidence[block];
+      }
+    }
+  }
+  return events;
+}
+
+/// How many events of equal weight these come to.
+double count_of(const std::vector<Event>& events) {
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const Event& event : events) {
+    sum += event.evidence;
+    squares += event.evidence * event.evidence;
+  }
+  return squares > 0.0 ? sum * sum / squares : 0.0;
+}
+
+bool is_one_of(const std::string& effect, const std::vector<std::size_t>& chosen,
+               const std::vector<Candidate>& candidates) {
+  return std::any_of(chosen.begin(), chosen.end(),
+                     [&](std::size_t group) { return candidates[group].effect.id == effect; });
+}
+
+std::vector<Alias> aliases_of(const Analysis& analysis, const std::vector<Candidate>& candidates,
+                              std::size_t winner, const std::vector<std::size_t>& chosen) {
+  const Search& search = analysis.search();
+  const GroupScore best = search.score(winner, chosen);
+  std::vector<std::size_t> others = chosen;
+  others.erase(std::find(others.begin(), others.end(), winner));
+  std::vector<Alias> aliases;
+  for (std::size_t g = 0; g < candidates.size(); ++g) {
+    if (search.is_absorbed(g) || std::find(chosen.begin(), chosen.end(), g) != chosen.end()) continue;
+    if (is_one_of(candidates[g].effect.id, chosen, candidates)) continue;
+    const GroupScore score = search.score(g, others);
+    // Each direction explains one unit of noise.
+    const double less = (best.chi2 - best.freedom) - (score.chi2 - score.freedom);
+    if (!score.possible || less > alias_margin) continue;
+    Alias alias;
+    alias.effect = candidates[g].effect.id;
+    alias.title = candidates[g].title;
+    alias.correlation = search.correlation(winner, g, others);
+    alias.chi2_less = less;
+    alias.estimates = estimates_of(candidates[g], search.told(g), score.estimate, score.covariance);
+    const Estimate& first = alias.estimates.front();
+    if (first.typical != 0.0) alias.size_to_usual = first.value / first.typical;
+    aliases.push_back(std::move(alias));
+  }
+  std::sort(aliases.begin(), aliases.end(),
+            [](const Alias& a, const Alias& b) { return a.chi2_less < b.chi2_less; });
+  // Of an effect in several shapes the best one stands for all.
+  std::set<std::string> seen;
+  aliases.erase(std::remove_if(aliases.begin(), aliases.end(),
+                               [&seen](const Alias& alias) { return !seen.insert(alias.effect).second; }),
+                aliases.end());
+  return aliases;
+}
+
+/// Whether an effect there is part of the corrected static pressure.
+bool corrects_static_pressure(const ModelEffect& effect) {
+  const Where where = effect.is_formula() ? effect.where : effect_facts[effect_named(effect.id)].where;
+  return where == Where::static_defect || where == Where::static_line || where == Where::static_transducer;
+}
+
+/// What base and groups add to the corrected static pressure of every record used, beyond the base alone.
+std::vector<double> static_change(const Analysis& analysis, const std::vector<Candidate>& candidates,
+                                  const std::vector<std::size_t>& groups) {
+  Eigen::VectorXd with;
+  Eigen::VectorXd alone;
+  Eigen::MatrixXd covariance;
+  analysis.search().fit(groups, with, covariance);
+  analysis.search().fit({}, alone, covariance);
+  with.head(analysis.base()) -= alone;
+  Eigen::Index place = analysis.base();
+  for (const std::size_t group : groups) {
+    const Eigen::Index count = analysis.groups()[group].count;
+    if (!corrects_static_pressure(candidates[group].effect)) with.segment(place, count).setZero();
+    place += count;
+  }
+  std::vector<double> change;
+  for (std::size_t f = 0; f < analysis.flights().size(); ++f) {
+    const std::vector<double> added = analysis.added(f, groups, with);
+    for (const std::size_t record : analysis.bins()[f].records()) change.push_back(added[record]);
+  }
+  return change;
+}
+
+double static_risk(const Analysis& analysis, const std::vector<Candidate>& candidates, std::size_t winner,
+                   const std::vector<std::size_t>& chosen, const std::vector<Alias>& aliases) {
+  if (aliases.empty()) return 0.0;
+  const std::vector<double> own = static_change(analysis, candidates, chosen);
+  double risk = 0.0;
+  for (std::size_t g = 0; g < candidates.size(); ++g) {
+    const bool is_alias = std::any_of(aliases.begin(), aliases.end(), [&](const Alias& alias) {
+      return alias.effect == candidates[g].effect.id && !candidates[g].is_variant;
+    });
+    if (!is_alias) continue;
+    std::vector<std::size_t> instead = chosen;
+    std::replace(instead.begin(), instead.end(), winner, g);
+    const std::vector<double> other = static_change(analysis, candidates, instead);
+    double squares = 0.0;
+    for (std::size_t i = 0; i < own.size(); ++i) squares += (own[i] - other[i]) * (own[i] - other[i]);
+    risk = std::max(risk, std::sqrt(squares / static_cast<double>(own.size())));
+  }
+  return risk;
+}
+
+/// Its rms and its extreme over all records used.
+void measure(const Analysis& analysis, const std::vector<std::size_t>& chosen, std::size_t which,
+             const Eigen::VectorXd& estimate, Finding& finding) {
+  double squares = 0.0;
+  double count = 0.0;
+  for (std::size_t f = 0; f < analysis.flights().size(); ++f) {
+    const std::vector<double> added = analysis.added_by(f, chosen, which, estimate);
+    const FlightSamples& samples = *analysis.flights()[f].samples;
+    for (const std::size_t record : analysis.bins()[f].records()) {
+      squares += added[record] * added[record];
+      count += 1.0;
+      if (std::abs(added[record]) <= std::abs(finding.worst)) continue;
+      finding.worst = added[record];
+      finding.worst_flight = samples.name;
+      finding.worst_time = samples.time[record];
+    }
+  }
+  finding.rms = std::sqrt(squares / count);
+}
+
+}  // namespace
+
+std::string regimes_between(const FlightSamples& samples, double begin, double end) {
+  std::set<Regime> regimes;
+  for (const Interval& interval : samples.intervals) {
+    if (interval.begin < end && interval.end > begin) regimes.insert(interval.regime);
+  }
+  std::vector<std::string_view> names;
+  for (const Regime regime : regimes) names.push_back(facts_of(regime).name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Candidate>& candidates) {
+  const std::vector<std::size_t>& chosen = analysis.result().chosen;
+  Eigen::VectorXd estimate;
+  Eigen::MatrixXd covariance;
+  analysis.search().fit(chosen, estimate, covariance);
+  const double with_all = chosen.empty() ? 0.0 : analysis.held_out_rms(chosen);
+  std::vector<Finding> findings;
+  Eigen::Index place = analysis.base();
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const std::size_t group = chosen[i];
+    const Candidate& candidate = candidates[group];
+    const Eigen::Index count = as_index(candidate.tested.size());
+    Finding finding;
+    finding.effect = candidate.effect;
+    finding.title = candidate.title;
+    const std::vector<Eigen::Index>& told = analysis.search().told(group);
+    finding.estimates = estimates_of(candidate, told, estimate.segment(place, count),
+                                     covariance.block(place, place, count, count));
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const CandidateParameter& parameter = candidate.tested[static_cast<std::size_t>(k)];
+      finding.effect.parameters[parameter.place] += estimate[place + k];
+      if (std::find(told.begin(), told.end(), k) == told.end()) finding.held.push_back(parameter.name);
+    }
+    place += count;
+    measure(analysis, chosen, i, estimate, finding);
+    finding.chi2 = analysis.search().score(group, chosen).chi2;
+    finding.p_value = analysis.result().p_values[i];
+    std::vector<std::size_t> without = chosen;
+    without.erase(without.begin() + static_cast<std::ptrdiff_t>(i));
+    finding.rms_before = analysis.held_out_rms(without);
+    finding.rms_after = with_all;
+    const Eigen::VectorXd evidence = evidence_of(analysis, group, chosen);
+    std::vector<Event> events = events_of(analysis, evidence);
+    finding.events = count_of(events);
+    std::sort(events.begin(), events.end(),
+              [](const Event& a, const Event& b) { return a.evidence > b.evidence; });
+    for (std::size_t k = 0; k < std::min(events.size(), most_evidence); ++k) {
+      const FlightSamples& samples = *analysis.flights()[events[k].flight].samples;
+      finding.evidence.push_back({samples.name, events[k].begin, events[k].end,
+                                  regimes_between(samples, events[k].begin, events[k].end),
+                                  events[k].evidence / evidence.sum()});
+    }
+    finding.aliases = aliases_of(analysis, candidates, group, chosen);
+    finding.static_risk = static_risk(analysis, candidates, group, chosen, finding.aliases);
+    findings.push_back(std::move(finding));
+  }
+  return findings;
+}
+
+std::vector<std::vector<double>> evidence_along(const Analysis& analysis, std::size_t flight) {
+  const Binning& bins = analysis.bins()[flight];
+  std::vector<std::vector<double>> along;
+  for (const std::size_t group : analysis.result().chosen) {
+    const Eigen::VectorXd evidence = evidence_of(analysis, group, analysis.result().chosen);
+    std::vector<double>& series =
+        along.emplace_back(analysis.flights()[flight].given.size(), std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t k = 0; k < bins.records().size(); ++k) {
+      const auto bin = static_cast<std::size_t>(bins.bins()[k]);
+      series[bins.records()[k]] = evidence[analysis.scores().block[flight][bin]];
+    }
+  }
+  return along;
+}
+
+std::vector<AbsorbedEffect> absorbed_of(const Analysis& analysis, const std::vector<Candidate>& candidates,
+                                        const std::vector<std::string>& base) {
+  constexpr double notable = 0.1;  // of the effect's rms
+  std::vector<AbsorbedEffect> absorbed;
+  for (std::size_t g = 0; g < candidates.size(); ++g) {
+    if (!analysis.search().is_absorbed(g) || candidates[g].is_variant) continue;
+    AbsorbedEffect effect;
+    effect.effect = candidates[g].effect.id;
+    effect.title = candidates[g].title;
+    effect.remaining = analysis.search().remaining(g);
+    // The coefficients whose columns, in the fit to the effect's, are large.
+    const Eigen::MatrixXd& information = analysis.scores().information;
+    const Eigen::Index own = analysis.base() + analysis.groups()[g].first;
+    const Eigen::MatrixXd normal = information.topLeftCorner(analysis.base(), analysis.base());
+    if (analysis.base() == 0) continue;
+    const Eigen::VectorXd solution =
+        normal.completeOrthogonalDecomposition().solve(information.col(own).head(analysis.base()));
+    for (Eigen::Index b = 0; b < analysis.base(); ++b) {
+      const double size = std::abs(solution[b]) * std::sqrt(normal(b, b));
+      if (size > notable * std::sqrt(information(own, own)))
+        effect.by.push_back(base[static_cast<std::size_t>(b)]);
+    }
+    absorbed.push_back(std::move(effect));
+  }
+  return absorbed;
+}
+
+std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Candidate>& candidates,
+                                  const std::vector<Finding>& findings) {
+  const std::vector<std::size_t>& chosen = analysis.result().chosen;
+  const Search& search = analysis.search();
+  std::vector<UpperLimit> limits;
+  for (std::size_t g = 0; g < candidates.size(); ++g) {
+    if (search.is_absorbed(g) || candidates[g].is_variant) continue;
+    if (is_one_of(candidates[g].effect.id, chosen, candidates)) continue;
+    const auto is_alias = [&](const Finding& finding) {
+      return std::any_of(finding.aliases.begin(), finding.aliases.end(),
+                         [&](const Alias& alias) { return alias.effect == candidates[g].effect.id; });
+    };
+    if (std::any_of(findings.begin(), findings.end(), is_alias)) continue;
+    const GroupScore score = search.score(g, chosen);
+    if (score.freedom == 0.0) continue;
+    UpperLimit limit;
+    limit.effect = candidates[g].effect.id;
+    limit.title = candidates[g].title;
+    limit.estimates = estimates_of(candidates[g], search.told(g), score.estimate, score.covariance);
+    bool seen = false;  // any coefficient better than by its bounds
+    for (std::size_t k = 0; k < limit.estimates.size(); ++k) {
+      const Estimate& estimate = limit.estimates[k];
+      const Bounds& bounds = candidates[g].tested[static_cast<std::size_t>(search.told(g)[k])].bounds;
+      const double largest = std::max(std::abs(bounds.lower), std::abs(bounds.upper));
+      const double statistical = std::abs(estimate.value) + two_sided_95 * estimate.standard_error;
+      limit.limits.push_back(std::min(statistical, largest));
+      seen = seen || statistical < largest;
+    }
+    if (!seen) limit.note = "these flights could not show it, as large as it can be";
+    // hPa that remain after base and chosen: rms of each leftover column at its limit.
+    double squares = 0.0;
+    double count = 0.0;
+    const Eigen::Index first = analysis.groups()[g].first;
+    const double kept = std::sqrt(search.remaining(g));
+    for (const FlightColumns& flight : analysis.flights()) {
+      for (std::size_t i = 0; i < flight.given.size(); ++i) {
+        if (std::isnan(flight.given[i])) continue;
+        double sum = 0.0;
+        for (std::size_t k = 0; k < limit.limits.size(); ++k) {
+          const double value = limit.limits[k] *
+                               static_cast<double>(flight.candidates(as_index(i), first + search.told(g)[k]));
+          sum = std::max(sum, std::abs(value));
+        }
+        squares += sum * sum;
+        count += 1.0;
+      }
+    }
+    limit.rms = kept * std::sqrt(squares / count);
+    if (!score.possible) {
+      limit.note = "to explain what is left it would have to be larger, or of the other sign, than it can be";
+    }
+    limits.push_back(std::move(limit));
+  }
+  std::sort(limits.begin(), limits.end(),
+            [](const UpperLimit& a, const UpperLimit& b) { return a.rms > b.rms; });
+  return limits;
+}
+
+}  // namespace pcor

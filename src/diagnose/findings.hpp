@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis.hpp"
+#include "candidates.hpp"
+#include "pcor/offline/diagnose.hpp"
+
+namespace pcor {
+
+/// The findings of an analysis, the strongest first, without advice.
+std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Candidate>& candidates);
+
+/// The evidence for each finding along a flight: the gain in chi2 of the minute that a record lies in; NaN
+/// where not used.
+std::vector<std::vector<double>> evidence_along(const Analysis& analysis, std::size_t flight);
+
+/// Candidates that the model's own coefficients imitate. @param base the names of these
+std::vector<AbsorbedEffect> absorbed_of(const Analysis& analysis, const std::vector<Candidate>& candidates,
+                                        const std::vector<std::string>& base);
+
+/// What the effects that were not found may amount to.
+std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Candidate>& candidates,
+                                  const std::vector<Finding>& findings);
+
+/// What is flown between two times, e.g. "level, yaw manoeuvre".
+std::string regimes_between(const FlightSamples& samples, double begin, double end);
+
+}  // namespace pcor

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+namespace pcor {
+
+/// Replaces outliers of a residual by what the values before them predict. An outlier is a sample whose
+/// innovation is beyond 4.5 robust deviations of its five minutes: a sudden departure, never a large value
+/// that its neighbours share, so that an effect is not cut where it is strongest.
+///
+/// @param residual NaN where not used; @param predicted by model and effects, likewise; @param time s
+/// @return the residual with its outliers replaced; `count` becomes how many there were
+std::vector<double> without_outliers(const std::vector<double>& residual,
+                                     const std::vector<double>& predicted, const std::vector<double>& time,
+                                     double step, std::size_t& count);
+
+}  // namespace pcor

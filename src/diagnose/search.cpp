@@ -1,0 +1,479 @@
+#include "search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
+
+#include "../triangular_factor.hpp"
+#include "chi_squared.hpp"
+
+namespace pcor {
+namespace {
+
+constexpr double absorbed_below = 5e-3;   // of a variance: 7 % of the amplitude
+constexpr double redundant_below = 1e-3;  // of what the base leaves, given others
+constexpr double errors_beyond_bounds = 2.0;
+constexpr double least_share = 0.08;  // of the rms that is explained already, for one more effect
+constexpr double enough_blocks = 12.0;
+constexpr double few_blocks_penalty = 6.0;
+
+/// `one_degree_equivalent` from a table: draws ask for it thousands of times.
+class EquivalentTable {
+ public:
+  explicit EquivalentTable(Eigen::Index freedom) : freedom_(static_cast<double>(freedom)) {
+    for (std::size_t i = 0; i <= steps; ++i)
+      values_.push_back(one_degree_equivalent(static_cast<double>(i) * width, freedom_));
+  }
+  double operator()(double chi2) const {
+    const double place = chi2 / width;
+    const auto before = static_cast<std::size_t>(place);
+    if (before >= steps) return one_degree_equivalent(chi2, freedom_);
+    const double part = place - static_cast<double>(before);
+    return values_[before] + part * (values_[before + 1] - values_[before]);
+  }
+
+ private:
+  static constexpr std::size_t steps = 400;
+  static constexpr double width = 0.1;
+  double freedom_;
+  std::vector<double> values_;
+};
+
+/// The greatest equivalent score among groups, for each column of `scores` (a draw), whose rows are the
+/// groups' directions one after another.
+std::vector<double> greatest(const Eigen::MatrixXd& scores, const std::vector<Eigen::Index>& freedom) {
+  std::vector<EquivalentTable> tables;
+  const Eigen::Index most = freedom.empty() ? 0 : *std::max_element(freedom.begin(), freedom.end());
+  for (Eigen::Index k = 0; k <= most; ++k) tables.emplace_back(k);
+  std::vector<double> result(static_cast<std::size_t>(scores.cols()), 0.0);
+  for (Eigen::Index draw = 0; draw < scores.cols(); ++draw) {
+    Eigen::Index row = 0;
+    double& greatest = result[static_cast<std::size_t>(draw)];
+    for (const Eigen::Index count : freedom) {
+      if (count == 0) continue;
+      const double chi2 = scores.col(draw).segment(row, count).squaredNorm();
+      row += count;
+      if (chi2 <= greatest) continue;  // the equivalent is never above
+      greatest = std::max(greatest, count == 1 ? chi2 : tables[static_cast<std::size_t>(count)](chi2));
+    }
+  }
+  return result;
+}
+
+Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix, double least) {
+  if (matrix.rows() == 0) return matrix;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
+  Eigen::VectorXd inverse = solver.eigenvalues();
+  for (double& value : inverse) value = value > least ? 1.0 / value : 0.0;
+  return solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
+}
+
+bool is_in(std::size_t value, const std::vector<std::size_t>& set) {
+  return std::find(set.begin(), set.end(), value) != set.end();
+}
+
+std::vector<std::size_t> without(std::vector<std::size_t> set, std::size_t value) {
+  set.erase(std::remove(set.begin(), set.end(), value), set.end());
+  return set;
+}
+
+}  // namespace
+
+Search::Search(const Scores& scores, Eigen::Index base, const std::vector<ColumnGroup>& groups)
+    : scores_(&scores), base_(base), groups_(&groups) {
+  const Eigen::MatrixXd& information = scores.information;
+  const Eigen::Index columns = scores.columns();
+  const Eigen::Index tested = columns - base;
+  scale_ = information.diagonal().head(columns);
+  for (double& value : scale_) value = value > 0.0 ? 1.0 / std::sqrt(value) : 0.0;
+  const Eigen::MatrixXd scaled =
+      scale_.asDiagonal() * information.topLeftCorner(columns, columns) * scale_.asDiagonal();
+  const Eigen::VectorXd right = scale_.asDiagonal() * information.col(columns).head(columns);
+  const Eigen::MatrixXd inverse = pseudo_inverse(scaled.topLeftCorner(base, base), 1e-12);
+  base_solution_ = inverse * scaled.topRightCorner(base, tested);
+  const Eigen::MatrixXd after =
+      scaled.bottomRightCorner(tested, tested) - scaled.bottomLeftCorner(tested, base) * base_solution_;
+  const Eigen::VectorXd score = right.tail(tested) - base_solution_.transpose() * right.head(base);
+  squares_ = information(columns, columns) - right.head(base).dot(inverse * right.head(base));
+
+  // What the base imitates has nothing to do with drift: a drift that is likely hides slow columns, but they
+  // are there.
+  Eigen::VectorXd length = scores.plain.diagonal().head(columns);
+  for (double& value : length) value = value > 0.0 ? 1.0 / std::sqrt(value) : 0.0;
+  const Eigen::MatrixXd plain =
+      length.asDiagonal() * scores.plain.topLeftCorner(columns, columns) * length.asDiagonal();
+  const Eigen::MatrixXd plain_after =
+      plain.bottomRightCorner(tested, tested) -
+      plain.bottomLeftCorner(tested, base) *
+          (pseudo_inverse(plain.topLeftCorner(base, base), 1e-12) * plain.topRightCorner(base, tested));
+
+  Eigen::Index width = 0;
+  for (const ColumnGroup& group : groups) {
+    const Eigen::MatrixXd own = after.block(group.first, group.first, group.count, group.count);
+    std::vector<Eigen::Index>& told = told_.emplace_back();
+    // After the base and the columns that are told already.
+    Eigen::MatrixXd left = plain_after.block(group.first, group.first, group.count, group.count);
+    while (told.size() < static_cast<std::size_t>(group.count)) {
+      Eigen::Index next = 0;
+      const double most = left.diagonal().maxCoeff(&next);
+      if (told.empty()) remaining_.push_back(std::clamp(most, 0.0, 1.0));
+      if (!(most > absorbed_below)) break;
+      told.push_back(next);
+      left -= Eigen::MatrixXd(left.col(next) * left.row(next) / most);
+      for (const Eigen::Index column : told) left(column, column) = 0.0;
+    }
+    std::sort(told.begin(), told.end());
+    const Eigen::Index kept = as_index(told.size());
+    Eigen::MatrixXd turned = Eigen::MatrixXd::Zero(group.count, kept);
+    if (kept > 0) {
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(own(told, told));
+      turned(told, Eigen::all) = solver.eigenvectors() *
+                                 solver.eigenvalues().cwiseMax(1e-12).cwiseSqrt().cwiseInverse().asDiagonal();
+    }
+    turned_.push_back(std::move(turned));
+    begin_.push_back(width);
+    width += kept;
+  }
+  Eigen::MatrixXd turn = Eigen::MatrixXd::Zero(tested, width);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    turn.block(groups[g].first, begin_[g], groups[g].count, turned_[g].cols()) = turned_[g];
+  }
+  information_ = turn.transpose() * after * turn;
+  score_ = turn.transpose() * score;
+}
+
+std::vector<Eigen::Index> Search::places_of(const std::vector<std::size_t>& groups) const {
+  std::vector<Eigen::Index> places;
+  for (const std::size_t group : groups) {
+    for (Eigen::Index k = 0; k < turned_[group].cols(); ++k) places.push_back(begin_[group] + k);
+  }
+  return places;
+}
+
+Search::Conditional Search::given(const std::vector<std::size_t>& groups) const {
+  Conditional result{information_, score_, squares_, 1.0};
+  const std::vector<Eigen::Index> places = places_of(groups);
+  if (!places.empty()) {
+    const Eigen::MatrixXd inverse = pseudo_inverse(information_(places, places), redundant_below);
+    const Eigen::MatrixXd across = information_(Eigen::all, places);
+    const Eigen::MatrixXd solution = inverse * across.transpose();
+    const Eigen::VectorXd score = score_(places);
+    result.information -= across * solution;
+    result.score -= solution.transpose() * score;
+    result.squares -= score.dot(inverse * score);
+  }
+  const double freedom = static_cast<double>(scores_->row_count()) - static_cast<double>(base_) -
+                         static_cast<double>(places.size());
+  result.variance = std::max(result.squares, 0.0) / std::max(freedom, 1.0);
+  return result;
+}
+
+GroupScore Search::score_in(const Conditional& conditional, std::size_t group) const {
+  GroupScore result;
+  const ColumnGroup& columns = (*groups_)[group];
+  const Eigen::Index count = turned_[group].cols();
+  const Eigen::Index begin = begin_[group];
+  result.estimate = Eigen::VectorXd::Zero(columns.count);
+  result.covariance = Eigen::MatrixXd::Zero(columns.count, columns.count);
+  result.possible = false;
+  if (count == 0 || !(conditional.variance > 0.0)) return result;
+  const Eigen::MatrixXd own = conditional.information.block(begin, begin, count, count);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(own, Eigen::EigenvaluesOnly);
+  for (const double value : solver.eigenvalues()) result.freedom += value > redundant_below ? 1.0 : 0.0;
+  if (result.freedom == 0.0) return result;
+  const Eigen::MatrixXd inverse = pseudo_inverse(own, redundant_below);
+  const Eigen::VectorXd score = conditional.score.segment(begin, count);
+  result.chi2 = score.dot(inverse * score) / conditional.variance;
+  result.equivalent = one_degree_equivalent(result.chi2, result.freedom);
+  const Eigen::VectorXd scale = scale_.segment(base_ + columns.first, columns.count);
+  const Eigen::MatrixXd turn = scale.asDiagonal() * turned_[group];
+  result.estimate = turn * (inverse * score);
+  result.covariance = conditional.variance * (turn * inverse * turn.transpose());
+  result.possible = true;
+  for (Eigen::Index k = 0; k < columns.count; ++k) {
+    const Bounds& bounds = columns.bounds[static_cast<std::size_t>(k)];
+    const double slack = errors_beyond_bounds * std::sqrt(result.covariance(k, k));
+    if (result.estimate[k] + slack < bounds.lower || result.estimate[k] - slack > bounds.upper)
+      result.possible = false;
+  }
+  return result;
+}
+
+GroupScore Search::score(std::size_t group, const std::vector<std::size_t>& others) const {
+  return score_in(given(without(others, group)), group);
+}
+
+Eigen::MatrixXd Search::normal_turn(const Conditional& conditional, const std::vector<std::size_t>& groups,
+                                    std::vector<Eigen::Index>& freedom) const {
+  Eigen::MatrixXd turn = Eigen::MatrixXd::Zero(information_.cols(), information_.cols());
+  Eigen::Index width = 0;
+  freedom.clear();
+  for (const std::size_t group : groups) {
+    const Eigen::Index begin = begin_[group];
+    const Eigen::Index count = turned_[group].cols();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
+        conditional.information.block(begin, begin, count, count));
+    Eigen::Index kept = 0;
+    for (Eigen::Index k = 0; k < count; ++k) {
+      if (!(solver.eigenvalues()[k] > redundant_below)) continue;
+      turn.col(width).segment(begin, count) =
+          solver.eigenvectors().col(k) / std::sqrt(solver.eigenvalues()[k]);
+      ++width;
+      ++kept;
+    }
+    freedom.push_back(kept);
+  }
+  return turn.leftCols(width);
+}
+
+double Search::threshold_of(const Conditional& conditional, const std::vector<std::size_t>& groups,
+                            const SearchOptions& options) const {
+  std::vector<Eigen::Index> freedom;
+  const Eigen::MatrixXd turn = normal_turn(conditional, groups, freedom);
+  if (turn.cols() == 0) return std::numeric_limits<double>::infinity();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(turn.transpose() * conditional.information *
+                                                              turn);
+  const Eigen::MatrixXd root =
+      solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  std::mt19937_64 engine(options.seed);
+  std::normal_distribution<double> normal;
+  const Eigen::MatrixXd independent = Eigen::MatrixXd::NullaryExpr(
+      turn.cols(), as_index(options.draws), [&](Eigen::Index, Eigen::Index) { return normal(engine); });
+  std::vector<double> maxima = greatest(root * independent, freedom);
+  const auto place = static_cast<std::ptrdiff_t>(options.confidence * static_cast<double>(maxima.size() - 1));
+  std::nth_element(maxima.begin(), maxima.begin() + place, maxima.end());
+  return maxima[static_cast<std::size_t>(place)];
+}
+
+std::vector<Eigen::VectorXd> Search::leftover_rows(std::size_t group,
+                                                   const std::vector<std::size_t>& others) const {
+  const Eigen::Index columns = scores_->columns();
+  Eigen::VectorXd weight = Eigen::VectorXd::Zero(columns);  // of the columns as they are
+  const ColumnGroup& own = (*groups_)[group];
+  GroupScore found = score(group, others);
+  if (found.estimate.isZero()) {
+    const Eigen::Index kept = turned_[group].cols();
+    if (kept > 0)
+      found.estimate =
+          scale_.segment(base_ + own.first, own.count).asDiagonal() * turned_[group].col(kept - 1);
+  }
+  weight.segment(base_ + own.first, own.count) = found.estimate;
+  std::vector<Eigen::Index> rest(static_cast<std::size_t>(base_));
+  std::iota(rest.begin(), rest.end(), Eigen::Index{0});
+  for (const std::size_t other : without(others, group)) {
+    const ColumnGroup& columns_of = (*groups_)[other];
+    for (Eigen::Index k = 0; k < columns_of.count; ++k) rest.push_back(base_ + columns_of.first + k);
+  }
+  const Eigen::MatrixXd scaled =
+      scale_.asDiagonal() * scores_->information.topLeftCorner(columns, columns) * scale_.asDiagonal();
+  const Eigen::VectorXd target = scaled(rest, Eigen::all) * weight.cwiseQuotient(scale_.cwiseMax(1e-300));
+  const Eigen::VectorXd fitted = pseudo_inverse(scaled(rest, rest), 1e-12) * target;
+  for (std::size_t k = 0; k < rest.size(); ++k) weight[rest[k]] = -fitted[as_index(k)] * scale_[rest[k]];
+  std::vector<Eigen::VectorXd> rows;
+  for (const Eigen::MatrixXd& part : scores_->rows) rows.emplace_back(part.leftCols(columns) * weight);
+  return rows;
+}
+
+double Search::effective_blocks(std::size_t group, const std::vector<std::size_t>& others) const {
+  Eigen::VectorXd information = Eigen::VectorXd::Zero(scores_->blocks);
+  const std::vector<Eigen::VectorXd> rows = leftover_rows(group, others);
+  for (std::size_t f = 0; f < rows.size(); ++f) {
+    for (Eigen::Index i = 0; i < rows[f].size(); ++i)
+      information[scores_->block[f][static_cast<std::size_t>(i)]] += rows[f][i] * rows[f][i];
+  }
+  const double squares = information.squaredNorm();
+  return squares > 0.0 ? information.sum() * information.sum() / squares : 0.0;
+}
+
+double Search::level(std::size_t winner, const std::vector<std::size_t>& chosen, double threshold) const {
+  const double blocks = effective_blocks(winner, chosen);
+  if (blocks < enough_blocks) return threshold * (1.0 + few_blocks_penalty / std::max(blocks, 1.0));
+  // By how much more the noise in its score varies from minute to minute than the noise model has it.
+  std::vector<std::size_t> with = chosen;
+  with.push_back(winner);
+  return threshold * std::max(1.0, own_noise(winner, chosen).squaredNorm() / variance(with));
+}
+
+std::vector<Eigen::VectorXd> Search::left(const std::vector<std::size_t>& chosen) const {
+  Eigen::VectorXd estimate;
+  Eigen::MatrixXd covariance;
+  fit(chosen, estimate, covariance);
+  Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(scores_->columns());
+  coefficients.head(base_) = estimate.head(base_);
+  Eigen::Index place = base_;
+  for (const std::size_t group : chosen) {
+    const ColumnGroup& columns = (*groups_)[group];
+    coefficients.segment(base_ + columns.first, columns.count) = estimate.segment(place, columns.count);
+    place += columns.count;
+  }
+  std::vector<Eigen::VectorXd> result;
+  for (std::size_t f = 0; f < scores_->rows.size(); ++f) result.push_back(scores_->left(f, coefficients));
+  return result;
+}
+
+Eigen::VectorXd Search::own_noise(std::size_t group, const std::vector<std::size_t>& others) const {
+  std::vector<std::size_t> with = without(others, group);
+  with.push_back(group);
+  const std::vector<Eigen::VectorXd> rows = leftover_rows(group, others);
+  const std::vector<Eigen::VectorXd> noise = left(with);
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(scores_->blocks);
+  double squares = 0.0;
+  for (std::size_t f = 0; f < rows.size(); ++f) {
+    for (Eigen::Index i = 0; i < rows[f].size(); ++i)
+      sums[scores_->block[f][static_cast<std::size_t>(i)]] += rows[f][i] * noise[f][i];
+    squares += rows[f].squaredNorm();
+  }
+  return squares > 0.0 ? Eigen::VectorXd(sums / std::sqrt(squares)) : sums;
+}
+
+double Search::explained(const std::vector<std::size_t>& chosen) const {
+  const Conditional conditional = given(chosen);
+  return (squares_ - conditional.squares) / std::max(conditional.variance, 1e-300);
+}
+
+bool Search::is_taken(std::size_t group, const std::vector<std::size_t>& chosen) const {
+  return std::any_of(chosen.begin(), chosen.end(), [&](std::size_t each) {
+    return each != group && (*groups_)[each].effect == (*groups_)[group].effect;
+  });
+}
+
+bool Search::all_possible(const std::vector<std::size_t>& chosen) const {
+  return std::all_of(chosen.begin(), chosen.end(), [&](std::size_t group) {
+    return !is_taken(group, chosen) && score(group, chosen).possible;
+  });
+}
+
+void Search::improve(std::vector<std::size_t>& chosen) const {
+  // Half the penalty of a criterion of Akaike for each direction, as scores have the noise in them already.
+  const auto merit = [this](const std::vector<std::size_t>& set) {
+    const std::vector<Eigen::Index> places = places_of(set);
+    const Eigen::VectorXd score = score_(places);
+    return score.dot(pseudo_inverse(information_(places, places), redundant_below) * score) /
+               given(set).variance -
+           2.0 * static_cast<double>(places.size());
+  };
+  double best = merit(chosen);
+  const auto consider = [&](const std::vector<std::size_t>& set) {
+    const double value = merit(set);
+    if (!(value > best) || !all_possible(set)) return;
+    best = value;
+    chosen = set;
+  };
+  if (chosen.size() == 2) {
+    for (std::size_t a = 0; a < groups_->size(); ++a) {
+      for (std::size_t b = 0; b < a; ++b) {
+        if (!is_absorbed(a) && !is_absorbed(b)) consider({a, b});
+      }
+    }
+    return;
+  }
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const std::vector<std::size_t> now = chosen;
+    for (std::size_t other = 0; other < groups_->size(); ++other) {
+      if (is_absorbed(other) || is_in(other, now)) continue;
+      std::vector<std::size_t> set = now;
+      set[i] = other;
+      consider(set);
+    }
+  }
+}
+
+SearchResult Search::run(const SearchOptions& options) const {
+  SearchResult result;
+  std::vector<std::size_t> open;
+  for (std::size_t g = 0; g < groups_->size(); ++g) {
+    if (!is_absorbed(g)) open.push_back(g);
+  }
+  std::vector<std::size_t>& chosen = result.chosen;
+  if (open.empty()) {
+    result.threshold = std::numeric_limits<double>::infinity();
+    return result;
+  }
+  while (true) {
+    const Conditional conditional = given(chosen);
+    std::vector<std::size_t> rest;
+    std::size_t winner = groups_->size();
+    GroupScore best;
+    for (const std::size_t group : open) {
+      if (is_in(group, chosen) || is_taken(group, chosen)) continue;
+      rest.push_back(group);
+      const GroupScore score = score_in(conditional, group);
+      if (!score.possible || (winner != groups_->size() && score.equivalent <= best.equivalent)) continue;
+      best = score;
+      winner = group;
+    }
+    const double threshold =
+        options.threshold ? *options.threshold : threshold_of(conditional, rest, options);
+    if (chosen.empty()) result.threshold = threshold;
+    if (winner == groups_->size() || chosen.size() >= options.most_effects || !(best.equivalent > threshold))
+      break;
+    if (!options.threshold && !(best.equivalent > level(winner, chosen, threshold))) break;
+    if (best.chi2 < least_share * least_share * (options.explained + explained(chosen))) break;
+    chosen.push_back(winner);
+    if (chosen.size() >= 2) improve(chosen);
+  }
+  for (bool pruned = true; pruned;) {
+    pruned = false;
+    for (const std::size_t group : std::vector<std::size_t>(chosen)) {
+      if (score(group, chosen).equivalent > result.threshold) continue;
+      chosen = without(chosen, group);
+      pruned = true;
+      break;
+    }
+  }
+  const std::vector<std::size_t> set = chosen;
+  std::sort(chosen.begin(), chosen.end(),
+            [&](std::size_t a, std::size_t b) { return score(a, set).chi2 > score(b, set).chi2; });
+  // As many independent groups as make the threshold that of their best.
+  const double effective = (1.0 - options.confidence) / chi_squared_tail(result.threshold, 1.0);
+  for (const std::size_t group : chosen) {
+    result.p_values.push_back(
+        std::min(1.0, effective * chi_squared_tail(score(group, chosen).equivalent, 1.0)));
+  }
+  return result;
+}
+
+double Search::correlation(std::size_t a, std::size_t b, const std::vector<std::size_t>& others) const {
+  const Conditional conditional = given(without(without(others, a), b));
+  std::vector<Eigen::Index> freedom;
+  const Eigen::MatrixXd turn = normal_turn(conditional, {a, b}, freedom);
+  if (freedom[0] == 0 || freedom[1] == 0) return 0.0;
+  const Eigen::MatrixXd turned = turn.transpose() * conditional.information * turn;
+  const Eigen::MatrixXd across = turned.topRightCorner(freedom[0], freedom[1]);
+  if (across.size() == 1)
+    return std::clamp(across(0, 0) * (turned_[a](0, 0) < 0.0 ? -1.0 : 1.0) *
+                          (turned_[b](0, 0) < 0.0 ? -1.0 : 1.0) * (turn(begin_[a], 0) < 0.0 ? -1.0 : 1.0) *
+                          (turn(begin_[b], 1) < 0.0 ? -1.0 : 1.0),
+                      -1.0, 1.0);
+  return std::clamp(Eigen::JacobiSVD<Eigen::MatrixXd>(across).singularValues()[0], 0.0, 1.0);
+}
+
+void Search::fit(const std::vector<std::size_t>& chosen, Eigen::VectorXd& estimate,
+                 Eigen::MatrixXd& covariance) const {
+  std::vector<Eigen::Index> places(static_cast<std::size_t>(base_));  // among the scores' columns
+  std::iota(places.begin(), places.end(), Eigen::Index{0});
+  std::vector<Eigen::Index> out = places;  // among the estimates
+  Eigen::Index size = base_;
+  for (const std::size_t group : chosen) {
+    for (const Eigen::Index column : told_[group]) {
+      places.push_back(base_ + (*groups_)[group].first + column);
+      out.push_back(size + column);
+    }
+    size += (*groups_)[group].count;
+  }
+  const Eigen::VectorXd scale = scale_(places);
+  const Eigen::MatrixXd inverse =
+      scale.asDiagonal() *
+      pseudo_inverse(scale.asDiagonal() * scores_->information(places, places) * scale.asDiagonal(), 1e-11) *
+      scale.asDiagonal();
+  estimate = Eigen::VectorXd::Zero(size);
+  estimate(out) = inverse * scores_->information.col(scores_->columns())(places);
+  covariance = Eigen::MatrixXd::Zero(size, size);
+  covariance(out, out) = variance(chosen) * inverse;
+}
+
+double Search::variance(const std::vector<std::size_t>& chosen) const { return given(chosen).variance; }
+
+}  // namespace pcor

@@ -1,0 +1,127 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "pcor/offline/model_file.hpp"
+#include "scores.hpp"
+
+namespace pcor {
+
+/// Columns that belong together: the tested parameters of one effect.
+struct ColumnGroup {
+  Eigen::Index first = 0;  ///< among the candidates' columns
+  Eigen::Index count = 0;
+  std::size_t effect = 0;        ///< groups of one effect, in several shapes, exclude each other
+  std::vector<Bounds> bounds{};  ///< of each column's coefficient; an effect beyond them is impossible
+};
+
+struct SearchOptions {
+  std::size_t draws = 4000;
+  double confidence = 0.997;          ///< with which no effect is found where there is none
+  std::optional<double> threshold{};  ///< instead of the one by draws, and then without the gates
+  std::size_t most_effects = 4;
+  double explained = 0.0;  ///< chi2 by effects that the base has since an earlier search
+  std::uint64_t seed = 1;
+};
+
+/// What a group would come to beside a set of others.
+struct GroupScore {
+  double chi2 = 0.0;
+  double freedom = 0.0;     ///< directions that the base and the others leave
+  double equivalent = 0.0;  ///< chi2 as if of one degree
+  Eigen::VectorXd estimate{};
+  Eigen::MatrixXd covariance{};
+  bool possible = true;  ///< within the bounds, as far as the errors tell
+};
+
+struct SearchResult {
+  std::vector<std::size_t> chosen{};  ///< groups, the strongest first
+  double threshold = 0.0;
+  std::vector<double> p_values{};  ///< of each chosen one
+};
+
+/// Which groups of columns explain residuals that the base cannot.
+class Search {
+ public:
+  /// @param base how many of the scores' columns are the model's own; the rest are those of the groups
+  Search(const Scores& scores, Eigen::Index base, const std::vector<ColumnGroup>& groups);
+
+  /// The part of a group's variance that the base leaves, of its best direction. 0 to 1.
+  double remaining(std::size_t group) const { return remaining_[group]; }
+  /// A group of which the base leaves so little is absorbed: it is not searched for.
+  bool is_absorbed(std::size_t group) const { return turned_[group].cols() == 0; }
+
+  /// The columns of a group that base and the group's other columns do not imitate, counted within it. The
+  /// coefficients of the rest stay at zero.
+  const std::vector<Eigen::Index>& told(std::size_t group) const { return told_[group]; }
+
+  SearchResult run(const SearchOptions& options) const;
+
+  /// The score of a group beside the others of a set (itself left out of it).
+  GroupScore score(std::size_t group, const std::vector<std::size_t>& others) const;
+
+  /// Of what base and `others` leave of two groups, the largest correlation, with sign where both have one
+  /// column.
+  double correlation(std::size_t a, std::size_t b, const std::vector<std::size_t>& others) const;
+
+  /// Estimates and covariance of base and chosen columns together, in the order base, then the columns of
+  /// the groups as given.
+  void fit(const std::vector<std::size_t>& chosen, Eigen::VectorXd& estimate,
+           Eigen::MatrixXd& covariance) const;
+
+  /// The variance of the whitened residuals after a fit of base and `chosen`; 1 where the noise model holds.
+  double variance(const std::vector<std::size_t>& chosen) const;
+
+  /// What is left of the whitened residuals of all flights after a fit of base and `chosen`.
+  std::vector<Eigen::VectorXd> left(const std::vector<std::size_t>& chosen) const;
+
+  /// The rows of a group's best direction after base and others, flight by flight: where its evidence lies.
+  std::vector<Eigen::VectorXd> leftover_rows(std::size_t group, const std::vector<std::size_t>& others) const;
+
+ private:
+  struct Conditional {
+    Eigen::MatrixXd information;  // of all turned columns, given base and the set
+    Eigen::VectorXd score;
+    double squares = 0.0;
+    double variance = 1.0;
+  };
+
+  Eigen::Index begin_of(std::size_t group) const { return begin_[group]; }
+  std::vector<Eigen::Index> places_of(const std::vector<std::size_t>& groups) const;
+  Conditional given(const std::vector<std::size_t>& groups) const;
+  GroupScore score_in(const Conditional& conditional, std::size_t group) const;
+  /// Turns each group's columns to unit length and right angles in the conditional information; columns
+  /// without anything left become zero.
+  Eigen::MatrixXd normal_turn(const Conditional& conditional, const std::vector<std::size_t>& groups,
+                              std::vector<Eigen::Index>& freedom) const;
+  double threshold_of(const Conditional& conditional, const std::vector<std::size_t>& groups,
+                      const SearchOptions& options) const;
+  /// What the score of a winner has to exceed: the threshold, more where it rests on a few minutes, or where
+  /// the noise there is larger than elsewhere.
+  double level(std::size_t winner, const std::vector<std::size_t>& chosen, double threshold) const;
+  /// By minutes, the noise in the score of a group: what is left of it when its effect is taken off.
+  Eigen::VectorXd own_noise(std::size_t group, const std::vector<std::size_t>& others) const;
+  double effective_blocks(std::size_t group, const std::vector<std::size_t>& others) const;
+  void improve(std::vector<std::size_t>& chosen) const;
+  double explained(const std::vector<std::size_t>& chosen) const;
+  bool is_taken(std::size_t group, const std::vector<std::size_t>& chosen) const;
+  bool all_possible(const std::vector<std::size_t>& chosen) const;
+
+  const Scores* scores_;
+  Eigen::Index base_;
+  const std::vector<ColumnGroup>* groups_;
+  Eigen::VectorXd scale_;  // of every column, to unit length
+  std::vector<double> remaining_;
+  std::vector<std::vector<Eigen::Index>> told_;
+  std::vector<Eigen::MatrixXd> turned_;  // scaled columns of a group to its directions
+  std::vector<Eigen::Index> begin_;      // of each group among the turned columns
+  Eigen::MatrixXd base_solution_;        // scaled candidates on scaled base
+  Eigen::MatrixXd information_;          // of turned columns after the base
+  Eigen::VectorXd score_;
+  double squares_ = 0.0;
+};
+
+}  // namespace pcor

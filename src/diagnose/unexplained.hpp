@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "analysis.hpp"
+#include "pcor/offline/diagnose.hpp"
+#include "pcor/offline/flight.hpp"
+
+namespace pcor {
+
+/// Structure that base and chosen effects leave.
+struct UnexplainedStructure {
+  Unexplained found;
+  double left = 0.0;  ///< chi2 of the best variable beside base and chosen effects
+  /// True where a straight line in one variable of the files explains more than all chosen effects: then
+  /// these are not what is missing, and `found` is what the base alone leaves.
+  bool overrules = false;
+  std::vector<std::vector<double>>
+      traced{};  ///< the best variable, of each flight, one value for each record
+};
+
+/// Tests whether something is left, in any variable of the files.
+///
+/// @param residual_rms and @param noise_rms after the chosen effects, hPa
+UnexplainedStructure find_unexplained(const Analysis& analysis, const std::vector<Flight>& files,
+                                      const ModelFile& model, const Reference& reference,
+                                      const DiagnoseOptions& options, double residual_rms, double noise_rms);
+
+}  // namespace pcor
