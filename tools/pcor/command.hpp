@@ -62,7 +62,10 @@ using AddCommand = std::function<void()> (*)(CLI::App& program);
 
 std::function<void()> add_process(CLI::App& program);
 std::function<void()> add_compare(CLI::App& program);
+std::function<void()> add_diagnose(CLI::App& program);
+std::function<void()> add_add(CLI::App& program);
 std::function<void()> add_refit(CLI::App& program);
+std::function<void()> add_improve(CLI::App& program);
 std::function<void()> add_simulate(CLI::App& program);
 std::function<void()> add_effects(CLI::App& program);
 

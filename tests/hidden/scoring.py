@@ -1,0 +1,59 @@
+"""What a diagnosis is worth, from its JSON, when the truth is known."""
+
+
+def names_in(finding):
+    """The effect that a finding names and those that the data cannot tell from it."""
+    aliases = [alias if isinstance(alias, str) else alias["effect"] for alias in finding.get("aliases", [])]
+    return [finding["effect"], *aliases]
+
+
+def traced_in(diagnosis):
+    return [variable["name"] for variable in diagnosis.get("unexplained", {}).get("variables", [])]
+
+
+def verdict_of(diagnosis):
+    """As the tool says; from the findings where it does not."""
+    if "verdict" in diagnosis:
+        return diagnosis["verdict"]
+    if diagnosis["findings"]:
+        return "cannot be told apart" if diagnosis["findings"][0].get("aliases") else "identified"
+    return "unexplained" if diagnosis.get("unexplained", {}).get("significant") else "silent"
+
+
+def summary_of(diagnosis):
+    return {"verdict": verdict_of(diagnosis), "findings": [names_in(finding) for finding in diagnosis["findings"]],
+            "chi2": [finding.get("chi2") for finding in diagnosis["findings"]],
+            "unexplained_hpa": diagnosis.get("unexplained", {}).get("rms_hpa"), "traced": traced_in(diagnosis)[:5]}
+
+
+def of_null(diagnosis):
+    verdict = verdict_of(diagnosis)
+    return {"verdict": verdict, "named": bool(diagnosis["findings"]), "silent": verdict == "silent"}
+
+
+def of_hidden(diagnosis, secrets):
+    """`wrong`: a finding in whose set there is no effect that was hidden. With the verdict partial the tool says
+    itself that the name is not the cause, so that is no wrong claim but counts as `partial`."""
+    sets = [names_in(finding) for finding in diagnosis["findings"]]
+    truths = [set(secret.truth) for secret in secrets if secret.truth]
+    verdict = verdict_of(diagnosis)
+    found = [next((names for names in sets if truth & set(names)), None) for truth in truths]
+    right = [names for names in sets if any(truth & set(names) for truth in truths)]
+    score = {
+        "verdict": verdict,
+        "identified": verdict == "identified",
+        "in_set": bool(truths) and all(names is not None for names in found),
+        "first": bool(sets and truths) and any(sets[0][0] in truth for truth in truths),
+        "size": len(found[0]) if found and found[0] else None,
+        "exact": bool(truths) and len(sets) == len(truths) and all(names is not None for names in found),
+        "wrong": len(right) < len(sets) and verdict != "partial",
+        "claims": bool(sets),
+    }
+    outside = [secret for secret in secrets if secret.outside]
+    if outside:
+        traced = traced_in(diagnosis)
+        wanted = set(outside[0].traced)
+        score["traced"] = bool(traced) and traced[0] in wanted if wanted else None
+        score["traced_among_five"] = bool(wanted & set(traced[:5])) if wanted else None
+        score["noticed"] = verdict != "silent"
+    return score

@@ -1,0 +1,150 @@
+"""What is hidden in the flights, and which names count as the truth.
+
+`usual` is the size met in practice (or an estimate), in the parameter of the simulator; more than six times of it, or
+more than 4 hPa (rms) in all, is not hidden, even where the model absorbs the effect so that less is left than wanted.
+
+Names that count as the truth besides the effect's own, because the physics is the same thing under another id, and
+for no other reason. Effects that merely look alike do not count: they have to be in the set of aliases.
+
+| hidden | also right | why |
+|---|---|---|
+| clock-skew of QCF | qcf-lag, clock-skew | q(t - tau) is a first-order lag of q, and the laser early by tau |
+| sensor-response of QCF | qcf-lag, total-lag | a lag of the reading of q; at constant p that of the total line |
+| unknown, linear in ENGTRQ, static | speedbrake-thrust | the same law; the constant is in the model |
+| unknown, linear in BNORMA, static | load-factor | the same law |
+| static-attack | static-alpha | the angle of attack is linear in ADIFR/QCR |
+| humidity-error of the dew point | humidity-error | another parameter of the same error |
+"""
+
+from dataclasses import dataclass
+
+LIMIT = 6.0  # times the usual size
+LARGEST = 4.0  # hPa rms, before the model absorbs any of it
+
+
+@dataclass(frozen=True)
+class Secret:
+    name: str
+    body: str = ""  # of the scenario's [[effect]]; {s} the strength, STATIC the variable of the static pressure
+    usual: float = 1.0
+    truth: tuple = ()  # ids that are right; empty: outside the catalogue
+    static: bool = False  # acts at the static port
+    both_signs: bool = False
+    aircraft: tuple = ("C-130", "GV")
+    moist: bool = True  # constants of the user's model
+    traced: tuple = ()  # variables that a trace may name, for effects outside the catalogue
+    arguments: tuple = ()  # of the tool beside the usual ones
+
+    @property
+    def scalable(self):
+        return bool(self.body)
+
+    @property
+    def outside(self):
+        return not self.truth
+
+    def text(self, aircraft, strength):
+        if not self.body:
+            return ""
+        static = {"C-130": "PSFD", "GV": "PSF"}[aircraft]
+        body = self.body.replace("STATIC", static)
+        return "[[effect]]\n" + body.replace("{s}", repr(float(strength)))
+
+
+def effect(name, parameter, usual, on="", static=False, both_signs=False, truth=None, **rest):
+    identity = name.split(" ")[0]
+    body = f'id = "{identity}"\n' + (f'on = "{on}"\n' if on else "") + f"{parameter} = {{s}}"
+    return Secret(name, body, usual, truth or (identity,), static, both_signs, **rest)
+
+
+def static(name, parameter, usual, both_signs=True, **rest):
+    return effect(name, parameter, usual, on="STATIC", static=True, both_signs=both_signs, **rest)
+
+
+def unknown(of, shape, centre, scale, where="static", usual=0.3, traced=None, truth=()):
+    body = (f'id = "unknown"\nwhere = "{where}"\n' + ('on = "STATIC"\n' if where == "static" else "") +
+            f'of = "{of}"\nshape = "{shape}"\nstrength = {{s}}\ncentre = {centre}\nscale = {scale}')
+    names = traced or ((of,) if of != "hidden" else ())
+    return Secret(f"unknown {of} {shape} ({where})", body, usual, truth, where == "static", True, traced=names)
+
+
+HEIGHT = ("GGALT", "RALT", "PS_A", "PSFD", "PSFRD", "PSF")
+
+CATALOGUE = (
+    # In the law of the aircraft and not in the user's model
+    static("static-alpha", "a1", 0.004, aircraft=("C-130",)),
+    static("static-qp", "a2", 0.03),
+    static("static-attack", "a3", 0.0014, truth=("static-attack", "static-alpha"), aircraft=("C-130",)),
+    static("static-alpha-quad", "a4", 0.0024),
+    static("static-mach", "m1", 0.03),
+    static("static-mach2", "m2", 0.02),
+    static("static-mach3", "m3", 0.02, aircraft=("C-130",)),
+    static("static-beta-odd", "b1", 0.0018),
+    static("static-beta-even", "b2", 2e-5),
+    static("static-transonic", "strength", 1.0, aircraft=("GV",)),
+    static("flaps-gear", "defect", 1.5, arguments=("--max-flaps", "60")),
+    static("speedbrake-thrust", "defect", 0.5),
+    static("ground-effect", "defect", 0.3),
+    static("load-factor", "per_g", 1.0),
+    static("roll-static", "defect", 0.3),
+    effect("pitot-angle", "k", 1e-4, on="QCF"),
+    effect("static-lag", "tau", 0.2, on="STATIC"),
+    effect("total-lag", "tau", 0.2, on="QCF"),
+    effect("static-leak", "fraction", 5e-4, on="STATIC"),
+    effect("line-head", "behind", 5.0, on="STATIC", both_signs=True),
+    effect("qcf-zero", "offset", 0.3, on="QCF", both_signs=True),
+    effect("qcf-gain", "gain", 0.005, on="QCF", both_signs=True),
+    effect("psfd-bias", "offset", 0.1, on="STATIC", both_signs=True),
+    effect("transducer-thermal", "dynamic", 0.02, on="QCF", both_signs=True),
+    effect("time-drift", "dynamic", 0.2, on="QCF", both_signs=True),
+    effect("qcr-angle", "attack", 0.0273),
+    effect("adif-drift per hour", "per_hour", 0.005, both_signs=True, truth=("adif-drift",)),
+    effect("lams-elevation", "error", 0.5, both_signs=True),
+    effect("lams-azimuth", "error", 0.5, both_signs=True),
+    effect("lams-pod-flex", "per_tonne", 0.005, both_signs=True),
+    effect("lams-scale", "scale", 1e-3, both_signs=True),
+    effect("lams-induction", "per_attack", 5e-4, both_signs=True),
+    effect("lams-cloud", "error", -0.5),
+    effect("temp-offset", "offset", 0.5, both_signs=True),
+    effect("recovery-factor", "error", 0.02, both_signs=True),
+    effect("temp-lag", "tau", 2.3),
+    effect("temp-deice-heat", "heat", 0.5),
+    effect("temp-wetting", "error", -1.0),
+    effect("humidity-error", "gain", 0.1, both_signs=True),
+    effect("humidity-error of the dew point", "dew_point", 2.0, both_signs=True, truth=("humidity-error",)),
+    effect("clock-skew", "seconds", 0.5, on="VLAMS", both_signs=True),
+    effect("clock-skew of QCF", "seconds", 0.3, on="QCF", truth=("qcf-lag", "clock-skew")),
+    effect("sensor-response of QCF", "tau", 0.3, on="QCF", truth=("qcf-lag", "total-lag")),
+    Secret("humidity-neglected", truth=("humidity-neglected",), moist=False),
+    unknown("ENGTRQ", "linear", 50, 100, truth=("speedbrake-thrust",)),
+)
+
+OUTSIDE = (
+    unknown("ENGTRQ", "sine", 50, 8),
+    unknown("ENGTRQ", "step", 55, 1),
+    unknown("ENGTRQ", "quadratic", 40, 25),
+    unknown("PCAB", "quadratic", 870, 60),
+    unknown("TBAY", "sine", 283, 2.0),
+    unknown("GGALT", "step", 4200, 1, traced=HEIGHT),
+    unknown("GGLAT", "sine", 40, 0.1),
+    unknown("THDG", "sine", 0, 57.3, traced=("THDG", "GGTRK")),
+    unknown("GGVSPD", "quadratic", 0, 5),
+    unknown("TBAY", "step", 282, 1, where="temperature", usual=0.5),
+    unknown("TASX", "sine", 0, 4, where="lams", traced=("TASX", "VLAMS", "QCF", "QC_A", "MACH_A", "QCFR", "QCR")),
+    unknown("hidden", "linear", 0, 1),
+    unknown("hidden", "linear", 0, 1, where="lams"),
+    unknown("hidden", "sine", 0, 0.5, where="temperature", usual=0.5),
+)
+
+PAIRS = (
+    ("static-lag", "static-beta-odd"), ("static-alpha-quad", "time-drift"), ("load-factor", "lams-cloud"),
+    ("total-lag", "roll-static"), ("speedbrake-thrust", "clock-skew"), ("static-beta-even", "temp-lag"),
+)
+
+BY_NAME = {secret.name: secret for secret in CATALOGUE + OUTSIDE}
+
+
+
+def lacking(secret, law):
+    """The effects of an aircraft's law that neither flights nor user's model have when `secret` is hidden."""
+    return tuple(name for name in law if name == secret.name)

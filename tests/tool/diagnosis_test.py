@@ -1,0 +1,387 @@
+#!/usr/bin/env python3
+"""`pcor diagnose`, `pcor add` and `pcor improve` as a user meets them, on simulated flights with a known fault.
+
+    diagnosis_test.py TOOL SOURCE_DIRECTORY
+
+The flights are a quarter of an hour of a C-130; the law is equation 18, which the model has too. Beside it one has
+no fault, one a lag of the static line, and one an effect of the engines that no catalogue knows. Random numbers are
+fixed, so a test that passes does so on every run.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import tomllib
+import unittest
+
+import netCDF4
+
+sys.dont_write_bytecode = True  # no __pycache__ in the source directory
+import comparison_test  # noqa: E402
+from comparison_test import FLIGHTS, MODEL, PUBLISHED, SHORT_GV, ComparisonTest, contents, with_effect  # noqa: E402
+from tool_test import SOURCE, TOOL, replace  # noqa: E402
+
+SCENARIO = comparison_test.SCENARIO
+LAG = with_effect('id = "static-lag"\ntau = 1.0\n')(SCENARIO)
+THRUST = with_effect('id = "unknown"\nwhere = "static"\nof = "ENGTRQ"\nshape = "linear"\nstrength = 3.0\n'
+                     "centre = 50\nscale = 100\n")(SCENARIO)
+ONE, LAGGING, LAGGING_TOO, THRUSTING, GV = (
+    FLIGHTS / name for name in ("one.nc", "lag.nc", "lag-too.nc", "thrust.nc", "gv.nc"))
+OWN = ('id = "my-thrust"\nwhere = "static"\nformula = "k * (ENGTRQ - 50) / 100"\nparameters = { k = 0.0 }\n'
+       'unit = "hPa"\n')
+
+
+def setUpModule():
+    scenario = FLIGHTS / "scenario.toml"
+    flights = ((ONE, SCENARIO, 3), (LAGGING, LAG, 5), (LAGGING_TOO, LAG, 6), (THRUSTING, THRUST, 7),
+               (GV, SHORT_GV, 20))
+    for output, text, seed in flights:
+        scenario.write_text(text)
+        subprocess.run([TOOL, "simulate", scenario, "-o", output, "--seed", str(seed), "--quiet"], check=True)
+
+
+def tearDownModule():
+    comparison_test.MADE.cleanup()
+
+
+class DiagnosisTest(ComparisonTest):
+    def diagnose(self, *arguments, flights=(ONE,), model=None):
+        return self.json_of("diagnose", *flights, "-m", model or self.model(), *arguments)
+
+    def improve(self, *arguments, flights=(ONE,), model=None):
+        model, output = model or self.model(), self.path / "out.toml"
+        return self.json_of("improve", *flights, "-m", model, "-o", output, *arguments)
+
+    def add(self, *arguments, model=None, name="out.toml"):
+        """The extended model, as TOML has it."""
+        output = self.path / name
+        self.done("add", *arguments, "-m", model or self.model(), "-o", output, "--quiet")
+        return tomllib.loads(output.read_text())
+
+
+class Add(DiagnosisTest):
+    def test_an_effect_of_the_catalogue_starts_neutral(self):
+        before, after = tomllib.loads(MODEL), self.add("static-lag", "static-beta-even")
+        self.assertEqual(after["effect"][:-2], before["effect"])
+        self.assertEqual(after["effect"][-2], {"id": "static-lag", "parameters": {"tau": 0.0}})
+        self.assertEqual(after["effect"][-1]["id"], "static-beta-even")
+        for key in before.keys() - {"effect"}:
+            self.assertEqual(after[key], before[key])
+
+    def test_an_effect_of_ones_own(self):
+        effect = self.add("my-thrust", "--formula", "k * ENGTRQ / 100", "--where", "static", "--unit", "hPa",
+                          "--source", "engine run-up, 2011-11-02")["effect"][-1]
+        self.assertEqual(effect, {"id": "my-thrust", "where": "static", "formula": "k * ENGTRQ / 100",
+                                  "parameters": {"k": 0.0}, "unit": "hPa", "source": "engine run-up, 2011-11-02"})
+
+    def test_an_effect_elsewhere_has_the_unit_of_the_place(self):
+        self.assertEqual(self.add("mine", "--formula", "k * roll", "--where", "lams")["effect"][-1]["unit"], "m/s")
+
+    def test_variables_are_named(self):
+        model = self.model(replace(r'^attack = .*\n', ""))
+        self.assertEqual(self.add("static-attack", model=model)["variables"]["attack"], "ATTACK")
+
+    def test_variables_are_those_of_the_flight(self):
+        flight = self.path / "flight.nc"
+        shutil.copy(ONE, flight)
+        with netCDF4.Dataset(flight, "a") as file:
+            file.renameVariable("ROLL", "ROLL_IRS2")
+        added = self.json_of("add", "mine", "--formula", "k * roll", "-m", self.model(), "--flight", flight, "-o",
+                             self.path / "out.toml")
+        self.assertEqual(added["variables"], {"roll": "ROLL_IRS2"})
+
+    def test_json(self):
+        added = self.json_of("add", "static-lag", "-m", self.model(), "-o", self.path / "out.toml")
+        self.assertEqual(added, {"added": [{"effect": "static-lag", "parameters": {"tau": 0.0}}], "variables": {},
+                                 "model": str(self.path / "out.toml")})
+
+    def test_is_quiet(self):
+        result = self.done("add", "static-lag", "-m", self.model(), "-o", self.path / "out.toml", "--quiet")
+        self.assertEqual((result.stdout, result.stderr), ("", ""))
+
+    def test_command_to_copy(self):
+        self.model(name="my model.toml")
+        self.link(LAGGING, "flight 1.nc")
+        text = self.done("add", "static-lag", "-m", "my model.toml", "--flight", "flight 1.nc", "-o", "it's new.toml",
+                         cwd=self.path).stdout
+        self.assertIn("pcor refit 'flight 1.nc'", self.run_as_printed(text))
+
+    def test_what_is_added_does_nothing_yet(self):
+        """Neutral coefficients change no residual: not even its last bit."""
+        self.add("static-lag", "static-attack", "static-mach2")
+        first, second = self.compare("-m", self.path / "out.toml")["models"]
+        self.assertEqual(first["rms_hpa"], second["rms_hpa"])
+
+    def test_what_is_added_can_be_fitted(self):
+        """Within four standard errors of the truth, by chance missed one time in 16000."""
+        self.add("static-lag", name="lag.toml")
+        fit = self.refit(flights=(LAGGING,), model=self.path / "lag.toml")["effects"][-1]
+        self.assertAlmostEqual(fit["parameters"]["tau"], 1.0, delta=4.0 * fit["stderr"]["tau"])
+
+    def test_every_effect_of_the_catalogue(self):
+        """Each can be added, or the message names the role whose variable nobody can guess."""
+        for effect in self.json_of("effects")["effects"]:
+            with self.subTest(effect["id"]):
+                if any(f'id = "{effect["id"]}"' in line for line in MODEL.splitlines()):
+                    continue
+                output = self.path / "out.toml"
+                result = self.run_tool("add", effect["id"], "-m", self.model(), "--flight", ONE, "-o", output)
+                if result.returncode == 0:
+                    self.assertIn(effect["id"], [each["id"] for each in tomllib.loads(output.read_text())["effect"]])
+                    output.unlink()
+                else:
+                    self.assertRegex(result.stderr, rf"'{effect['id']}' needs the role '\w+'")
+                    self.assertFalse(output.exists())
+
+
+class Diagnose(DiagnosisTest):
+    def assert_has_the_keys(self, result):
+        keys = {"verdict", "findings", "unexplained", "residual_rms_hpa", "noise_rms_hpa", "samples", "absorbed",
+                "limits", "not_testable", "notes", "statistics_seconds", "threshold"}
+        self.assertLessEqual(keys, set(result))
+        self.assertLessEqual({"significant", "rms_hpa", "variables"}, set(result["unexplained"]))
+        for finding in result["findings"]:
+            self.assertLessEqual({"effect", "aliases", "alias_details", "p_value", "rms_before_hpa", "rms_after_hpa",
+                                  "parameters", "stderr", "advice", "evidence", "events"}, set(finding))
+            self.assertEqual(finding["aliases"], [alias["effect"] for alias in finding["alias_details"]])
+
+    def test_nothing_is_missing(self):
+        result = self.diagnose()
+        self.assert_has_the_keys(result)
+        self.assertEqual((result["verdict"], result["findings"]), ("silent", []))
+        self.assertGreater(len(result["limits"]), 5)
+
+    def test_text_and_command_where_nothing_is_missing(self):
+        self.model(name="my model.toml")
+        self.link(ONE, "flight 1.nc")
+        text = self.done("diagnose", "flight 1.nc", "-m", "my model.toml", cwd=self.path).stdout
+        self.assertTrue(text.startswith("Nothing is missing"), text)
+        self.assertIn("pcor process", self.run_as_printed(text))
+
+    def test_a_missing_effect_is_found(self):
+        result = self.diagnose(flights=(LAGGING, LAGGING_TOO))
+        self.assert_has_the_keys(result)
+        finding = result["findings"][0]
+        self.assertIn("static-lag", [finding["effect"], *finding["aliases"]])
+        self.assertLess(finding["rms_after_hpa"], finding["rms_before_hpa"])
+        self.assertIn("lag", finding["evidence"][0]["flight"])
+
+    def test_text_and_command_where_an_effect_is_missing(self):
+        self.model(name="my model.toml")
+        self.link(LAGGING, "flight 1.nc")
+        text = self.done("diagnose", "flight 1.nc", "-m", "my model.toml", cwd=self.path).stdout
+        self.assertTrue(text.startswith("The model lacks"), text)
+        command = self.run_as_printed(text)
+        self.assertRegex(command, "pcor add .* && pcor refit")
+        self.assertTrue((self.path / "fitted.toml").exists())
+
+    def test_a_formula_is_a_candidate(self):
+        """The sign is that of the correction: what the engines take off the pressure is added."""
+        result = self.diagnose("--try", "k * (ENGTRQ - 50) / 100", flights=(THRUSTING,))
+        self.assertIn("try-1", [name for each in result["findings"] for name in (each["effect"], *each["aliases"])])
+
+    def test_a_formula_of_a_file_is_a_candidate(self):
+        result = self.diagnose("--candidates", self.model(with_effect(OWN), "own.toml"), flights=(THRUSTING,))
+        named = [name for each in result["findings"] for name in (each["effect"], *each["aliases"])]
+        self.assertIn("my-thrust", named)
+
+    def test_candidates_that_cannot_be_tested_stop_nothing(self):
+        flight = self.path / "flight.nc"
+        shutil.copy(ONE, flight)
+        with netCDF4.Dataset(flight, "a") as file:
+            file.createVariable("EMPTY", "f4", ("Time",), fill_value=-32767.0).units = "1"
+        result = self.diagnose("--no-file-variables", "--try", "k * EMPTY", "--try", "k * NOT_THERE", "--try",
+                               "k * log(-static_pressure)", "--try", "k * lams_static_defect", flights=(flight,))
+        reasons = {each["effect"]: each["reason"] for each in result["not_testable"]}
+        for number in range(1, 5):
+            self.assertTrue(reasons[f"try-{number}"])
+
+    def test_is_quiet(self):
+        result = self.done("diagnose", ONE, "-m", self.model(), "--no-file-variables", "--quiet")
+        self.assertEqual((result.stdout, result.stderr), ("", ""))
+
+    def test_report_is_one_file_that_fetches_nothing(self):
+        report = self.path / "out.html"
+        self.done("diagnose", LAGGING, "-m", self.model(), "--no-file-variables", "--report", report, "--quiet")
+        self.assertEqual(comparison_test.addresses_in(report.read_text()), set())
+
+
+class Improve(DiagnosisTest):
+    def test_climbs_the_ladder(self):
+        result = self.improve("--holdout", LAGGING_TOO, flights=(LAGGING,))
+        self.assertIsNone(result["steps"][0]["added"])
+        for step in result["steps"]:
+            self.assertLessEqual({"added", "rms_train_hpa", "rms_holdout_hpa", "noise_rms_hpa", "terms", "learnt"},
+                                 set(step))
+        self.assertGreater(len(result["steps"]), 1)
+        self.assertLess(result["steps"][-1]["rms_holdout_hpa"], result["steps"][0]["rms_holdout_hpa"])
+        self.assertEqual(result["model"], str(self.path / "out.toml"))
+        effects = [effect["id"] for effect in tomllib.loads((self.path / "out.toml").read_text())["effect"]]
+        added = [step["added"] for step in result["steps"][1:]]
+        self.assertEqual(effects[-len(added):], added)
+        self.assertTrue(result["why_stopped"])
+        self.assertIn("significant", result["unexplained"])
+
+    def test_text_and_command(self):
+        self.model(name="my model.toml")
+        self.link(ONE, "flight 1.nc")
+        text = self.done("improve", "flight 1.nc", "-m", "my model.toml", "-o", "it's best.toml", cwd=self.path).stdout
+        self.assertIn("stopped: nothing is missing", text)
+        self.assertIn("pcor process", self.run_as_printed(text))
+
+    def test_report_is_one_file_that_fetches_nothing(self):
+        report = self.path / "out.html"
+        self.improve("--report", report)
+        self.assertEqual(comparison_test.addresses_in(report.read_text()), set())
+
+
+class BadInput(DiagnosisTest):
+    def both(self, *arguments, words, flights=(ONE,), model=None, status=1):
+        """Refused by `diagnose` and by `improve` alike."""
+        model = model or self.model()
+        for command in (("diagnose",), ("improve", "-o", self.path / "out.toml")):
+            with self.subTest(command[0]):
+                self.refused(command[0], *flights, "-m", model, *command[1:], *arguments, words=words, status=status)
+
+    def refuse_add(self, *arguments, words, model=None, status=1):
+        output = () if "-o" in arguments else ("-o", self.path / "out.toml")
+        self.refused("add", *arguments, "-m", model or self.model(), *output, words=words, status=status)
+
+    def test_no_model(self):
+        self.refused("diagnose", ONE, words=["--model"], status=2)
+        self.refused("improve", ONE, "-o", self.path / "out.toml", words=["--model"], status=2)
+        self.refused("add", "static-lag", "-o", self.path / "out.toml", words=["--model"], status=2)
+
+    def test_no_output(self):
+        self.refused("improve", ONE, "-m", self.model(), words=["--output"], status=2)
+        self.refused("add", "static-lag", "-m", self.model(), words=["--output"], status=2)
+
+    def test_no_such_model(self):
+        self.both(model=self.path / "none.toml", words=["none.toml", "no such file"])
+        self.refuse_add("static-lag", model=self.path / "none.toml", words=["none.toml", "no such file"])
+
+    def test_no_such_flight(self):
+        self.both(flights=(self.path / "none.nc",), words=["none.nc", "no such file"])
+        self.refuse_add("static-lag", "--flight", self.path / "none.nc", words=["none.nc", "no such file"])
+
+    def test_empty_file(self):
+        self.both(flights=(self.write("flight.nc", ""),), words=["flight.nc"])
+
+    def test_missing_variable(self):
+        self.both(model=self.model(replace('"QCF"', '"QCFX"')), words=["one.nc", "QCFX", "QCFR", "dynamic_pressure"])
+
+    def test_flights_of_two_aircraft(self):
+        self.both(flights=(ONE, GV), words=["N130AR", "N677F", "one.nc", "gv.nc"])
+
+    def test_no_laser_in_the_model(self):
+        self.both(model=PUBLISHED, words=["lams_airspeed", "--reference static:"])
+
+    def test_no_laser_in_the_flight(self):
+        self.both(model=self.model(replace('"VLAMS"', '"VLAMX"')), words=["one.nc", "VLAMX", "lams_airspeed"])
+
+    def test_every_sample_is_masked(self):
+        self.both("--min-airspeed", "500", words=["slower than the least airspeed"])
+
+    def test_formula_that_cannot_be_read(self):
+        for formula, words in (("k * (ENGTRQ", ["column"]), ("k ** ENGTRQ", ["column 4"]),
+                               ("ENGTRQ / 100", ["no coefficient k"])):
+            with self.subTest(formula):
+                self.both("--try", formula, words=[f"--try '{formula}'", *words])
+                self.refuse_add("mine", "--formula", formula, words=[f"--formula '{formula}'", *words])
+
+    def test_candidates_that_cannot_be_read(self):
+        self.both("--candidates", self.path / "none.toml", words=["none.toml", "no such file"])
+
+    def test_formula_of_a_variable_that_the_flight_lacks(self):
+        self.refuse_add("mine", "--formula", "k * ENGTQR", "--flight", ONE,
+                        words=["one.nc", "ENGTQR", "did you mean ENGTRQ"])
+
+    def test_formula_with_an_id_of_the_catalogue(self):
+        self.refuse_add("static-lag", "--formula", "k * roll", words=["'static-lag'", "id of its own"])
+
+    def test_one_formula_for_two_effects(self):
+        self.refuse_add("mine", "thine", "--formula", "k * roll", words=["mine, thine", "one"])
+
+    def test_wrong_unit(self):
+        self.refuse_add("mine", "--formula", "k * roll", "--unit", "Pa", words=["--unit Pa", "hPa"])
+
+    def test_wrong_place(self):
+        self.refuse_add("mine", "--formula", "k * roll", "--where", "wing", words=["wing", "static"], status=2)
+
+    def test_place_without_formula(self):
+        self.refuse_add("static-lag", "--where", "static", words=["--where", "--formula"], status=2)
+
+    def test_unknown_effect(self):
+        self.refuse_add("static-lg", words=["'static-lg'", "did you mean static-lag"])
+
+    def test_effect_that_the_model_has(self):
+        self.refuse_add("static-qp", words=["'static-qp'", "already"])
+        self.refuse_add("static-lag", "static-lag", words=["'static-lag'", "already"])
+        self.refuse_add("my-thrust", "--formula", "k * roll", model=self.model(with_effect(OWN)),
+                        words=["'my-thrust'", "already"])
+
+    def test_role_that_nobody_can_guess(self):
+        self.refuse_add("mine", "--formula", "k * mach * cabin_pressure * dew_point",
+                        words=["'mine'", "'dew_point'", 'dew_point = "..."'])
+
+    def test_role_that_the_flight_lacks(self):
+        flight = self.path / "flight.nc"
+        shutil.copy(ONE, flight)
+        with netCDF4.Dataset(flight, "a") as file:
+            file.renameVariable("PCAB", "CABIN")
+        self.refuse_add("mine", "--formula", "k * cabin_pressure", "--flight", flight,
+                        words=["'mine'", "'cabin_pressure'", "PCAB"])
+
+    def test_nothing_to_add(self):
+        self.refuse_add(words=["effects"], status=2)
+
+    def test_numbers_that_are_none(self):
+        for option, value in (("--min-airspeed", "nan"), ("--training-share", "0"), ("--training-share", "1.5")):
+            with self.subTest(f"{option} {value}"):
+                self.both(option, value, words=[option], status=2)
+
+
+class BadOutput(DiagnosisTest):
+    def test_output_is_an_input(self):
+        model, own = self.model(), self.model(with_effect(OWN), "own.toml")
+        flight, other = self.path / "one.nc", self.path / "two.nc"
+        shutil.copy(ONE, flight)
+        shutil.copy(ONE, other)
+        for output in (model, own, flight, other):
+            with self.subTest(output.name):
+                words = [output.name, "input"]
+                self.refused("improve", flight, "--holdout", other, "--candidates", own, "-m", model, "-o", output,
+                             output=output, words=words)
+                if output == other:
+                    continue
+                self.refused("diagnose", flight, "--candidates", own, "-m", model, "--json", output, output=output,
+                             words=words)
+                if output != own:
+                    self.refused("add", "static-lag", "-m", model, "--flight", flight, "-o", output, output=output,
+                                 words=words)
+
+    def test_two_outputs_in_one_place(self):
+        output = self.path / "out.toml"
+        self.refused("improve", ONE, "-m", self.model(), "-o", output, "--report", output, words=["out.toml", "twice"])
+        self.refused("add", "static-lag", "-m", self.model(), "-o", output, "--json", output,
+                     words=["out.toml", "twice"])
+
+    def test_missing_folder(self):
+        missing, model = self.path / "none", self.model()
+        for arguments in (("diagnose", ONE, "--json"), ("diagnose", ONE, "--report"), ("improve", ONE, "-o"),
+                          ("add", "static-lag", "-o")):
+            with self.subTest(arguments):
+                self.refused(*arguments, missing / "out", "-m", model, words=[missing, "make it"])
+
+    def test_a_refused_effect_leaves_an_old_output(self):
+        output = self.write("out.toml", "old")
+        before = contents(self.path)
+        self.run_tool("add", "static-lg", "-m", SOURCE / "data/models/c130-psfd-eq18.toml", "-o", output)
+        self.assertEqual(contents(self.path), before)
+
+
+if __name__ == "__main__":
+    if not os.access(TOOL, os.X_OK):
+        sys.exit(f"{TOOL} is not a program")
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

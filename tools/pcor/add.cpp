@@ -1,0 +1,168 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+
+#include "command.hpp"
+#include "diagnosis.hpp"
+#include "pcor/effects/catalogue.hpp"
+#include "pcor/offline/error.hpp"
+#include "pcor/offline/flight.hpp"
+#include "pcor/offline/improve.hpp"
+#include "pcor/offline/suggest.hpp"
+#include "pcor/offline/units.hpp"
+#include "pcor/realtime/formula.hpp"
+
+namespace pcor::tool {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::vector<std::string> effects;
+  std::string model;
+  std::string output;
+  std::string formula;
+  std::string where = "static";
+  std::string unit;
+  std::string source;
+  std::string flight;
+};
+
+/// The user's own effect. @throws Error if it cannot be one.
+ModelEffect own_effect(const Options& options, const std::vector<std::string>& variables) {
+  if (options.effects.size() != 1) {
+    throw Error(fmt::format("--formula makes one effect, but {} are named: {}; name the one that it is",
+                            options.effects.size(), fmt::join(options.effects, ", ")));
+  }
+  ModelEffect effect = formula_effect(options.effects.front(), options.formula, "--formula");
+  effect.where = where_named(options.where);
+  const std::string wanted(facts_of(effect.where).unit);
+  if (!options.unit.empty() && standard_unit(options.unit) != standard_unit(wanted)) {
+    throw Error(fmt::format("--unit {}: what acts at '{}' is in {}; write the formula in {}", options.unit,
+                            options.where, wanted, wanted));
+  }
+  effect.unit = wanted;
+  effect.source = options.source;
+  if (variables.empty()) return effect;
+  const auto formula = Formula::parse(effect.formula, effect.parameter_names);
+  for (const std::string& name : formula->variables()) {
+    if (quantity_named(name) != Quantity::count) continue;
+    if (std::find(variables.begin(), variables.end(), name) != variables.end()) continue;
+    const std::string meant = did_you_mean(name, variables);
+    throw Error(
+        fmt::format("{}: {}, which --formula names, is neither a variable of this file nor a quantity; {}",
+                    options.flight, name, meant.empty() ? "correct the formula" : meant));
+  }
+  return effect;
+}
+
+std::vector<ModelEffect> wanted_effects(const Options& options, const std::vector<std::string>& variables) {
+  if (!options.formula.empty()) return {own_effect(options, variables)};
+  std::vector<ModelEffect> effects;
+  for (const std::string& id : options.effects) effects.push_back(neutral_effect(id));
+  return effects;
+}
+
+/// The roles that `extended` names beyond `model`.
+std::vector<Quantity> new_roles(const ModelFile& model, const ModelFile& extended) {
+  std::vector<Quantity> roles;
+  for (const Quantity role : extended.roles()) {
+    if (model.variables.count(role) == 0) roles.push_back(role);
+  }
+  return roles;
+}
+
+void print(const ModelFile& model, const ModelFile& extended, const Options& options) {
+  fmt::print("{:<20} {:<15} {:<48} {}\n", "added", "where", "formula", "starts at");
+  for (std::size_t i = model.model.effects.size(); i < extended.model.effects.size(); ++i) {
+    const ModelEffect& effect = extended.model.effects[i];
+    const EffectFacts* facts = effect.is_formula() ? nullptr : &effect_facts[effect_named(effect.id)];
+    const std::vector<std::string> names = parameter_names(effect);
+    std::vector<std::string> start;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      start.push_back(fmt::format("{} = {}{}", names[k], effect.parameters[k],
+                                  extended.fit(i, k).fixed ? " (fixed)" : ""));
+    }
+    fmt::print("{:<20} {:<15} {:<48} {}\n", effect.id, facts_of(facts ? facts->where : effect.where).name,
+               facts ? std::string(facts->formula) : effect.formula, fmt::join(start, ", "));
+  }
+  for (const Quantity role : new_roles(model, extended))
+    fmt::print("named for it: {} = \"{}\"\n", facts_of(role).name, extended.variables.at(role));
+  fmt::print("\nwrote {}\nTo fit it: pcor refit {} -m {} -o fitted.toml\n", options.output,
+             options.flight.empty() ? "IN.nc" : quoted(options.flight), quoted(options.output));
+}
+
+nlohmann::ordered_json as_json(const ModelFile& model, const ModelFile& extended, const Options& options) {
+  nlohmann::ordered_json json{{"added", nlohmann::ordered_json::array()},
+                              {"variables", nlohmann::ordered_json::object()}};
+  for (std::size_t i = model.model.effects.size(); i < extended.model.effects.size(); ++i)
+    json["added"].push_back(tool::as_json(extended.model.effects[i]));
+  for (const Quantity role : new_roles(model, extended))
+    json["variables"][std::string(facts_of(role).name)] = extended.variables.at(role);
+  json["model"] = options.output;
+  return json;
+}
+
+void run(const Options& options) {
+  const std::vector<std::filesystem::path> inputs{options.model, options.flight};
+  refuse_overwriting({options.output, options.common.json}, inputs);
+  require_writable(options.output);
+  JsonResult json(options.common);
+  const ModelFile model = read_model(options.model);
+  std::vector<std::string> variables;
+  if (!options.flight.empty()) variables = Flight(options.flight).variables();
+  const ModelFile extended = with_effects(model, wanted_effects(options, variables), variables);
+  save_model(extended, options.output, inputs);
+  json.write(as_json(model, extended, options));
+  if (wants_text(options.common)) print(model, extended, options);
+}
+
+CLI::Validator is_place() {
+  std::vector<std::string> names;
+  for (const WhereFacts& facts : where_facts) names.emplace_back(facts.name);
+  return CLI::IsMember(names);
+}
+
+}  // namespace
+
+std::function<void()> add_add(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      program.add_subcommand("add", "Add effects to a model, with coefficients that do nothing yet");
+  command
+      ->add_option("effects", options->effects,
+                   "effects of the catalogue, or with --formula the name of an effect of your own")
+      ->required()
+      ->type_name("EFFECT...");
+  command->add_option("-m,--model", options->model, "the model to extend")
+      ->required()
+      ->type_name("MODEL.toml");
+  command->add_option("-o,--output", options->output, "the extended model, whole or not at all")
+      ->required()
+      ->type_name("NEW.toml");
+  CLI::Option* formula =
+      command
+          ->add_option(
+              "--formula", options->formula,
+              "the formula of an effect of your own, with a coefficient k and variables by netCDF name "
+              "or by role: 'k * ENGTRQ / 100'")
+          ->type_name("FORMULA");
+  command->add_option("--where", options->where, "where the formula acts")
+      ->check(is_place())
+      ->needs(formula)
+      ->capture_default_str();
+  command->add_option("--unit", options->unit, "of the formula's value")->needs(formula)->type_name("UNIT");
+  command->add_option("--source", options->source, "where the formula comes from")
+      ->needs(formula)
+      ->type_name("TEXT");
+  command
+      ->add_option("--flight", options->flight,
+                   "choose the variables that the effects need among those of this flight")
+      ->type_name("IN.nc");
+  add_common_options(*command, options->common, false);
+  return [options] { run(*options); };
+}
+
+}  // namespace pcor::tool

@@ -1,0 +1,238 @@
+#include "pcor/offline/diagnose.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "comparison.hpp"
+#include "diagnosis.hpp"
+#include "pcor/offline/diagnosis_report.hpp"
+#include "pcor/offline/utc.hpp"
+#include "progress.hpp"
+
+namespace pcor::tool {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  ComparisonOptions comparison;
+  CandidateOptions candidates;
+  std::string model;
+  std::vector<std::string> not_variables;
+  bool no_file_variables = false;
+  double training_share = 1.0;
+  bool all = false;
+};
+
+constexpr std::size_t shortened = 5;
+
+std::string names_of(const std::vector<Finding>& findings) {
+  std::vector<std::string> names;
+  for (const Finding& finding : findings) names.push_back(finding.effect.id);
+  return fmt::format("{}", fmt::join(names, " and "));
+}
+
+std::string sentence_of(const Diagnosis& diagnosis) {
+  const std::string found = names_of(diagnosis.findings);
+  const double left = diagnosis.unexplained.rms;
+  switch (diagnosis.verdict) {
+    case Verdict::silent:
+      return fmt::format("Nothing is missing that these flights could show, of {} effects tested.",
+                         diagnosis.candidates);
+    case Verdict::identified:
+      return fmt::format("The model lacks {}.", found);
+    case Verdict::ambiguous:
+      return fmt::format("The model lacks {}, or what these flights cannot tell from it.", found);
+    case Verdict::partial:
+      return fmt::format("{} takes up much of what is left, but not all: do not take the name for the cause.",
+                         found);
+    case Verdict::unexplained:
+      return fmt::format("There is structure of {:.3f} hPa rms that no effect of the catalogue explains.",
+                         left);
+  }
+  return "";
+}
+
+void print_finding(const Finding& finding) {
+  fmt::print("\n{}: {}\n", finding.effect.id, finding.title);
+  if (finding.effect.is_formula()) fmt::print("  formula: {}\n", finding.effect.formula);
+  fmt::print("  largest: {:+.3f} hPa in {} at {}\n", finding.worst, finding.worst_flight,
+             utc_text(finding.worst_time));
+  for (const Evidence& evidence : finding.evidence) {
+    fmt::print("  {:>3.0f} % of the evidence: {} {} to {}  {}\n", 100.0 * evidence.share, evidence.flight,
+               utc_text(evidence.begin), utc_text(evidence.end, "%H:%M:%S"), evidence.regimes);
+  }
+  for (const Alias& alias : finding.aliases) {
+    const std::string size = alias.size_to_usual == 0.0 ? ""
+                                                        : fmt::format(", {:.2g} times its usual size",
+                                                                      std::abs(alias.size_to_usual));
+    fmt::print("  cannot be told from {} with {}: correlation {:+.3f}, chi2 {:.1f} {}{}\n", alias.effect,
+               in_words(alias.estimates), alias.correlation, std::abs(alias.chi2_less),
+               alias.chi2_less < 0.0 ? "more" : "less", size);
+  }
+  const Advice& advice = finding.advice;
+  if (advice.sentence.empty()) return;
+  fmt::print("  advice: {}{}\n", advice.sentence,
+             advice.power > 0.0 ? fmt::format(" (expected power {:.0f} %)", 100.0 * advice.power) : "");
+}
+
+void print_findings(const std::vector<Finding>& findings) {
+  if (findings.empty()) return;
+  fmt::print("\n{:<20} {:<32} {:>9} {:>9} {:>8} {:>8} {:>9} {:>9} {:>7}\n", "missing effect", "coefficient",
+             "rms, hPa", "largest", "chi2", "p", "before", "after", "events");
+  for (const Finding& finding : findings) {
+    fmt::print("{:<20} {:<32} {:>9.3f} {:>+9.3f} {:>8.1f} {:>8} {:>9.4f} {:>9.4f} {:>7.0f}\n",
+               finding.effect.id, in_words(finding.estimates), finding.rms, finding.worst, finding.chi2,
+               probability(finding.p_value), finding.rms_before, finding.rms_after, finding.events);
+  }
+  fmt::print("before and after: rms, hPa, of stretches that took no part in the fit\n");
+  for (const Finding& finding : findings) print_finding(finding);
+}
+
+/// A list on one line; the rest of a long one is counted.
+void print_list(const std::string& title, std::vector<std::string> items, bool all) {
+  if (items.empty()) return;
+  const std::size_t more = all || items.size() <= shortened ? 0 : items.size() - shortened;
+  items.resize(items.size() - more);
+  fmt::print("{}: {}{}\n", title, fmt::join(items, ", "), more == 0 ? "" : fmt::format(" and {} more", more));
+}
+
+void print_others(const Diagnosis& diagnosis, bool all) {
+  std::vector<std::string> absorbed;
+  std::vector<std::string> not_testable;
+  std::vector<std::string> limits;
+  for (const AbsorbedEffect& effect : diagnosis.absorbed)
+    absorbed.push_back(fmt::format("{} (by {})", effect.effect, fmt::join(effect.by, ", ")));
+  for (const NotTestable& effect : diagnosis.not_testable)
+    not_testable.push_back(fmt::format("{} ({})", effect.effect, effect.reason));
+  for (const UpperLimit& limit : diagnosis.limits) {
+    std::vector<std::string> sizes;
+    for (std::size_t i = 0; i < std::min(limit.limits.size(), limit.estimates.size()); ++i) {
+      sizes.push_back(fmt::format("{} {:.2g}{}", limit.estimates[i].name, limit.limits[i],
+                                  unit_after_number(limit.estimates[i].unit)));
+    }
+    limits.push_back(fmt::format("{} ({}: {:.3f} hPa{}{})", limit.effect, fmt::join(sizes, ", "), limit.rms,
+                                 limit.note.empty() ? "" : "; ", limit.note));
+  }
+  fmt::print("\n");
+  print_list("not found, and at most (95 %)", std::move(limits), all);
+  print_list("absorbed by the model", std::move(absorbed), all);
+  print_list("not testable", std::move(not_testable), all);
+}
+
+/// The command that adds the findings, or the traced variable, and fits; else the loop that does what one
+/// command cannot.
+std::string next_command(const Diagnosis& diagnosis, const Options& options) {
+  const std::string flights = command_line(options.comparison);
+  const std::string model = quoted(options.model);
+  if (diagnosis.verdict == Verdict::silent) {
+    return fmt::format("To apply the model: pcor process {} -m {} -o corrected.nc",
+                       quoted(options.comparison.flights.front()), model);
+  }
+  const std::string and_fit =
+      fmt::format(" -m {} --flight {} -o extended.toml && pcor refit {} -m extended.toml -o fitted.toml",
+                  model, quoted(options.comparison.flights.front()), flights);
+  const auto add_formula = [&and_fit](const std::string& id, const std::string& formula,
+                                      const std::string& where) {
+    return fmt::format("pcor add {} --formula {} --where {}{}", quoted(id), quoted(formula), where, and_fit);
+  };
+  const auto of_catalogue = [](const Finding& finding) { return !finding.effect.is_formula(); };
+  const std::vector<Finding>& findings = diagnosis.findings;
+  const bool sure = diagnosis.verdict == Verdict::identified || diagnosis.verdict == Verdict::ambiguous;
+  if (sure && std::all_of(findings.begin(), findings.end(), of_catalogue)) {
+    std::string add = "pcor add";
+    for (const Finding& finding : findings) add += " " + finding.effect.id;
+    return fmt::format("To add {} and fit: {}{}", findings.size() == 1 ? "it" : "them", add, and_fit);
+  }
+  if (sure && findings.size() == 1 && findings[0].effect.parameter_names == std::vector<std::string>{"k"}) {
+    const ModelEffect& effect = findings[0].effect;
+    return "To add it and fit: " +
+           add_formula(effect.id, effect.formula, std::string(facts_of(effect.where).name));
+  }
+  if (!findings.empty()) {
+    return fmt::format("To add what helps, one after another: pcor improve {} -m {}{} -o best.toml", flights,
+                       model, command_line(options.candidates));
+  }
+  for (const TracedVariable& variable : diagnosis.unexplained.variables) {
+    if (variable.formula.empty()) continue;
+    return fmt::format(
+        "To see whether a formula of {} helps where it was not fitted: pcor improve {} -m {} "
+        "--trace-variables -o "
+        "best.toml",
+        variable.name, flights, model);
+  }
+  return fmt::format("To see where it lies: pcor compare {} -m {}", flights, model);
+}
+
+void print(const Diagnosis& diagnosis, const Options& options) {
+  fmt::print("{}\n\n", sentence_of(diagnosis));
+  fmt::print("reference: {}\n", diagnosis.reference);
+  fmt::print("used {} samples; not used: {}\n", diagnosis.samples, mask_text(diagnosis.masks));
+  fmt::print(
+      "rms {:.3f} hPa; {:.3f} with the free coefficients refitted, weighted by the noise; noise {:.3f} hPa\n",
+      diagnosis.rms_given, diagnosis.residual_rms, diagnosis.noise_rms);
+  print_findings(diagnosis.findings);
+  print_unexplained(diagnosis.unexplained);
+  print_others(diagnosis, options.all);
+  for (const std::string& note : diagnosis.notes) fmt::print("\nNote: {}.\n", note);
+  fmt::print("\n{}\n", next_command(diagnosis, options));
+}
+
+void run(const Options& options) {
+  std::vector<std::filesystem::path> inputs = input_files(options.comparison);
+  inputs.emplace_back(options.model);
+  inputs.emplace_back(options.candidates.file);
+  refuse_overwriting({options.common.json, options.common.report}, inputs);
+  require_writable(options.common.report);
+  JsonResult json(options.common);
+  const ModelFile model = read_model(options.model);
+  const Reference reference = read_reference(options.comparison.reference, model);
+  DiagnoseOptions diagnose_with;
+  diagnose_with.mask = mask_options(options.comparison);
+  diagnose_with.time_stamp = time_stamp(options.comparison);
+  diagnose_with.formulas = candidate_formulas(options.candidates, model);
+  diagnose_with.whole_file = !options.no_file_variables;
+  diagnose_with.not_variables = options.not_variables;
+  diagnose_with.training_share = options.training_share;
+  Diagnosis diagnosis;
+  {
+    Progress bar("diagnosing", !options.common.quiet);
+    diagnose_with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
+    diagnosis = diagnose(flight_paths(options.comparison), model, reference, diagnose_with);
+  }
+  if (!options.common.report.empty()) write_report(diagnosis_report(diagnosis, model), options.common.report);
+  json.write(as_json(diagnosis));
+  if (wants_text(options.common)) print(diagnosis, options);
+}
+
+}  // namespace
+
+std::function<void()> add_diagnose(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("diagnose", "Find the physical effect that a model lacks");
+  add_comparison_options(*command, options->comparison);
+  command->add_option("-m,--model", options->model, "the model, fitted before")
+      ->required()
+      ->type_name("MODEL.toml");
+  add_candidate_options(*command, options->candidates);
+  command
+      ->add_option("--not-variable", options->not_variables,
+                   "a variable of the flights in which no unexplained structure is looked for")
+      ->type_name("NAME");
+  command->add_flag("--no-file-variables", options->no_file_variables,
+                    "do not look for unexplained structure in the variables of the flights");
+  command
+      ->add_option("--training-share", options->training_share,
+                   "look at the first part of every flight alone, this share")
+      ->check(CLI::Range(0.01, 1.0))
+      ->capture_default_str();
+  command->add_flag("--all", options->all, "print the lists of effects that were not found in full");
+  add_common_options(*command, options->common);
+  return [options] { run(*options); };
+}
+
+}  // namespace pcor::tool

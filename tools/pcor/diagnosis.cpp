@@ -1,0 +1,254 @@
+#include "diagnosis.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "comparison.hpp"
+#include "pcor/offline/error.hpp"
+#include "pcor/offline/utc.hpp"
+#include "pcor/realtime/formula.hpp"
+
+namespace pcor::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A list of what `as_one` makes of each.
+template <class Items, class Function>
+Json list_of(const Items& items, const Function& as_one) {
+  Json list = Json::array();
+  for (const auto& item : items) list.push_back(as_one(item));
+  return list;
+}
+
+Json estimates_as_json(const std::vector<Estimate>& estimates) {
+  return list_of(estimates, [](const Estimate& estimate) {
+    return Json{{"name", estimate.name},
+                {"unit", estimate.unit},
+                {"value", estimate.value},
+                {"stderr", estimate.standard_error},
+                {"typical", estimate.typical}};
+  });
+}
+
+Json alias_as_json(const Alias& alias) {
+  return {{"effect", alias.effect},
+          {"title", alias.title},
+          {"correlation", alias.correlation},
+          {"chi2_less", alias.chi2_less},
+          {"size_to_usual", alias.size_to_usual},
+          {"estimates", estimates_as_json(alias.estimates)}};
+}
+
+Json evidence_as_json(const Evidence& evidence) {
+  return {{"flight", evidence.flight},
+          {"begin", utc_text(evidence.begin, iso_time)},
+          {"end", utc_text(evidence.end, iso_time)},
+          {"regimes", evidence.regimes},
+          {"share", evidence.share}};
+}
+
+Json finding_as_json(const Finding& finding) {
+  Json json = as_json(finding.effect);
+  json["title"] = finding.title;
+  json["stderr"] = Json::object();
+  json["units"] = Json::object();
+  for (const Estimate& estimate : finding.estimates) {
+    json["stderr"][estimate.name] = estimate.standard_error;
+    json["units"][estimate.name] = estimate.unit;
+  }
+  json["estimates"] = estimates_as_json(finding.estimates);
+  json["rms_hpa"] = finding.rms;
+  json["worst_hpa"] = finding.worst;
+  json["worst_flight"] = finding.worst_flight;
+  json["worst_time"] = utc_text(finding.worst_time, iso_time);
+  json["chi2"] = finding.chi2;
+  json["p_value"] = finding.p_value;
+  json["rms_before_hpa"] = finding.rms_before;
+  json["rms_after_hpa"] = finding.rms_after;
+  json["events"] = finding.events;
+  json["evidence"] = list_of(finding.evidence, evidence_as_json);
+  json["aliases"] = list_of(finding.aliases, [](const Alias& alias) { return Json(alias.effect); });
+  json["alias_details"] = list_of(finding.aliases, alias_as_json);
+  json["advice"] = finding.advice.sentence;
+  json["advice_details"] = {{"manoeuvre", finding.advice.manoeuvre},
+                            {"duration_s", finding.advice.duration},
+                            {"power", finding.advice.power}};
+  return json;
+}
+
+Json limit_as_json(const UpperLimit& limit) {
+  return {{"effect", limit.effect}, {"title", limit.title}, {"estimates", estimates_as_json(limit.estimates)},
+          {"limits", limit.limits}, {"rms_hpa", limit.rms}, {"note", limit.note}};
+}
+
+Json variable_as_json(const TracedVariable& variable) {
+  return {{"name", variable.name},
+          {"unit", variable.unit},
+          {"description", variable.description},
+          {"r2", variable.r2},
+          {"p_value", variable.p_value},
+          {"linear_r2", variable.linear_r2},
+          {"slope", variable.slope},
+          {"slope_stderr", variable.slope_error},
+          {"centre", variable.centre},
+          {"formula", variable.formula}};
+}
+
+std::string option(const char* name, const std::string& value) {
+  return fmt::format(" {} {}", name, quoted(value));
+}
+
+}  // namespace
+
+void add_candidate_options(CLI::App& command, CandidateOptions& options) {
+  command
+      .add_option(
+          "--try", options.formulas,
+          "a formula at the static ports that is tried too, hPa, with a coefficient k and variables by "
+          "netCDF name or by role: 'k * ENGTRQ / 100'; they are called try-1, try-2 ...")
+      ->type_name("FORMULA")
+      ->expected(1)
+      ->take_all();
+  command
+      .add_option("--candidates", options.file,
+                  "a model whose formula effects, if MODEL lacks them, are tried too")
+      ->type_name("MODEL2.toml");
+}
+
+ModelEffect formula_effect(const std::string& id, const std::string& formula, const std::string& option) {
+  ModelEffect effect;
+  effect.id = id;
+  effect.parameter_names = {"k"};
+  effect.parameters = {0.0};
+  effect.formula = formula;
+  effect.unit = facts_of(effect.where).unit;
+  FormulaError error;
+  const auto parsed = Formula::parse(formula, effect.parameter_names, &error);
+  if (!parsed) throw Error(fmt::format("{} '{}': {}; correct it", option, formula, error.message));
+  if (!parsed->unused_parameters().empty()) {
+    throw Error(
+        fmt::format("{} '{}': there is no coefficient k in it, so nothing can be fitted; write e.g. "
+                    "'k * ENGTRQ / 100'",
+                    option, formula));
+  }
+  return effect;
+}
+
+std::vector<ModelEffect> candidate_formulas(const CandidateOptions& options, const ModelFile& model) {
+  std::vector<ModelEffect> candidates;
+  const auto is_new = [&](const std::string& id) {
+    const auto same = [&id](const ModelEffect& effect) { return effect.id == id; };
+    return std::none_of(model.model.effects.begin(), model.model.effects.end(), same) &&
+           std::none_of(candidates.begin(), candidates.end(), same);
+  };
+  if (!options.file.empty()) {
+    for (const ModelEffect& effect : read_model(options.file).model.effects) {
+      if (effect.is_formula() && is_new(effect.id)) candidates.push_back(effect);
+    }
+  }
+  std::size_t number = 0;
+  for (const std::string& formula : options.formulas) {
+    do ++number;
+    while (!is_new(fmt::format("try-{}", number)));
+    candidates.push_back(formula_effect(fmt::format("try-{}", number), formula, "--try"));
+  }
+  return candidates;
+}
+
+std::string command_line(const CandidateOptions& options) {
+  std::string line;
+  for (const std::string& formula : options.formulas) line += option("--try", formula);
+  if (!options.file.empty()) line += option("--candidates", options.file);
+  return line;
+}
+
+std::string unit_after_number(const std::string& unit) {
+  return unit.empty() || unit == "1" ? "" : " " + unit;
+}
+
+std::string in_words(const std::vector<Estimate>& estimates) {
+  std::vector<std::string> words;
+  for (const Estimate& estimate : estimates) {
+    words.push_back(fmt::format("{} = {:.3g} +- {:.2g}{}", estimate.name, estimate.value,
+                                estimate.standard_error, unit_after_number(estimate.unit)));
+  }
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+std::string probability(double p) { return p < 0.001 ? "< 0.001" : fmt::format("{:.3f}", p); }
+
+void print_unexplained(const Unexplained& unexplained) {
+  if (!unexplained.significant) return;
+  fmt::print("\nwhat no effect explains: {:.3f} hPa rms (p {}), of it {:.3f} hPa of slow drift{}{}\n",
+             unexplained.rms, probability(unexplained.p_value), unexplained.drift_rms,
+             unexplained.regime.empty() ? "" : "; most of it in ", unexplained.regime);
+  if (!unexplained.variables.empty()) {
+    fmt::print("{:<20} {:<10} {:>6} {:>8} {:>20}  {:<32} {}\n", "it goes with", "unit", "R2", "p",
+               "hPa per unit", "formula", "what it is");
+  }
+  for (const TracedVariable& variable : unexplained.variables) {
+    fmt::print("{:<20} {:<10} {:>6.3f} {:>8} {:>20}  {:<32} {}\n", variable.name, variable.unit, variable.r2,
+               probability(variable.p_value),
+               fmt::format("{:.3g} +- {:.2g}", variable.slope, variable.slope_error), variable.formula,
+               variable.description);
+  }
+  if (!unexplained.shares_noise.empty()) {
+    fmt::print("not looked at, because their noise is that of the residual: {}\n",
+               fmt::join(unexplained.shares_noise, ", "));
+  }
+}
+
+Json as_json(const ModelEffect& effect) {
+  Json json{{"effect", effect.id}, {"parameters", Json::object()}};
+  const std::vector<std::string> names = parameter_names(effect);
+  for (std::size_t i = 0; i < names.size(); ++i) json["parameters"][names[i]] = effect.parameters[i];
+  if (effect.is_formula()) {
+    json["where"] = facts_of(effect.where).name;
+    json["formula"] = effect.formula;
+    json["unit"] = effect.unit;
+    json["source"] = effect.source;
+  }
+  return json;
+}
+
+Json as_json(const Unexplained& unexplained) {
+  return {{"significant", unexplained.significant},
+          {"rms_hpa", unexplained.rms},
+          {"drift_rms_hpa", unexplained.drift_rms},
+          {"p_value", unexplained.p_value},
+          {"regime", unexplained.regime},
+          {"variables", list_of(unexplained.variables, variable_as_json)},
+          {"shares_noise", unexplained.shares_noise}};
+}
+
+Json as_json(const Diagnosis& diagnosis) {
+  Json json{{"verdict", name_of(diagnosis.verdict)}, {"reference", diagnosis.reference}};
+  json["findings"] = list_of(diagnosis.findings, finding_as_json);
+  json["unexplained"] = as_json(diagnosis.unexplained);
+  json["absorbed"] = list_of(diagnosis.absorbed, [](const AbsorbedEffect& effect) {
+    return Json{{"effect", effect.effect},
+                {"title", effect.title},
+                {"by", effect.by},
+                {"remaining", effect.remaining}};
+  });
+  json["limits"] = list_of(diagnosis.limits, limit_as_json);
+  json["not_testable"] = list_of(diagnosis.not_testable, [](const NotTestable& effect) {
+    return Json{{"effect", effect.effect}, {"title", effect.title}, {"reason", effect.reason}};
+  });
+  json["candidates"] = diagnosis.candidates;
+  json["threshold"] = diagnosis.threshold;
+  json["rms_given_hpa"] = diagnosis.rms_given;
+  json["residual_rms_hpa"] = diagnosis.residual_rms;
+  json["residual_rms_held_out_hpa"] = diagnosis.residual_rms_held_out;
+  json["noise_rms_hpa"] = diagnosis.noise_rms;
+  json["samples"] = diagnosis.samples;
+  json["masks"] = masks_as_json(diagnosis.masks);
+  json["statistics_seconds"] = diagnosis.statistics_seconds;
+  json["notes"] = diagnosis.notes;
+  return json;
+}
+
+}  // namespace pcor::tool

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "pcor/offline/diagnose.hpp"
+
+namespace pcor::tool {
+
+/// The options of every sub-command that looks for missing effects: what is tried beside the catalogue.
+struct CandidateOptions {
+  std::vector<std::string> formulas{};
+  std::string file{};
+};
+
+void add_candidate_options(CLI::App& command, CandidateOptions& options);
+
+/// The formula effects that the options name, without those that `model` has: try-1, try-2 ... for those of
+/// the command line, and those of the file of candidates.
+/// @throws Error if a formula cannot be read, with the place in it, or the file cannot be.
+std::vector<ModelEffect> candidate_formulas(const CandidateOptions& options, const ModelFile& model);
+
+/// The options as they stand on a command line, each with a blank before it.
+std::string command_line(const CandidateOptions& options);
+
+/// An effect of the user's own at the static ports, with one coefficient k, which starts at 0.
+/// @throws Error that names `option`, if the formula cannot be read or does not use k.
+ModelEffect formula_effect(const std::string& id, const std::string& formula, const std::string& option);
+
+/// A unit as it follows a number, with a blank before it; nothing where there is none.
+std::string unit_after_number(const std::string& unit);
+
+/// "tau = 0.21 +- 0.02 s"
+std::string in_words(const std::vector<Estimate>& estimates);
+
+/// "< 0.001", or the number.
+std::string probability(double p);
+
+/// Prints what no effect explains, and the variables that go with it; nothing where there is nothing.
+void print_unexplained(const Unexplained& unexplained);
+
+nlohmann::ordered_json as_json(const ModelEffect& effect);
+nlohmann::ordered_json as_json(const Unexplained& unexplained);
+nlohmann::ordered_json as_json(const Diagnosis& diagnosis);
+
+}  // namespace pcor::tool

@@ -1,0 +1,151 @@
+#include "pcor/offline/improve.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "comparison.hpp"
+#include "diagnosis.hpp"
+#include "pcor/offline/diagnosis_report.hpp"
+#include "progress.hpp"
+
+namespace pcor::tool {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  ComparisonOptions comparison;
+  CandidateOptions candidates;
+  std::string model;
+  std::string output;
+  std::string loss = "tukey";
+  std::vector<std::string> holdout;
+  double training_share = 1.0;
+  bool trace_variables = false;
+};
+
+using tool::as_json;
+
+nlohmann::ordered_json as_json(const ImproveStep& step) {
+  nlohmann::ordered_json json;
+  json["added"] = nullptr;
+  if (!step.added.empty()) json["added"] = step.added;
+  json["title"] = step.title;
+  json["aliases"] = step.aliases;
+  json["rms_train_hpa"] = step.rms_train;
+  json["rms_holdout_hpa"] = step.rms_holdout;
+  json["noise_rms_hpa"] = step.noise_rms;
+  json["terms"] = step.terms;
+  json["learnt"] = step.learnt;
+  json["diagnosis"] = as_json(step.diagnosis);
+  return json;
+}
+
+nlohmann::ordered_json as_json(const Improvement& improvement, const Options& options) {
+  nlohmann::ordered_json json{{"steps", nlohmann::ordered_json::array()}};
+  for (const ImproveStep& step : improvement.steps) json["steps"].push_back(as_json(step));
+  json["unexplained"] = as_json(improvement.steps.back().diagnosis.unexplained);
+  json["why_stopped"] = improvement.why_stopped;
+  json["holdout_is_flights"] = improvement.holdout_is_flights;
+  json["notes"] = improvement.fit.notes;
+  json["model"] = options.output;
+  return json;
+}
+
+void print(const Improvement& improvement, const Options& options) {
+  fmt::print("reference: {}\n", improvement.fit.reference_text);
+  fmt::print("fitted to {} samples; not used: {}\n\n", improvement.fit.samples,
+             mask_text(improvement.fit.masks));
+  fmt::print("{:<24} {:>10} {:>10} {:>10} {:>13}\n", "rms, hPa", "training", "held out", "noise",
+             "coefficients");
+  for (const ImproveStep& step : improvement.steps) {
+    fmt::print("{:<24} {:>10.4f} {:>10.4f} {:>10.4f} {:>13}\n",
+               step.added.empty() ? "the model as it is" : "+ " + step.added, step.rms_train,
+               step.rms_holdout, step.noise_rms, step.terms);
+  }
+  if (!improvement.holdout_is_flights)
+    fmt::print("held out are five parts of the flights in turn; name whole flights with --holdout\n");
+  fmt::print("\n");
+  for (const ImproveStep& step : improvement.steps) fmt::print("{}\n", step.learnt);
+  fmt::print("stopped: {}\n", improvement.why_stopped);
+  print_unexplained(improvement.steps.back().diagnosis.unexplained);
+  for (const std::string& note : improvement.fit.notes) fmt::print("\nNote: {}.\n", note);
+  fmt::print("\nwrote {}\nTo apply it: pcor process {} -m {} -o corrected.nc\n", options.output,
+             quoted(options.comparison.flights.front()), quoted(options.output));
+}
+
+ImproveOptions improve_options(const Options& options, const ModelFile& model) {
+  ImproveOptions improve_with;
+  improve_with.refit.mask = mask_options(options.comparison);
+  improve_with.refit.time_stamp = time_stamp(options.comparison);
+  improve_with.refit.loss = *loss_named(options.loss);
+  improve_with.refit.training_share = options.training_share;
+  improve_with.refit.holdout.assign(options.holdout.begin(), options.holdout.end());
+  improve_with.formulas = candidate_formulas(options.candidates, model);
+  improve_with.trace_variables = options.trace_variables;
+  return improve_with;
+}
+
+void run(const Options& options) {
+  std::vector<std::filesystem::path> inputs = input_files(options.comparison);
+  inputs.emplace_back(options.model);
+  inputs.emplace_back(options.candidates.file);
+  inputs.insert(inputs.end(), options.holdout.begin(), options.holdout.end());
+  refuse_overwriting({options.output, options.common.json, options.common.report}, inputs);
+  for (const std::string& output : {options.output, options.common.report}) require_writable(output);
+  JsonResult json(options.common);
+  const ModelFile model = read_model(options.model);
+  const Reference reference = read_reference(options.comparison.reference, model);
+  ImproveOptions improve_with = improve_options(options, model);
+  Improvement improvement;
+  {
+    std::optional<Progress> bar;
+    improve_with.progress = [&](const std::string& what) { bar.emplace(what, !options.common.quiet); };
+    improve_with.refit.progress = [&bar](std::size_t done, std::size_t total) { bar->show(done, total); };
+    improvement = improve(flight_paths(options.comparison), model, reference, improve_with);
+  }
+  save_model(improvement.model, options.output, inputs);
+  if (!options.common.report.empty())
+    write_report(improvement_report(improvement, model), options.common.report);
+  json.write(as_json(improvement, options));
+  if (wants_text(options.common)) print(improvement, options);
+}
+
+}  // namespace
+
+std::function<void()> add_improve(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      program.add_subcommand("improve", "Refit, diagnose and add what is missing, until nothing is");
+  add_comparison_options(*command, options->comparison);
+  command->add_option("-m,--model", options->model, "the model to begin with")
+      ->required()
+      ->type_name("MODEL.toml");
+  command->add_option("-o,--output", options->output, "the best model, whole or not at all")
+      ->required()
+      ->type_name("BEST.toml");
+  command->add_option("--holdout", options->holdout, "a flight that takes no part and tests every step")
+      ->type_name("T.nc")
+      ->expected(1)
+      ->take_all();
+  command
+      ->add_option("--training-share", options->training_share,
+                   "learn from the first part of every flight, this share; the rest tests every step")
+      ->check(CLI::Range(0.01, 1.0))
+      ->capture_default_str();
+  add_candidate_options(*command, options->candidates);
+  command->add_flag(
+      "--trace-variables", options->trace_variables,
+      "where no effect of the catalogue explains what is left, add a formula of the variable that "
+      "goes with it, at the static ports");
+  command->add_option("--loss", options->loss, "how outliers count in the fits")
+      ->check(CLI::IsMember({"tukey", "huber", "soft-l1", "cauchy", "none"}))
+      ->capture_default_str();
+  add_common_options(*command, options->common);
+  return [options] { run(*options); };
+}
+
+}  // namespace pcor::tool
