@@ -327,6 +327,20 @@ void require_one_aircraft(const std::vector<std::pair<std::string, std::string>>
   }
 }
 
+void require_each_once(const std::vector<std::filesystem::path>& paths) {
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      std::error_code ignored;
+      if (std::filesystem::equivalent(paths[i], paths[j], ignored)) {
+        throw Error(fmt::format(
+            "{} is given twice: its samples are not new ones; give every flight once, to the fit or "
+            "to --holdout",
+            paths[i].string()));
+      }
+    }
+  }
+}
+
 Comparison compare(const std::vector<std::filesystem::path>& flights,
                    const std::vector<Contender>& contenders, const CompareOptions& options) {
   if (flights.empty() || contenders.empty())

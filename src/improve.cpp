@@ -126,6 +126,11 @@ class Climb {
     ImproveStep first;
     RefitResult fit = loop.refit(model);
     measure(first, fit);
+    if (std::isnan(first.rms_holdout)) {
+      throw Error(
+          "no sample of what is held out can be used, so no step can be tested; give another flight with "
+          "--holdout");
+    }
     first.learnt = fmt::format("the coefficients fitted again: rms {} before, {} after",
                                shown(fit.rms_before), shown(fit.rms));
     take(std::move(first), std::move(fit));
@@ -186,11 +191,18 @@ class Climb {
     return candidates;
   }
 
-  /// Whether another of its aliases would correct the static pressure otherwise by so much that the wrong
-  /// choice does harm.
+  /// Whether the wrong choice does harm: another of its aliases would correct the static pressure otherwise,
+  /// or the effect is not surely the cause and changes that pressure by much more than it takes off the
+  /// residual.
   static bool is_a_gamble(const Finding& finding, const Diagnosis& diagnosis) {
     constexpr double tolerable = 0.35;  // of the noise
-    return finding.static_risk > tolerable * diagnosis.noise_rms;
+    constexpr double leverage = 2.0;
+    const double limit = tolerable * diagnosis.noise_rms;
+    if (finding.static_risk > limit) return true;
+    if (diagnosis.verdict == Verdict::identified) return false;
+    const double explained = std::sqrt(
+        std::max(0.0, finding.rms_before * finding.rms_before - finding.rms_after * finding.rms_after));
+    return finding.static_change > std::max(limit, leverage * explained);
   }
 
   std::string why_nothing_is_added() const {
@@ -205,11 +217,19 @@ class Climb {
       if (!is_a_gamble(finding, now)) continue;
       std::vector<std::string> names;
       for (const Alias& alias : finding.aliases) names.push_back(alias.effect);
+      if (names.empty()) {
+        return fmt::format(
+            "{} may not be the cause, and would change the corrected static pressure by {}, much more than "
+            "it takes "
+            "off the residual; choose it yourself with pcor add",
+            finding.effect.id, shown(finding.static_change));
+      }
       return fmt::format(
           "these flights cannot tell {} from {}, and the corrected static pressure would differ by {} "
           "between them; {}; "
           "or choose one yourself with pcor add",
-          finding.effect.id, fmt::join(names, ", "), shown(finding.static_risk),
+          finding.effect.id, fmt::join(names, ", "),
+          shown(std::max(finding.static_risk, finding.static_change)),
           finding.advice.sentence.empty() ? "fly a manoeuvre that tells them apart"
                                           : finding.advice.sentence);
     }
@@ -241,6 +261,11 @@ class Climb {
     measure(step, fit);
     const double before = result_.steps.back().rms_holdout;
     const double after = step.rms_holdout;
+    const double train = result_.steps.back().rms_train;
+    if (!loop_.has_holdout && step.rms_train > named_limit * train) {
+      return fmt::format("{} was tried and dropped: with it the rms of the fit is {}, without it {}", id,
+                         shown(step.rms_train), shown(train));
+    }
     if (!(after <= candidate.limit * before)) {
       const std::string condition =
           candidate.limit < 1.0 ? fmt::format("; a term whose cause is not known has to take {:.0f} % off it",

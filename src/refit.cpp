@@ -152,17 +152,7 @@ void Refit::require_one_kind() const {
   for (const FlightSource& source : sources_) {
     if (!source.samples) paths.push_back(source.path);
   }
-  for (std::size_t i = 0; i < paths.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      std::error_code ignored;
-      if (std::filesystem::equivalent(paths[i], paths[j], ignored)) {
-        throw Error(fmt::format(
-            "{} is given twice: its samples are not new ones; give every flight once, to the fit or "
-            "to --holdout",
-            paths[i].string()));
-      }
-    }
-  }
+  require_each_once(paths);
   std::vector<std::pair<std::string, std::string>> aircraft;
   const auto add = [&aircraft](const std::filesystem::path& path) {
     aircraft.emplace_back(path.filename().string(), Flight(path).aircraft());

@@ -121,10 +121,11 @@ std::string sentence_of(const Plan& plan, const Finding& finding) {
         finding.effect.id, rivals, hint);
   }
   const std::string times = plan.repeats == 1 ? "" : fmt::format(" {} times", plan.repeats);
-  return fmt::format("fly a {}{} ({}; {:.0f} min): it would tell {} from {} with a probability of {:.0f} %",
-                     plan.manoeuvre->name, times, plan.manoeuvre->how,
-                     std::max(1.0, plan.repeats * plan.manoeuvre->duration / seconds_per_minute),
-                     finding.effect.id, rivals, std::min(99.0, 100.0 * plan.power));
+  return fmt::format(
+      "fly this: {}{} ({}; {:.0f} min): it would tell {} from {} with a probability of {:.0f} %",
+      plan.manoeuvre->name, times, plan.manoeuvre->how,
+      std::max(1.0, plan.repeats * plan.manoeuvre->duration / seconds_per_minute), finding.effect.id, rivals,
+      std::min(99.0, 100.0 * plan.power));
 }
 
 }  // namespace

@@ -107,8 +107,7 @@ std::optional<std::string> obstacle(const Model& model, const ModelEffect& effec
 }
 
 /// Of a formula: the variable that some flight lacks; empty where there is none.
-std::string missing_variable(const ModelFile& model, const ModelEffect& effect,
-                             const std::vector<const Flight*>& flights) {
+std::string missing_variable(const ModelEffect& effect, const std::vector<const Flight*>& flights) {
   const auto formula = Formula::parse(effect.formula, effect.parameter_names, nullptr);
   if (!formula) return "";
   for (const std::string& name : formula->variables()) {
@@ -122,7 +121,6 @@ std::string missing_variable(const ModelFile& model, const ModelEffect& effect,
       }
     }
   }
-  static_cast<void>(model);
   return "";
 }
 
@@ -147,7 +145,11 @@ CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffe
   for (const ModelEffect& formula : formulas) {
     if (has_effect(set.extended, formula.id)) continue;
     Candidate candidate = candidate_of(formula);
-    if (std::string why = missing_variable(model, formula, flights); !why.empty()) {
+    if (candidate.tested.empty()) {
+      set.not_testable.push_back({formula.id, candidate.title, "it has no coefficient to fit"});
+      continue;
+    }
+    if (std::string why = missing_variable(formula, flights); !why.empty()) {
       set.not_testable.push_back({formula.id, candidate.title, std::move(why)});
       continue;
     }

@@ -174,10 +174,12 @@ Verdict verdict_of(const Diagnosis& diagnosis, double explained, double left) {
 /// Takes back the findings where one variable of the files explains more than they do.
 void overrule(Diagnosis& diagnosis) {
   for (const Finding& finding : diagnosis.findings) {
-    diagnosis.notes.push_back(
-        fmt::format("{} explains a part of what is missing, but a line in {} explains more: it is not taken "
-                    "for the cause",
-                    finding.effect.id, diagnosis.unexplained.variables.front().name));
+    diagnosis.notes.push_back(fmt::format(
+        "{} explains a part of what is missing, but a line in {} explains more: it is not taken "
+        "for the cause",
+        finding.effect.id,
+        (diagnosis.unexplained.variables.empty() ? std::string("one variable")
+                                                 : diagnosis.unexplained.variables.front().name)));
   }
   diagnosis.findings.clear();
   for (FlightDiagnosis& flight : diagnosis.flights) {
@@ -208,6 +210,7 @@ std::string_view name_of(Verdict verdict) {
 Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelFile& model,
                    const Reference& reference, const DiagnoseOptions& options) {
   if (paths.empty()) throw Error("nothing to diagnose; give at least one flight");
+  require_each_once(paths);
   std::vector<Flight> files;
   std::vector<std::pair<std::string, std::string>> aircraft;
   for (const std::filesystem::path& path : paths) {

@@ -160,6 +160,12 @@ std::vector<double> static_change(const Analysis& analysis, const std::vector<Ca
   return change;
 }
 
+double rms_of(const std::vector<double>& values) {
+  double squares = 0.0;
+  for (const double value : values) squares += value * value;
+  return values.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(values.size()));
+}
+
 double static_risk(const Analysis& analysis, const std::vector<Candidate>& candidates, std::size_t winner,
                    const std::vector<std::size_t>& chosen, const std::vector<Alias>& aliases) {
   if (aliases.empty()) return 0.0;
@@ -172,10 +178,9 @@ double static_risk(const Analysis& analysis, const std::vector<Candidate>& candi
     if (!is_alias) continue;
     std::vector<std::size_t> instead = chosen;
     std::replace(instead.begin(), instead.end(), winner, g);
-    const std::vector<double> other = static_change(analysis, candidates, instead);
-    double squares = 0.0;
-    for (std::size_t i = 0; i < own.size(); ++i) squares += (own[i] - other[i]) * (own[i] - other[i]);
-    risk = std::max(risk, std::sqrt(squares / static_cast<double>(own.size())));
+    std::vector<double> difference = static_change(analysis, candidates, instead);
+    for (std::size_t i = 0; i < own.size(); ++i) difference[i] -= own[i];
+    risk = std::max(risk, rms_of(difference));
   }
   return risk;
 }
@@ -252,9 +257,10 @@ std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Can
       const FlightSamples& samples = *analysis.flights()[events[k].flight].samples;
       finding.evidence.push_back({samples.name, events[k].begin, events[k].end,
                                   regimes_between(samples, events[k].begin, events[k].end),
-                                  events[k].evidence / evidence.sum()});
+                                  events[k].evidence / evidence.cwiseMax(0.0).sum()});
     }
     finding.aliases = aliases_of(analysis, candidates, group, chosen);
+    finding.static_change = rms_of(static_change(analysis, candidates, chosen));
     finding.static_risk = static_risk(analysis, candidates, group, chosen, finding.aliases);
     findings.push_back(std::move(finding));
   }

@@ -18,6 +18,10 @@ struct WhitenedDrift {
 
   explicit WhitenedDrift(const Binning& bins, const NoiseModel& noise, std::size_t flight) {
     const Eigen::MatrixXd white = whitened(drift_shapes(bins), bins, noise, flight);
+    if (white.cols() == 0) {  // too short for any
+      shapes = white;
+      return;
+    }
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(white.transpose() * white);
     shapes = white * solver.eigenvectors();
     squares = solver.eigenvalues().cwiseMax(0.0);

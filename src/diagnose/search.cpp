@@ -113,12 +113,13 @@ Search::Search(const Scores& scores, Eigen::Index base, const std::vector<Column
   for (const ColumnGroup& group : groups) {
     const Eigen::MatrixXd own = after.block(group.first, group.first, group.count, group.count);
     std::vector<Eigen::Index>& told = told_.emplace_back();
+    remaining_.push_back(0.0);
     // After the base and the columns that are told already.
     Eigen::MatrixXd left = plain_after.block(group.first, group.first, group.count, group.count);
     while (told.size() < static_cast<std::size_t>(group.count)) {
       Eigen::Index next = 0;
       const double most = left.diagonal().maxCoeff(&next);
-      if (told.empty()) remaining_.push_back(std::clamp(most, 0.0, 1.0));
+      if (told.empty()) remaining_.back() = std::clamp(most, 0.0, 1.0);
       if (!(most > absorbed_below)) break;
       told.push_back(next);
       left -= Eigen::MatrixXd(left.col(next) * left.row(next) / most);
@@ -346,7 +347,7 @@ bool Search::all_possible(const std::vector<std::size_t>& chosen) const {
 }
 
 void Search::improve(std::vector<std::size_t>& chosen) const {
-  // Half the penalty of a criterion of Akaike for each direction, as scores have the noise in them already.
+  // The penalty of the criterion of Akaike for each direction, as scores have the noise in them already.
   const auto merit = [this](const std::vector<std::size_t>& set) {
     const std::vector<Eigen::Index> places = places_of(set);
     const Eigen::VectorXd score = score_(places);
@@ -417,7 +418,8 @@ SearchResult Search::run(const SearchOptions& options) const {
   for (bool pruned = true; pruned;) {
     pruned = false;
     for (const std::size_t group : std::vector<std::size_t>(chosen)) {
-      if (score(group, chosen).equivalent > result.threshold) continue;
+      const GroupScore now = score(group, chosen);
+      if (now.possible && now.equivalent > result.threshold) continue;
       chosen = without(chosen, group);
       pruned = true;
       break;

@@ -72,6 +72,12 @@ std::set<std::string> left_out(const std::vector<Flight>& files, const ModelFile
   for (const Flight& file : files) names.insert(file.time_variable());
   names.insert({"Time", "time", "time_offset", "base_time"});
   if (!reference.variable.empty()) names.insert(reference.variable);
+  if (reference.system) {
+    for (const auto& [role, variable] : reference.system->variables) {
+      const auto own = model.variables.find(role);
+      if (own == model.variables.end() || own->second != variable) names.insert(variable);
+    }
+  }
   const auto laser = model.variables.find(Quantity::lams_airspeed);
   if (laser != model.variables.end()) names.insert(laser->second);
   return names;
@@ -106,7 +112,10 @@ TracedVariable traced_of(const Structure& structure, const Series& series, std::
   variable.slope = structure.slope;
   variable.slope_error = structure.slope_error;
   variable.centre = structure.centre;
-  if (series.in_file)
+  // Only what a straight line describes is worth a formula.
+  const bool straight = std::abs(structure.slope) > 3.0 * structure.slope_error && structure.slope != 0.0 &&
+                        variable.linear_r2 > 0.5 * variable.r2;
+  if (series.in_file && straight)
     variable.formula = fmt::format("k * ({} {} {:.4g})", series.name, structure.centre < 0.0 ? '+' : '-',
                                    std::abs(structure.centre));
   return variable;

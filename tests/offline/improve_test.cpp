@@ -167,12 +167,30 @@ TEST_F(Improve, ToleratesTheScatterOfHeldOutFlights) {
 
 TEST_F(Improve, DropsWhatHeldOutFlightsContradict) {
   diagnoses_ = {diagnosis(Verdict::identified, {"static-lag", "static-mach"})};
-  rms_ = {1.0, 1.0011};
+  rms_ = {1.0, 1.0051};  // the limit is 1.005
   const Improvement improvement = run();
   EXPECT_THAT(added(improvement), ElementsAre(""));
   EXPECT_THAT(effects(improvement.model), ElementsAre("static-constant", "static-qp"));
   EXPECT_THAT(improvement.why_stopped, HasSubstr("static-lag was tried and dropped"));
   EXPECT_DOUBLE_EQ(improvement.fit.flights[1].after.rms, 1.0);
+}
+
+TEST_F(Improve, AddsNothingOfWhichTheWrongChoiceDoesHarm) {
+  Diagnosis unclear = diagnosis(Verdict::ambiguous, {"static-beta-odd"});
+  unclear.noise_rms = 0.3;
+  pcor::Alias alias;
+  alias.effect = "lams-azimuth";
+  unclear.findings[0].aliases = {alias};
+  unclear.findings[0].static_risk = 0.2;  // hPa, and 0.105 may be
+  unclear.findings[0].advice.sentence = "fly a yaw manoeuvre";
+  diagnoses_ = {unclear};
+  const Improvement improvement = run();
+  EXPECT_THAT(added(improvement), ElementsAre(""));
+  EXPECT_THAT(improvement.why_stopped, HasSubstr("cannot tell static-beta-odd from lams-azimuth"));
+  EXPECT_THAT(improvement.why_stopped, HasSubstr("fly a yaw manoeuvre"));
+  diagnoses_ = {unclear, diagnosis(Verdict::silent, {})};
+  diagnoses_.front().findings[0].static_risk = 0.1;
+  EXPECT_THAT(added(run()), ElementsAre("", "static-beta-odd"));
 }
 
 TEST_F(Improve, DropsWhatCannotBeFitted) {

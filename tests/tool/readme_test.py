@@ -35,7 +35,8 @@ class Readme(unittest.TestCase):
             self.assertIn(f"\n{command}\n", (SOURCE / ".ci/run").read_text())
 
     def test_tool_commands_work(self):
-        commands = re.findall(r"^(?:(?:build/release/tools/)?pcor|cp) .*$", "\n".join(blocks("sh")), flags=re.MULTILINE)
+        commands = re.findall(r"^(?:(?:build/release/tools/)?pcor|cp) .*$", "\n".join(blocks("sh")).replace("\\\n", ""),
+                              flags=re.MULTILINE)
         commands += re.findall(r"`(pcor [^`]+)`", README)
         self.assertGreaterEqual(len(commands), 10)
         with tempfile.TemporaryDirectory() as folder:

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -113,6 +114,9 @@ Comparison compare(const std::vector<std::filesystem::path>& flights,
 
 /// Refuses flights of different aircraft. @throws Error that names two that differ.
 void require_one_aircraft(const std::vector<std::pair<std::string, std::string>>& flight_and_aircraft);
+
+/// Refuses a flight that is given twice: its samples would count as if they were new. @throws Error
+void require_each_once(const std::vector<std::filesystem::path>& paths);
 
 /// For messages: the reasons why samples are not used, the largest first: "1203 on the ground, 17 laser ...".
 std::string mask_text(const std::array<std::size_t, mask_count>& counts);

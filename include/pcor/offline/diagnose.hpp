@@ -102,6 +102,9 @@ struct Finding {
   /// By how much the corrected static pressure would differ, rms hPa, were the worst of the aliases the cause
   /// and not this effect; 0 without aliases.
   double static_risk = 0.0;
+  /// By how much the corrected static pressure changes, rms hPa, when model and findings are fitted anew: for
+  /// an effect that the model nearly imitates, many times what it takes off the residual.
+  double static_change = 0.0;
   Advice advice{};
 };
 
