@@ -75,27 +75,27 @@ using Catalogue = std::tuple<effects::StaticLag,            //
                              effects::RollStatic,           //
                              effects::TimeDrift,            //
                              effects::PitotAngle,           //
-                             effects::QcfLag,             //
-                             effects::QcfZero,            //
-                             effects::QcfGain,            //
-                             effects::PsfdBias,           //
-                             effects::TransducerThermal,  //
-                             effects::TotalLag,           //
-                             effects::StaticLeak,         //
-                             effects::LineHead,           //
-                             effects::QcrAngle,           //
-                             effects::AdifDrift,          //
-                             effects::LamsAzimuth,        //
-                             effects::LamsPodFlex,        //
-                             effects::LamsScale,          //
-                             effects::LamsInduction,      //
-                             effects::LamsCloud,          //
-                             effects::ClockSkew,          //
-                             effects::TempOffset,         //
-                             effects::TempLag,            //
-                             effects::TempDeiceHeat,      //
-                             effects::TempWetting,        //
-                             effects::HumidityNeglected,  //
+                             effects::QcfLag,               //
+                             effects::QcfZero,              //
+                             effects::QcfGain,              //
+                             effects::PsfdBias,             //
+                             effects::TransducerThermal,    //
+                             effects::TotalLag,             //
+                             effects::StaticLeak,           //
+                             effects::LineHead,             //
+                             effects::QcrAngle,             //
+                             effects::AdifDrift,            //
+                             effects::LamsAzimuth,          //
+                             effects::LamsPodFlex,          //
+                             effects::LamsScale,            //
+                             effects::LamsInduction,        //
+                             effects::LamsCloud,            //
+                             effects::ClockSkew,            //
+                             effects::TempOffset,           //
+                             effects::TempLag,              //
+                             effects::TempDeiceHeat,        //
+                             effects::TempWetting,          //
+                             effects::HumidityNeglected,    //
                              effects::HumidityError>;
 
 inline constexpr std::size_t catalogue_size = std::tuple_size_v<Catalogue>;
