@@ -10,7 +10,6 @@
 #include "../triangular_factor.hpp"
 #include "manoeuvres.hpp"
 #include "pcor/effects/catalogue.hpp"
-#include "pcor/offline/error.hpp"
 
 namespace pcor {
 namespace {
@@ -44,13 +43,10 @@ std::vector<Prospect> prospects_of(const Analysis& analysis, const CandidateSet&
 
   std::vector<Prospect> prospects;
   for (Manoeuvre& manoeuvre : standard_manoeuvres(flights)) {
-    FlightColumns columns = find_columns(manoeuvre.samples, model, set, reference, all, 1.0);
+    const FlightColumns columns = find_columns(manoeuvre.samples, model, set, reference, all, 1.0);
     const Binning bins(columns.given, columns.samples->time, columns.samples->step);
     if (bins.size() == 0) continue;
-    Eigen::MatrixXd binned(as_index(bins.size()), columns.base.cols() + columns.candidates.cols());
-    for (Eigen::Index c = 0; c < columns.base.cols(); ++c) binned.col(c) = bins.means(columns.base.col(c));
-    for (Eigen::Index c = 0; c < columns.candidates.cols(); ++c)
-      binned.col(columns.base.cols() + c) = bins.means(columns.candidates.col(c));
+    const Eigen::MatrixXd binned = binned_columns(columns, bins);
     if (!binned.allFinite()) continue;
     noise.level = {Eigen::VectorXd::Constant(binned.rows(), levels[levels.size() / 2])};
     const Eigen::MatrixXd white = whitened(binned, bins, noise, 0);

@@ -41,10 +41,7 @@ Analysis::Analysis(std::vector<FlightColumns> flights, std::vector<ColumnGroup> 
   base_ = flights_.front().base.cols();
   for (const FlightColumns& flight : flights_) {
     const Binning& bins = bins_.emplace_back(flight.given, flight.samples->time, flight.samples->step);
-    Eigen::MatrixXd& columns = columns_.emplace_back(as_index(bins.size()), base_ + flight.candidates.cols());
-    for (Eigen::Index c = 0; c < base_; ++c) columns.col(c) = bins.means(flight.base.col(c));
-    for (Eigen::Index c = 0; c < flight.candidates.cols(); ++c)
-      columns.col(base_ + c) = bins.means(flight.candidates.col(c));
+    columns_.push_back(binned_columns(flight, bins));
     residuals_.push_back(bins.means(flight.given));
   }
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(base_, base_);

@@ -161,6 +161,15 @@ const std::vector<double>& FlightColumns::quantity(Quantity wanted) const {
   return found == quantities.end() ? none : found->second;
 }
 
+Eigen::MatrixXd binned_columns(const FlightColumns& flight, const Binning& bins) {
+  const Eigen::Index base = flight.base.cols();
+  Eigen::MatrixXd columns(as_index(bins.size()), base + flight.candidates.cols());
+  for (Eigen::Index c = 0; c < base; ++c) columns.col(c) = bins.means(flight.base.col(c));
+  for (Eigen::Index c = 0; c < flight.candidates.cols(); ++c)
+    columns.col(base + c) = bins.means(flight.candidates.col(c));
+  return columns;
+}
+
 std::vector<std::string> base_names(const ModelFile& model) {
   const std::vector<std::string> all = residual_parameter_names(model, Reference{});
   std::vector<std::string> names;

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "binning.hpp"
 #include "candidates.hpp"
 #include "pcor/offline/residuals.hpp"
 
@@ -37,6 +38,9 @@ struct FlightColumns {
 FlightColumns find_columns(std::shared_ptr<const FlightSamples> extended, const ModelFile& model,
                            const CandidateSet& set, const Reference& reference, const MaskOptions& mask,
                            double first_part);
+
+/// Base and candidates of a flight side by side, in bins.
+Eigen::MatrixXd binned_columns(const FlightColumns& flight, const Binning& bins);
 
 /// The names of the free coefficients of a model, like "static-qp.a2": the base of the columns.
 std::vector<std::string> base_names(const ModelFile& model);

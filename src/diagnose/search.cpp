@@ -8,6 +8,7 @@
 
 #include "../triangular_factor.hpp"
 #include "chi_squared.hpp"
+#include "pseudo_inverse.hpp"
 
 namespace pcor {
 namespace {
@@ -60,14 +61,6 @@ std::vector<double> greatest(const Eigen::MatrixXd& scores, const std::vector<Ei
     }
   }
   return result;
-}
-
-Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix, double least) {
-  if (matrix.rows() == 0) return matrix;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
-  Eigen::VectorXd inverse = solver.eigenvalues();
-  for (double& value : inverse) value = value > least ? 1.0 / value : 0.0;
-  return solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
 }
 
 bool is_in(std::size_t value, const std::vector<std::size_t>& set) {

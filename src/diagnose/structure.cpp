@@ -7,6 +7,7 @@
 
 #include "../triangular_factor.hpp"
 #include "chi_squared.hpp"
+#include "pseudo_inverse.hpp"
 #include "scores.hpp"
 
 namespace pcor {
@@ -25,14 +26,8 @@ StructureTest::StructureTest(const std::vector<Binning>& bins, const std::vector
   const Scores scores = find_scores(bins, columns, residuals, noise);
   const Eigen::Index width = scores.columns();
   scale_ = scores.information.diagonal().head(width).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  inverse_ = Eigen::MatrixXd(width, width);
-  if (width > 0) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
-        scale_.asDiagonal() * scores.information.topLeftCorner(width, width) * scale_.asDiagonal());
-    Eigen::VectorXd inverse = solver.eigenvalues();
-    for (double& value : inverse) value = value > 1e-12 ? 1.0 / value : 0.0;
-    inverse_ = solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
-  }
+  inverse_ = pseudo_inverse(
+      scale_.asDiagonal() * scores.information.topLeftCorner(width, width) * scale_.asDiagonal(), 1e-12);
   const Eigen::VectorXd right = scale_.asDiagonal() * scores.information.col(width).head(width);
   const Eigen::VectorXd solution = scale_.asDiagonal() * (inverse_ * right);
   squares_ = scores.information(width, width) - right.dot(inverse_ * right);
@@ -60,7 +55,11 @@ Smooth StructureTest::smooth_of(const std::vector<const double*>& values) const 
 }
 
 std::vector<Eigen::MatrixXd> StructureTest::columns_of(const std::vector<const double*>& values) const {
-  const Smooth smooth = smooth_of(values);
+  return columns_of(smooth_of(values), values);
+}
+
+std::vector<Eigen::MatrixXd> StructureTest::columns_of(const Smooth& smooth,
+                                                       const std::vector<const double*>& values) const {
   const Eigen::Index count = as_index(smooth.columns());
   std::vector<double> functions(smooth.columns());
   std::vector<Eigen::MatrixXd> columns;
@@ -85,7 +84,7 @@ bool StructureTest::add(const std::string& name, const std::vector<const double*
   const Smooth smooth = smooth_of(values);
   const Eigen::Index count = as_index(smooth.columns());
   if (count == 0) return false;
-  const std::vector<Eigen::MatrixXd> columns = columns_of(values);
+  const std::vector<Eigen::MatrixXd> columns = columns_of(smooth, values);
 
   Eigen::MatrixXd own = Eigen::MatrixXd::Zero(count, count);
   Eigen::MatrixXd with_model = Eigen::MatrixXd::Zero(scale_.size(), count);

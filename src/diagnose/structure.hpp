@@ -56,6 +56,8 @@ class StructureTest {
 
  private:
   Smooth smooth_of(const std::vector<const double*>& values) const;
+  std::vector<Eigen::MatrixXd> columns_of(const Smooth& smooth,
+                                          const std::vector<const double*>& values) const;
 
   const std::vector<Binning>* bins_;
   const NoiseModel* noise_;
