@@ -1,6 +1,6 @@
 #include "pcor/offline/process.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "height_step.hpp"
 #include "model_inputs.hpp"
 #include "pcor/offline/error.hpp"
 #include "pcor/offline/flight_writer.hpp"
@@ -29,10 +30,18 @@ struct Output {
   Quantity quantity = Quantity::count;
   double offset = 0.0;  // added to go from the library's unit to the file's
   std::size_t number = 0;
-  std::vector<double> values;
+  bool delayed = false;        // by the filter of the loop
+  std::vector<double> values;  // of one block; of a delayed one, those that are not written yet
 };
 
 constexpr double kelvin_to_celsius = -constants::ice_point;
+
+/// The place of a bit among `quality_facts`.
+constexpr std::size_t flagged_place(Quality bit) {
+  std::size_t place = 0;
+  while (quality_facts[place].bit != bit) ++place;
+  return place;
+}
 
 /// One flight on its way through the loop.
 class Processing {
@@ -75,8 +84,12 @@ class Processing {
   void define(FlightWriter& writer);
   void copy_inputs(FlightWriter& writer, const FileDescription& description);
   FileDescription describe() const;
-  void process_block(RecordBlock block, std::vector<double>& times, std::vector<double>& flags);
+  void process_block(RecordBlock block, std::vector<double>& times);
   void note_sample(std::size_t place);
+  void note_filtered();
+  void flush();
+  void write_finished(FlightWriter& writer);
+  std::string temperature_calibration();
 
   void add_output(const std::string& standard, Quantity quantity, const std::string& units,
                   const std::string& long_name, const std::string& standard_name, const std::string& category,
@@ -91,6 +104,13 @@ class Processing {
   std::vector<Input> inputs_;
   std::vector<Output> outputs_;
   std::size_t flag_number_ = 0;
+  Quantity height_step_ = Quantity::count;
+  std::vector<double> flags_;  // of the samples that are not written yet
+  double sample_step_ = 1.0;   // s
+  std::size_t delay_ = 0;      // of the filter, samples
+  std::size_t runs_ = 0;       // of the loop since the last gap
+  std::size_t finished_ = 0;   // samples that left the filter and are not written yet
+  std::size_t written_records_ = 0;
   ProcessSummary summary_;
 };
 
@@ -126,8 +146,22 @@ void Processing::choose_rate() {
     summary_.rate = std::max(summary_.rate, flight_.variable(variable_of(pressure)).rate);
   }
   std::string why;
-  loop_ = Loop::build(chain_, summary_.rate / flight_.time().step, &why, options_.correct_with);
+  const double rate = summary_.rate / flight_.time().step;
+  loop_ = Loop::build(chain_, rate, &why, options_.correct_with);
   if (!loop_) fail_model(why);
+  if (chain_->has_lams()) delay_ = LowPass::delay(rate);
+  sample_step_ = 1.0 / rate;
+  if (!options_.hydrostatic) return;
+  const std::optional<Quantity> step = loop_->add_variable("HYDSTEP");
+  if (!step) {
+    fail_model(
+        fmt::format("its formulas name {} variables, which leaves no room for HYDSTEP; leave out "
+                    "--hydrostatic",
+                    extra_capacity));
+  }
+  height_step_ = *step;
+  loop_->add(std::make_unique<HeightStep>(height_step_));
+  if (!loop_->order(&why)) fail_model(why);
 }
 
 void Processing::add_output(const std::string& standard, Quantity quantity, const std::string& units,
@@ -188,7 +222,8 @@ void Processing::choose_outputs() {
   const bool derives_temperature = chain_->derives_temperature();
   const Names thermometer{
       variable_of(derives_temperature ? Quantity::recovery_temperature : Quantity::ambient_temperature)};
-  const Names temperature = derives_temperature ? Names{name_of("ATX")} : thermometer;
+  const bool writes_temperature = derives_temperature || chain_->calibrates_recorded_temperature();
+  const Names temperature = writes_temperature ? Names{name_of("ATX")} : thermometer;
   const Names humidity =
       file_.model.moist
           ? variables_for(*chain_, {Quantity::vapor_pressure, Quantity::dew_point, Quantity::frost_point})
@@ -214,9 +249,10 @@ void Processing::choose_outputs() {
              "Aircraft State", join({q, corrections}));
   add_output("MACHX", Quantity::corrected_mach, "1", "Aircraft Mach Number", "", "Aircraft State",
              join({pressures, humidity}));
-  if (derives_temperature) {
+  if (writes_temperature) {
     add_output("ATX", Quantity::ambient_temperature, "degC", "Ambient Temperature", "air_temperature",
-               "Atmos. State", join({thermometer, mach, humidity}), kelvin_to_celsius);
+               "Atmos. State", derives_temperature ? join({thermometer, mach, humidity}) : thermometer,
+               kelvin_to_celsius);
   }
   if (chain_->has_temperature()) {
     add_output("TASX", Quantity::corrected_airspeed, "m/s", "Aircraft True Airspeed",
@@ -225,9 +261,31 @@ void Processing::choose_outputs() {
   if (chain_->has_lams()) {
     add_output("ATLAMS", Quantity::lams_temperature, "degC", "Ambient Temperature from LAMS",
                "air_temperature", "Atmos. State", join({beam, mach, humidity}), kelvin_to_celsius);
+    add_output("ATLAMSF", Quantity::filtered_lams_temperature, "degC",
+               "Ambient Temperature from LAMS, without periods under 3 s", "air_temperature", "Atmos. State",
+               {name_of("ATLAMS")}, kelvin_to_celsius);
+    outputs_.back().delayed = true;
     add_output("QCLAMS", Quantity::lams_dynamic_pressure, "hPa", "Dynamic Pressure from LAMS", "",
                "Aircraft State", join({beam, {name_of("PSXC")}, temperature, humidity}));
   }
+  if (options_.hydrostatic) {
+    add_output("HYDSTEP", height_step_, "m/K", "Hydrostatic height step per kelvin, R_a dp/(g p)", "",
+               "Atmos. State", join({{name_of("PSXC")}, humidity}));
+    outputs_.back().variable.attributes = {{"temperature_calibration", temperature_calibration()}};
+  }
+}
+
+/// The coefficients a0, a1 and a2 of the calibration that ATX has in it, zero where there is none.
+std::string Processing::temperature_calibration() {
+  std::vector<double> coefficients(3, 0.0);
+  for (const ModelEffect& effect : file_.model.effects) {
+    if (effect.id == effects::TempCalibration::facts().id) {
+      coefficients = effect.parameters;
+    } else if (effect.is_formula() && effect.where == Where::ambient_temperature) {
+      note("the attribute temperature_calibration of HYDSTEP is without the effect {}, a formula", effect.id);
+    }
+  }
+  return fmt::format("{}", fmt::join(coefficients, " "));
 }
 
 FileDescription Processing::describe() const {
@@ -308,30 +366,82 @@ void Processing::note_sample(std::size_t place) {
     summary_.greatest_defect = std::max(summary_.greatest_defect, defect);
   }
   const QualityFlags quality = loop_->quality();
+  double bits = 0.0;
   if (quality.bits() != 0) {
     for (std::size_t i = 0; i < quality_facts.size(); ++i) {
-      if (quality.has(quality_facts[i].bit)) ++summary_.flagged[i];
+      const Quality bit = quality_facts[i].bit;
+      if (!quality.has(bit) || bit == Quality::filter_window_incomplete) continue;  // that of another sample
+      ++summary_.flagged[i];
+      bits += static_cast<double>(bit);
     }
   }
-  for (Output& output : outputs_) output.values[place] = state[output.quantity] + output.offset;
+  flags_.push_back(bits);
+  for (Output& output : outputs_) {
+    if (!output.delayed) output.values[place] = state[output.quantity] + output.offset;
+  }
 }
 
-void Processing::process_block(RecordBlock block, std::vector<double>& times, std::vector<double>& flags) {
+/// Takes what left the filter in the last run of the loop: the value, and the bit, of an earlier sample.
+void Processing::note_filtered() {
+  if (++runs_ <= delay_) return;
+  for (Output& output : outputs_) {
+    if (output.delayed) output.values.push_back(loop_->state()[output.quantity] + output.offset);
+  }
+  if (loop_->quality().has(Quality::filter_window_incomplete)) {
+    flags_[finished_] += static_cast<double>(Quality::filter_window_incomplete);
+    ++summary_.flagged[flagged_place(Quality::filter_window_incomplete)];
+  }
+  ++finished_;
+}
+
+/// Before a gap and at the end: the loop goes on without values until its last sample has left the filter.
+void Processing::flush() {
+  for (const Input& input : inputs_) loop_->state()[input.quantity] = missing<double>();
+  const double last = loop_->state()[Quantity::time];
+  for (std::size_t i = 1; i <= delay_; ++i) {
+    loop_->run(last + static_cast<double>(i) * sample_step_);
+    note_filtered();
+  }
+  loop_->reset();
+  runs_ = 0;
+}
+
+/// Writes the whole records of what has left the filter.
+void Processing::write_finished(FlightWriter& writer) {
+  const auto rate = static_cast<std::size_t>(summary_.rate);
+  const RecordBlock block{written_records_, finished_ / rate};
+  const auto samples = static_cast<std::ptrdiff_t>(block.count * rate);
+  const auto write = [&](std::size_t number, std::vector<double>& values) {
+    writer.write(number, block, values.data());
+    values.erase(values.begin(), values.begin() + samples);
+  };
+  for (Output& output : outputs_) {
+    if (output.delayed) write(output.number, output.values);
+  }
+  write(flag_number_, flags_);
+  finished_ -= static_cast<std::size_t>(samples);
+  written_records_ += block.count;
+}
+
+void Processing::process_block(RecordBlock block, std::vector<double>& times) {
   const std::size_t samples = block.count * static_cast<std::size_t>(summary_.rate);
   for (Input& input : inputs_) {
     input.values.resize(samples);
     flight_.read_at_rate(summary_.rate, input.variable, block, input.conversion, input.values.data());
   }
-  for (Output& output : outputs_) output.values.resize(samples);
+  for (Output& output : outputs_) {
+    if (!output.delayed) output.values.resize(samples);
+  }
   times.resize(samples);
-  flags.resize(samples);
   flight_.read_sample_times(block, summary_.rate, times.data());
   for (std::size_t i = 0; i < samples; ++i) {
+    const double time = times[i] - summary_.first_time;
+    if (runs_ > 0 && loop_->starts_anew(time)) flush();
     State<double>& state = loop_->state();
     for (const Input& input : inputs_) state[input.quantity] = input.values[i];
-    loop_->run(times[i] - summary_.first_time);
-    flags[i] = static_cast<double>(loop_->quality().bits());
+    loop_->run(time);
     note_sample(i);
+    note_filtered();
   }
 }
 
@@ -357,11 +467,13 @@ ProcessSummary Processing::run(const std::filesystem::path& output) {
   define(writer);
 
   std::vector<double> times;
-  std::vector<double> flags;
   for (const RecordBlock block : blocks_of(flight_.records())) {
-    process_block(block, times, flags);
-    for (const Output& derived : outputs_) writer.write(derived.number, block, derived.values.data());
-    writer.write(flag_number_, block, flags.data());
+    process_block(block, times);
+    for (const Output& derived : outputs_) {
+      if (!derived.delayed) writer.write(derived.number, block, derived.values.data());
+    }
+    if (block.first + block.count == flight_.records()) flush();
+    write_finished(writer);
     if (options_.progress) options_.progress(block.first + block.count, flight_.records());
   }
   writer.finish();

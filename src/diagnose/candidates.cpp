@@ -157,6 +157,12 @@ CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffe
   }
   for (const EffectFacts& facts : effect_facts) {
     if (has_effect(model, facts.id)) continue;
+    if (facts.where == Where::ambient_temperature) {
+      set.not_testable.push_back(
+          {std::string(facts.id), std::string(facts.title),
+           "to the laser it is as temp-offset; the hydrostatic height finds it (pcor temperature)"});
+      continue;
+    }
     if (facts.constants == GasConstants::dry && model.model.moist) {
       set.not_testable.push_back(
           {std::string(facts.id), std::string(facts.title), "the model uses the constants of moist air"});

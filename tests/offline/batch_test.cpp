@@ -228,9 +228,12 @@ TEST(Batch, IsTheLoopForEveryApproachOfLams) {
     model.effects.push_back({"recovery-factor", {0.003}});
     expect_as_in_loop(model, with_lams(gv_roles));
     expect_as_in_loop(model, with_lams(gv_roles), CorrectWith::lams);
+    model.effects.push_back({"temp-calibration", {0.55, 0.01, -0.0001}});
+    expect_as_in_loop(model, with_lams(gv_roles));
   }
   Model model = gv();
   model.lams.approach = LamsApproach::with_temperature;
+  model.effects.push_back({"temp-calibration", {0.55, 0.01, -0.0001}});
   expect_as_in_loop(model, {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::attack,
                             Quantity::sideslip, Quantity::ambient_temperature, Quantity::lams_airspeed});
 }

@@ -58,7 +58,7 @@ using pcor::Model;
 using pcor::Quantity;
 
 // All stages at work: LAMS, flow angles from the radome, a lag, a formula with a variable of its own, taper,
-// humidity, and the correction by LAMS.
+// humidity, a calibrated temperature, its filter, and the correction by LAMS.
 Model everything(pcor::LamsApproach approach) {
   Model model;
   model.effects = {
@@ -74,6 +74,7 @@ Model everything(pcor::LamsApproach approach) {
       {"temp-deice-heat", {1.0}},
       {"humidity-error", {0.1}},
       {"total-lag", {0.1}},
+      {"temp-calibration", {0.3, 0.01, 0.0001}},
   };
   pcor::ModelEffect thrust;
   thrust.id = "my-thrust";
@@ -109,6 +110,7 @@ TEST(Allocation, DoesNotHappenInTheLoop) {
                     25.0, &error, pcor::CorrectWith::lams);
     ASSERT_TRUE(loop) << error;
     int corrected = 0;
+    int filtered = 0;
     const std::size_t allocations_before = allocations;
     const std::size_t releases_before = releases;
     for (int i = 0; i < 100000; ++i) {
@@ -125,12 +127,14 @@ TEST(Allocation, DoesNotHappenInTheLoop) {
       s[Quantity::lams_airspeed] = i % 10000 < 3000 ? std::nan("") : 100.0 + 25.0 * std::sin(0.003 * i);
       s[pcor::extra_quantity(0)] = 50.0 + 60.0 * wave;
       loop->run(time);
+      filtered += std::isnan(s[Quantity::filtered_lams_temperature]) ? 0 : 1;
       corrected += loop->quality().has(pcor::Quality::corrected_with_lams) ? 1 : 0;
     }
     EXPECT_EQ(allocations, allocations_before);
     EXPECT_EQ(releases, releases_before);
     EXPECT_GT(corrected, 50000);
     EXPECT_LT(corrected, 100000);
+    EXPECT_GT(filtered, 50000);
   }
 }
 

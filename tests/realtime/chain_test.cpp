@@ -354,6 +354,114 @@ TEST(Air, KeepsARecordedAmbientTemperatureBesideAThermometer) {
             s[Quantity::lams_static_defect]);
 }
 
+namespace {
+
+// Air of which the thermometer, brought to ambient, says `uncalibrated`: with t in degC the truth is that
+// plus 0.55 K + 0.01 t - 0.0002 t^2.
+struct Miscalibrated : Truth {
+  double uncalibrated = 265;
+
+  Miscalibrated() {
+    const double t = uncalibrated - 273.15;
+    T = uncalibrated + 0.55 + 0.01 * t - 0.0002 * t * t;
+  }
+  Model model() const { return with(Truth::model(), catalogued("temp-calibration", {0.55, 0.01, -0.0002})); }
+  Recorded recorded() const {
+    // The thermometer feels the dynamic heating of the true Mach number.
+    const double heating = 0.5 * (air().heat_capacity_ratio - 1) * mach() * mach();
+    return with(Truth::recorded(), Quantity::recovery_temperature, uncalibrated * (1 + recovery * heating));
+  }
+  Recorded recorded_ambient() const {
+    return with(without(recorded(), Quantity::recovery_temperature), Quantity::ambient_temperature,
+                uncalibrated);
+  }
+};
+
+}  // namespace
+
+TEST(Calibration, FindsTheAirBehindAThermometerThatErrs) {
+  const Miscalibrated air;
+  ASSERT_GT(std::abs(air.T - air.uncalibrated), 0.4);
+  for (const LamsApproach approach :
+       {LamsApproach::simultaneous, LamsApproach::iterated, LamsApproach::with_temperature}) {
+    Model model = air.model();
+    model.lams.approach = approach;
+    const bool from_ambient = approach == LamsApproach::with_temperature;
+    const Sample s = fly(model, from_ambient ? air.recorded_ambient() : air.recorded());
+    EXPECT_EQ(s.flags.bits(), 0U);
+    EXPECT_NEAR(s[Quantity::ambient_temperature], air.T, 1e-10);
+    EXPECT_NEAR(s[Quantity::corrected_airspeed], air.v, 1e-10);
+    EXPECT_NEAR(s[Quantity::lams_temperature], air.T, 1e-9);
+    // Approach 2 stops within 1e-7 hPa, and stands some digits nearer.
+    const double tolerance = approach == LamsApproach::iterated ? 1e-8 : 1e-9;
+    EXPECT_NEAR(s[Quantity::lams_static_defect], air.defect(), tolerance);
+  }
+}
+
+// A second solution, as where the humidity is limited, starts from the uncalibrated temperature again.
+TEST(Calibration, IsDoneOnce) {
+  const Miscalibrated air;
+  const Recorded wet = with(air.recorded(), Quantity::vapor_pressure, 20.0);
+  const Sample plain = fly(air.Truth::model(), wet), s = fly(air.model(), wet);
+  EXPECT_TRUE(s.has(Quality::humidity_limited));
+  const double t = plain[Quantity::ambient_temperature] - 273.15;
+  // Warmer air holds more vapour, which changes the Mach number by a few parts in 1e5: 1 mK.
+  EXPECT_NEAR(s[Quantity::ambient_temperature] - plain[Quantity::ambient_temperature],
+              0.55 + 0.01 * t - 0.0002 * t * t, 1e-3);
+  const Recorded ambient = with(air.recorded_ambient(), Quantity::vapor_pressure, 20.0);
+  Model model = air.model();
+  model.lams.approach = LamsApproach::with_temperature;
+  EXPECT_NEAR(fly(model, ambient)[Quantity::ambient_temperature], air.T, 1e-12);
+}
+
+// The vapour pressure lies between saturation at the thermometer's temperature and at the calibrated one.
+TEST(Calibration, MovesTheLimitOfSaturation) {
+  const Miscalibrated air;
+  const double e = pcor::vapor_pressure_over_water(air.uncalibrated + 0.2);
+  ASSERT_LT(e, pcor::vapor_pressure_over_water(air.T));
+  const Recorded humid = with(air.recorded(), Quantity::vapor_pressure, e);
+  EXPECT_TRUE(fly(air.Truth::model(), humid).has(Quality::humidity_limited));
+  EXPECT_FALSE(fly(air.model(), humid).has(Quality::humidity_limited));
+}
+
+TEST(Calibration, ByAFormulaIsFoundFromTheTemperatureBeforeIt) {
+  const Miscalibrated air;
+  const Model model = with(air.Truth::model(), written(Where::ambient_temperature,
+                                                       "a + b * (ambient_temperature - 273.15) - 2e-4 * "
+                                                       "(ambient_temperature - 273.15)^2",
+                                                       {"a", "b"}, {0.55, 0.01}));
+  EXPECT_NEAR(fly(model, air.recorded())[Quantity::ambient_temperature], air.T, 1e-10);
+  EXPECT_NEAR(fly(model, air.recorded())[Quantity::lams_static_defect], air.defect(), 1e-9);
+  // Elsewhere a derived ambient temperature is known only after delta-p.
+  const Model early =
+      with(air.Truth::model(), written(Where::static_defect, "k * ambient_temperature", {"k"}, {0.0}));
+  EXPECT_THAT(error_of(early, air.recorded()), HasSubstr("'ambient_temperature'"));
+}
+
+TEST(Calibration, WithoutItsInputTakesTheTemperatureAway) {
+  const Miscalibrated air;
+  const Model model =
+      with(air.Truth::model(), written(Where::ambient_temperature, "k * altitude", {"k"}, {1e-4}));
+  for (const Recorded& recorded : {air.recorded(), air.recorded_ambient()}) {
+    Model own = model;
+    if (recorded.count(Quantity::ambient_temperature) > 0) own.lams.approach = LamsApproach::with_temperature;
+    EXPECT_EQ(fly(own, with(recorded, Quantity::altitude, 3000)).flags.bits(), 0U);
+    const Sample s = fly(own, with(recorded, Quantity::altitude, missing));
+    EXPECT_TRUE(s.has(Quality::effect_input_missing));
+    EXPECT_TRUE(std::isnan(s[Quantity::ambient_temperature]));
+    EXPECT_TRUE(std::isnan(s[Quantity::corrected_airspeed]));
+    EXPECT_TRUE(std::isnan(s[Quantity::lams_static_defect]));
+    EXPECT_FALSE(std::isnan(s[Quantity::corrected_static_pressure])) << "which needs no temperature";
+  }
+}
+
+TEST(Calibration, WantsATemperature) {
+  Recorded cold = without(without(truth.recorded(), Quantity::recovery_temperature), Quantity::lams_airspeed);
+  EXPECT_THAT(error_of(with(truth.model(), catalogued("temp-calibration", {0.5, 0.0, 0.0})), cold),
+              AllOf(HasSubstr("temp-calibration"), HasSubstr("'recovery_temperature'"),
+                    HasSubstr("'ambient_temperature'")));
+}
+
 TEST(Air, WithoutThermometerHasAMachNumberStill) {
   Recorded recorded = without(truth.recorded(), Quantity::lams_airspeed);
   recorded = without(recorded, Quantity::recovery_temperature);
@@ -670,6 +778,11 @@ TEST(Formula, ActsAtEveryPlace) {
   // Warmer by 1 K at the thermometer is warmer by 1/(1 + a_r x) outside, x = 0.026.
   EXPECT_NEAR(change(Where::temperature, 1.0, Quantity::ambient_temperature), 1 / (1 + 0.975 * 0.0265), 1e-3);
   EXPECT_NEAR(change(Where::recovery, 0.01, Quantity::ambient_temperature), -0.0697, 1e-4);
+  EXPECT_NEAR(change(Where::ambient_temperature, 0.3, Quantity::ambient_temperature), 0.3, 1e-12);
+  // 0.237 hPa/K at 268.6 K, falling as 1/T^2, as in the table of sensitivities. In warmer air the laser's
+  // airspeed is a lower Mach number, the thermometer heats up less, and so the air is warmer by a_r x again.
+  EXPECT_NEAR(change(Where::ambient_temperature, 0.3, Quantity::lams_static_defect),
+              0.3 * (1 + 0.975 * 0.0265) * 0.237 * std::pow(268.6 / 270.15, 2), 0.0003);
   // 1 m/s of the laser is -1.09 hPa at 700 hPa and 120 m/s, and so are d cos/cos of the two angles.
   EXPECT_NEAR(change(Where::beam_speed, 0.1, Quantity::lams_static_defect), -0.109, 0.001);
   EXPECT_NEAR(change(Where::beam_elevation, 0.5, Quantity::lams_static_defect),
@@ -918,6 +1031,7 @@ TEST(Chain, CompilesForAScalarThatIsNoDouble) {
     Model model = full_model();
     model.lams.approach = approach;
     model.recovery = {{0.988, 0.053, 0.090, 0.091}};
+    model.effects.push_back(catalogued("temp-calibration", {0.3, 0.01, 0.0001}));
     for (const Where where : {Where::static_transducer, Where::attack, Where::temperature, Where::pitot})
       model.effects.push_back(
           written(where, "k * if(attack > 0, sqrt(abs(attack)), tanh(attack))", {"k"}, {0.01}));

@@ -37,6 +37,7 @@ TEST(Where, UnitsAreThoseOfWhatTheyAddTo) {
   for (const Where where : {Where::attack, Where::sideslip, Where::beam_elevation, Where::beam_azimuth})
     EXPECT_EQ(facts_of(where).unit, "deg");
   EXPECT_EQ(facts_of(Where::temperature).unit, facts_of(Quantity::recovery_temperature).unit);
+  EXPECT_EQ(facts_of(Where::ambient_temperature).unit, facts_of(Quantity::ambient_temperature).unit);
   EXPECT_EQ(facts_of(Where::beam_speed).unit, facts_of(Quantity::lams_airspeed).unit);
   EXPECT_EQ(facts_of(Where::recovery).unit, "1");
   EXPECT_EQ(facts_of(Where::attack_ratio).unit, facts_of(Quantity::attack_ratio).unit);

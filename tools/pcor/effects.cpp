@@ -113,9 +113,9 @@ void print_one(const EffectFacts& facts) {
 }
 
 void print_all() {
-  fmt::print("{:<18} {:<18} {:<70} {}\n", "effect", "where", "what", "formula");
+  fmt::print("{:<18} {:<20} {:<70} {}\n", "effect", "where", "what", "formula");
   for (const EffectFacts& facts : effect_facts) {
-    fmt::print("{:<18} {:<18} {:<70} {}\n", facts.id, facts_of(facts.where).name, facts.title, facts.formula);
+    fmt::print("{:<18} {:<20} {:<70} {}\n", facts.id, facts_of(facts.where).name, facts.title, facts.formula);
   }
   fmt::print("\nKnown, but without a trace that a term of a model could follow\n\n");
   for (const EffectWithoutTrace& effect : effects_without_trace)

@@ -22,6 +22,7 @@ struct Options {
   std::string time_stamp = "begin";
   std::string suffix;
   bool copy_all = false;
+  bool hydrostatic = false;
 };
 
 std::string command_line(const Options& options) {
@@ -31,6 +32,7 @@ std::string command_line(const Options& options) {
   if (options.time_stamp != "begin") line += " --time-stamp " + options.time_stamp;
   if (!options.suffix.empty()) line += " --suffix " + quoted(options.suffix);
   if (options.copy_all) line += " --all";
+  if (options.hydrostatic) line += " --hydrostatic";
   return line;
 }
 
@@ -98,6 +100,7 @@ void run(const Options& options) {
   process.correct_with = options.correct_with == "lams" ? CorrectWith::lams : CorrectWith::model;
   process.time_stamp = options.time_stamp == "middle" ? TimeStamp::middle : TimeStamp::begin;
   process.copy_all = options.copy_all;
+  process.hydrostatic = options.hydrostatic;
   process.suffix = options.suffix;
   process.history = command_line(options);
   ProcessSummary summary;
@@ -134,6 +137,8 @@ std::function<void()> add_process(CLI::App& program) {
   command->add_option("--suffix", options->suffix, "add S to the names of the derived variables")
       ->type_name("S");
   command->add_flag("--all", options->copy_all, "copy every variable of the input");
+  command->add_flag("--hydrostatic", options->hydrostatic,
+                    "write HYDSTEP, the step of hydrostatic height per kelvin between samples");
   add_common_options(*command, options->common, false);
   return [options] { run(*options); };
 }

@@ -41,6 +41,7 @@
 #include "pcor/effects/static_mach3.hpp"
 #include "pcor/effects/static_qp.hpp"
 #include "pcor/effects/static_transonic.hpp"
+#include "pcor/effects/temp_calibration.hpp"
 #include "pcor/effects/temp_deice_heat.hpp"
 #include "pcor/effects/temp_lag.hpp"
 #include "pcor/effects/temp_offset.hpp"
@@ -95,6 +96,7 @@ using Catalogue = std::tuple<effects::StaticLag,            //
                              effects::TempLag,              //
                              effects::TempDeiceHeat,        //
                              effects::TempWetting,          //
+                             effects::TempCalibration,      //
                              effects::HumidityNeglected,    //
                              effects::HumidityError>;
 

@@ -17,8 +17,9 @@ namespace pcor {
 /// How a flight is processed.
 struct ProcessOptions {
   CorrectWith correct_with = CorrectWith::model;
-  bool copy_all = false;  ///< copy every variable of the input, not only coordinates and what was used
-  std::string suffix{};   ///< added to the name of every derived variable
+  bool copy_all = false;     ///< copy every variable of the input, not only coordinates and what was used
+  bool hydrostatic = false;  ///< write the steps of hydrostatic height, `HYDSTEP`
+  std::string suffix{};      ///< added to the name of every derived variable
   TimeStamp time_stamp = TimeStamp::begin;
   std::string history{};  ///< what the output says of its making, e.g. the command line
   std::function<void(std::size_t done, std::size_t total)> progress{};  ///< told after every block of records
@@ -46,9 +47,20 @@ struct ProcessSummary {
 
 /// Runs every sample of the flight `input` through the real-time loop of `model` and writes the derived
 /// variables to `output`: delta-p (`PCOR`, `PCOR_LAMS`), corrected pressures (`PSXC`, `QCXC`), `MACHX`,
-/// `ATX`, `TASX`, `ATLAMS`, `QCLAMS` and the quality bits `PCORFLAG`, under the names of the model's
-/// `[output]` table, with the coordinates and inputs they came from. Pressures in hPa, temperatures in degC,
-/// speeds in m/s. Without a temperature there is no ATX and TASX; without LAMS, none of its variables.
+/// `ATX`, `TASX`, `ATLAMS`, `ATLAMSF`, `QCLAMS` and the quality bits `PCORFLAG`, under the names of the
+/// model's `[output]` table, with the coordinates and inputs they came from. Pressures in hPa, temperatures
+/// in degC, speeds in m/s. Without a temperature there is no TASX; without LAMS, none of its variables. ATX
+/// is written where it is found from a recovery temperature, and where a recorded one is calibrated.
+///
+/// ATLAMSF is ATLAMS without periods under 3 s (`LowPass`), each value at the time of the sample that it is
+/// of: the delay of the loop is taken out, and so it is for the bit `filter_window_incomplete`. Nothing goes
+/// across a gap. At 25 Hz the first and last 0.8 s of a stretch without gaps have none.
+///
+/// `hydrostatic` asks for `HYDSTEP`, -(R_a/g0) ln(p_i/p_(i-1)) in m/K (`hydrostatic_step`): times the mean
+/// temperature of two samples in K it is the step of geopotential height (standard gravity) between them. It
+/// has no value for the first sample, after a gap, and where either PSXC is missing. Its attribute
+/// `temperature_calibration` holds a0 (K), a1 and a2 (1/K) of the model's temp-calibration, which ATX has in
+/// it already.
 ///
 /// The loop runs at the higher rate of the two pressures; other inputs are brought to it
 /// (`Flight::read_at_rate`). Missing or impossible input gives missing output and a quality bit. Memory does

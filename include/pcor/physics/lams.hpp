@@ -1,5 +1,7 @@
 #pragma once
 
+#include <type_traits>
+
 #include "pcor/physics/air_data.hpp"
 #include "pcor/physics/recovery_factor.hpp"
 
@@ -45,6 +47,14 @@ struct LamsSolution {
   S mach = missing<S>();           ///< Mach number, 1
 };
 
+/// The ambient temperature as the thermometer gives it, without a calibration.
+struct Uncalibrated {
+  template <class S>
+  const S& operator()(const S& temperature) const {
+    return temperature;
+  }
+};
+
 /// Approach 1 of the memo: airspeed, delta-p and temperature at once.
 ///
 /// With the airspeed known, the dynamic heating of a thermometer is known without a Mach number:
@@ -55,16 +65,29 @@ struct LamsSolution {
 /// `static_pressure`, `dynamic_pressure`, `vapor_pressure` hPa; `airspeed` m/s; `recovery_temperature` K;
 /// `recovery` gives a_r at a Mach number. NaN in gives NaN out. Accuracy: 1e-9 hPa over the envelopes of the
 /// C-130 and GV. Source: memo, "Equations for correcting", approach 1.
-template <class S, class Recovery>
+///
+/// `calibrate` makes of an ambient temperature (K) the calibrated one, T_c, which is then the temperature of
+/// the air. The thermometer's is T = T_r/(1 + a_r M^2 (gamma - 1)/2) still, with M = v/c(T_c): its dynamic
+/// heating is the above times T/T_c, which is found with the passes.
+template <class S, class Recovery, class Calibration = Uncalibrated>
 LamsSolution<S> lams_simultaneous(const S& static_pressure, const S& dynamic_pressure, const S& airspeed,
                                   const S& recovery_temperature, const S& vapor_pressure,
-                                  const Recovery& recovery, int passes = 4) {
+                                  const Recovery& recovery, int passes = 4,
+                                  const Calibration& calibrate = Calibration()) {
   LamsSolution<S> solution;
+  S uncalibrated_share(1.0);
   MoistAir<S> air = moist_air(vapor_pressure / static_pressure);
   solution.mach = mach_number(static_pressure, dynamic_pressure, air);
   for (int pass = 0; pass < passes; ++pass) {
-    const S heating = airspeed * airspeed / (S(2.0) * air.specific_heat_pressure);
-    solution.temperature = recovery_temperature - recovery(solution.mach) * heating;
+    S heating = airspeed * airspeed / (S(2.0) * air.specific_heat_pressure);
+    if constexpr (std::is_same_v<Calibration, Uncalibrated>) {
+      solution.temperature = recovery_temperature - recovery(solution.mach) * heating;
+    } else {
+      heating = heating * uncalibrated_share;
+      const S uncalibrated = recovery_temperature - recovery(solution.mach) * heating;
+      solution.temperature = calibrate(uncalibrated);
+      uncalibrated_share = uncalibrated / solution.temperature;
+    }
     const S chi = pressure_ratio_of_airspeed(airspeed, solution.temperature, air);
     solution.static_defect = static_defect_from_pressure_ratio(static_pressure, dynamic_pressure, chi);
     solution.mach = airspeed / speed_of_sound(solution.temperature, air);
@@ -79,10 +102,11 @@ LamsSolution<S> lams_simultaneous(const S& static_pressure, const S& dynamic_pre
 /// It converges as a_r x/(1+x) with x = M^2 (gamma-1)/2: 0.03 at M 0.39, 0.11 at M 0.79. It stops when
 /// delta-p moves by less than `tolerance` hPa, or after `most` passes. Arguments as in `lams_simultaneous`,
 /// with which it agrees.
-template <class S, class Recovery>
+template <class S, class Recovery, class Calibration = Uncalibrated>
 LamsSolution<S> lams_iterated(const S& static_pressure, const S& dynamic_pressure, const S& airspeed,
                               const S& recovery_temperature, const S& vapor_pressure,
-                              const Recovery& recovery, double tolerance = 1e-7, int most = 30) {
+                              const Recovery& recovery, double tolerance = 1e-7, int most = 30,
+                              const Calibration& calibrate = Calibration()) {
   LamsSolution<S> solution;
   solution.static_defect = S(0.0);
   for (int pass = 0; pass < most; ++pass) {
@@ -91,7 +115,7 @@ LamsSolution<S> lams_iterated(const S& static_pressure, const S& dynamic_pressur
     const MoistAir<S> air = moist_air(vapor_pressure / p);
     solution.mach = mach_number(p, q, air);
     solution.temperature =
-        ambient_temperature(recovery_temperature, solution.mach, recovery(solution.mach), air);
+        calibrate(ambient_temperature(recovery_temperature, solution.mach, recovery(solution.mach), air));
     const S chi = pressure_ratio_of_airspeed(airspeed, solution.temperature, air);
     const S previous = solution.static_defect;
     solution.static_defect = static_defect_from_pressure_ratio(static_pressure, dynamic_pressure, chi);

@@ -63,18 +63,24 @@ class Chain {
     return recorded(Quantity::recovery_temperature) || recorded(Quantity::ambient_temperature);
   }
 
-  /// True where the ambient temperature is found from the recovery temperature; a recorded one stays as it
-  /// is.
+  /// True where the ambient temperature is found from the recovery temperature; a recorded one goes before
+  /// it.
   bool derives_temperature() const {
     return recorded(Quantity::recovery_temperature) && !recorded(Quantity::ambient_temperature);
   }
+
+  /// True where a recorded ambient temperature is calibrated, which `measure` does in its place.
+  bool calibrates_recorded_temperature() const {
+    return acts(Where::ambient_temperature) && recorded(Quantity::ambient_temperature);
+  }
+
   bool has_lams() const { return recorded(Quantity::lams_airspeed); }
   bool needs_rates() const {
     return std::any_of(rates.begin(), rates.end(), [this](const Rate& each) { return needs(each.rate); });
   }
 
-  /// The quantities in which the laws stand, and the pressures at the ports. A recorded value that is
-  /// infinite is missing from here on.
+  /// The quantities in which the laws stand, the pressures at the ports, and the calibration of a recorded
+  /// ambient temperature. A recorded value that is infinite is missing from here on.
   template <class S, class P, class Flags>
   void measure(State<S>& state, const P* parameters, Flags& flags) const {
     for (const Quantity input : inputs_) state[input] = finite_or_missing(state[input]);
@@ -99,6 +105,10 @@ class Chain {
     }
     add(Where::attack, Quantity::attack, state, parameters);
     add(Where::sideslip, Quantity::sideslip, state, parameters);
+    if (calibrates_recorded_temperature()) {
+      S& ambient = state[Quantity::ambient_temperature];
+      ambient = calibrated(above_zero(ambient), state, parameters, flags);
+    }
 
     const S line = sum<S>(Where::static_line, state, parameters);
     state[Quantity::port_static_pressure] = p + sum<S>(Where::static_transducer, state, parameters) + line;
@@ -155,7 +165,7 @@ class Chain {
 
   /// Humidity, Mach number, ambient temperature and airspeed from the corrected pressures. They depend on
   /// each other through the constants of moist air and the limit of saturation over water, so they are found
-  /// together.
+  /// together. An ambient temperature that is found from the recovery temperature is calibrated here.
   template <class S, class P, class Flags>
   void air(State<S>& state, const P* parameters, Flags& flags) const {
     const S p = state[Quantity::corrected_static_pressure];
@@ -169,7 +179,7 @@ class Chain {
     }
     flags.set(p <= S(0.0), Quality::impossible_static_pressure);
     S humidity = recorded_humidity(state, parameters, p, flags);
-    MoistAir<S> constants = solve_air(state, humidity, thermometer, delta);
+    MoistAir<S> constants = solve_air(state, parameters, humidity, thermometer, delta, flags);
     // Most air is far from saturation; only where it may not be is saturation itself computed.
     if (counts_vapor() &&
         any(humidity * p > vapor_pressure_below_saturation(state[Quantity::ambient_temperature]))) {
@@ -178,7 +188,7 @@ class Chain {
       flags.set(above, Quality::humidity_limited);
       if (any(above)) {
         humidity = select(above, saturation, humidity);
-        constants = solve_air(state, humidity, thermometer, delta);
+        constants = solve_air(state, parameters, humidity, thermometer, delta, flags);
       }
     }
     state[Quantity::humidity] = humidity;
@@ -197,14 +207,14 @@ class Chain {
     const S thermometer = recovery_temperature_of(state, parameters);
     const S delta = sum<S>(Where::recovery, state, parameters);
     const auto recovery = [this, &delta](const S& mach) { return recovery_(mach) + delta; };
-    LamsSolution<S> solution = solve_lams(p, q, v, e, state, thermometer, recovery);
+    LamsSolution<S> solution = solve_lams(p, q, v, e, state, parameters, thermometer, recovery);
     if (counts_vapor() && any(e > vapor_pressure_below_saturation(solution.temperature))) {
       const S saturation = vapor_pressure_over_water(solution.temperature);
       const auto above = e > saturation;
       flags.set(above, Quality::humidity_limited);
       if (any(above)) {
         e = select(above, saturation, e);
-        solution = solve_lams(p, q, v, e, state, thermometer, recovery);
+        solution = solve_lams(p, q, v, e, state, parameters, thermometer, recovery);
       }
     }
     const auto valid = p > S(0.0) && q > S(0.0) && v > S(0.0);
@@ -409,29 +419,56 @@ class Chain {
     return select(unknown || negative, S(0.0), e / p);
   }
 
-  template <class S, class Recovery>
-  LamsSolution<S> solve_lams(const S& p, const S& q, const S& v, const S& e, const State<S>& state,
-                             const S& thermometer, const Recovery& recovery) const {
-    switch (lams_.approach) {
-      case LamsApproach::simultaneous:
-        return lams_simultaneous(p, q, v, thermometer, e, recovery);
-      case LamsApproach::iterated:
-        return lams_iterated(p, q, v, thermometer, e, recovery);
-      case LamsApproach::with_temperature:
-        return lams_with_temperature(p, q, v, state[Quantity::ambient_temperature], e);
-    }
-    return LamsSolution<S>();
+  // The ambient temperature after the effects that calibrate it, which are found from it as it was before
+  // them.
+  template <class S, class P, class Flags>
+  S calibrated(const S& temperature, const State<S>& state, const P* parameters, Flags& flags) const {
+    State<S> here = state;
+    here[Quantity::ambient_temperature] = temperature;
+    const S change = sum<S>(Where::ambient_temperature, here, parameters);
+    flags.set(is_missing(change) && !is_missing(temperature), Quality::effect_input_missing);
+    return above_zero(S(temperature + change));
   }
 
-  template <class S>
-  MoistAir<S> solve_air(State<S>& state, const S& humidity, const S& thermometer, const S& delta) const {
+  // The same as a function of the temperature alone.
+  template <class S, class P>
+  struct Calibration {
+    const Chain& chain;
+    const State<S>& state;
+    const P* parameters;
+
+    S operator()(const S& temperature) const {
+      NoQualityFlags none;
+      return chain.calibrated(temperature, state, parameters, none);
+    }
+  };
+
+  template <class S, class P, class Recovery>
+  LamsSolution<S> solve_lams(const S& p, const S& q, const S& v, const S& e, const State<S>& state,
+                             const P* parameters, const S& thermometer, const Recovery& recovery) const {
+    if (lams_.approach == LamsApproach::with_temperature)
+      return lams_with_temperature(p, q, v, state[Quantity::ambient_temperature], e);
+    const bool is_simultaneous = lams_.approach == LamsApproach::simultaneous;
+    if (!acts(Where::ambient_temperature)) {
+      return is_simultaneous ? lams_simultaneous(p, q, v, thermometer, e, recovery)
+                             : lams_iterated(p, q, v, thermometer, e, recovery);
+    }
+    const Calibration<S, P> calibrate{*this, state, parameters};
+    return is_simultaneous ? lams_simultaneous(p, q, v, thermometer, e, recovery, 5, calibrate)
+                           : lams_iterated(p, q, v, thermometer, e, recovery, 1e-7, 30, calibrate);
+  }
+
+  template <class S, class P, class Flags>
+  MoistAir<S> solve_air(State<S>& state, const P* parameters, const S& humidity, const S& thermometer,
+                        const S& delta, Flags& flags) const {
     const MoistAir<S> constants = moist_air(humidity);
     const S mach = mach_number(state[Quantity::corrected_static_pressure],
                                state[Quantity::corrected_dynamic_pressure], constants);
     state[Quantity::corrected_mach] = mach;
     if (derives_temperature()) {
-      state[Quantity::ambient_temperature] =
-          ambient_temperature(thermometer, mach, recovery_(mach) + delta, constants);
+      S& ambient = state[Quantity::ambient_temperature];
+      ambient = ambient_temperature(thermometer, mach, recovery_(mach) + delta, constants);
+      if (acts(Where::ambient_temperature)) ambient = calibrated(ambient, state, parameters, flags);
     }
     return constants;
   }
@@ -506,6 +543,7 @@ class Chain::Builder {
     if (is_beyond_reach(facts.where)) return add_parameters(effect);
     if (!require_place(facts.where, "effect " + quoted(effect.id))) return false;
     for (std::size_t i = 0; i < facts.need_count(); ++i) {
+      if (is_at_hand(facts.needs[i], facts.where)) continue;
       if (!require(facts.needs[i], "effect " + quoted(effect.id))) return false;
     }
     Term term;
@@ -535,7 +573,9 @@ class Chain::Builder {
         return fail("the formulas of the model use more than " + std::to_string(extra_capacity) +
                     " further variables");
       }
-      if (!require(quantity, "the formula of effect " + quoted(effect.id))) return false;
+      if (!is_at_hand(quantity, effect.where) &&
+          !require(quantity, "the formula of effect " + quoted(effect.id)))
+        return false;
       bound.variables.push_back(quantity);
     }
     Term term;
@@ -552,11 +592,21 @@ class Chain::Builder {
     return on_beam && !chain_.has_lams();
   }
 
-  // What an effect on the radome corrects is there, and is computed.
+  // What an effect corrects is there, and is computed.
   bool require_place(Where where, const std::string& who) {
     if (where == Where::radome) return require(Quantity::radome_dynamic_pressure, who);
     if (where == Where::attack_ratio) return require(Quantity::attack_ratio, who);
+    if (where == Where::ambient_temperature && !chain_.has_temperature()) {
+      return fail(who +
+                  " needs the role 'recovery_temperature' or 'ambient_temperature': name its variable in the "
+                  "table [variables]");
+    }
     return true;
+  }
+
+  // What calibrates the ambient temperature is found from it, derived or recorded.
+  static bool is_at_hand(Quantity quantity, Where where) {
+    return where == Where::ambient_temperature && quantity == Quantity::ambient_temperature;
   }
 
   bool add_term(Term term, const ModelEffect& effect) {

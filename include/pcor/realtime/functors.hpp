@@ -34,6 +34,7 @@ class MeasuredQuantities final : public Functor {
     completes(Where::radome, Quantity::radome_dynamic_pressure);
     completes(Where::attack, Quantity::attack);
     completes(Where::sideslip, Quantity::sideslip);
+    completes(Where::ambient_temperature, Quantity::ambient_temperature);
     return outputs;
   }
 

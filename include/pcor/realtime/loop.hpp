@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "pcor/realtime/functors.hpp"
+#include "pcor/realtime/low_pass.hpp"
 #include "pcor/realtime/rate_of_change.hpp"
 
 namespace pcor {
@@ -30,8 +31,8 @@ class Loop {
   explicit Loop(double rate) : longest_step_(1.5 / rate) {}
 
   /// A loop that runs `model` on the roles `recorded`: delta-p, corrected pressures, Mach number, humidity,
-  /// ambient temperature, airspeed, and what LAMS says where its airspeed is recorded. Returns nothing where
-  /// the model cannot be used; `error` says why.
+  /// ambient temperature, airspeed, and what LAMS says where its airspeed is recorded, its temperature also
+  /// filtered (`LowPass`). Returns nothing where the model cannot be used; `error` says why.
   static std::optional<Loop> build(const Model& model, const std::vector<Quantity>& recorded, double rate,
                                    std::string* error, CorrectWith with = CorrectWith::model);
 
@@ -71,12 +72,17 @@ class Loop {
   /// Forgets all earlier samples.
   void reset() noexcept { started_ = false; }
 
-  /// Runs all functors on the sample at `time`, in seconds. The first sample, one after a gap, and one whose
-  /// time does not advance find every functor reset.
+  /// True where a sample at `time` would find every functor reset: the first one, one after a gap, and one
+  /// whose time does not advance.
+  bool starts_anew(double time) const noexcept {
+    const double step = time - previous_time_;
+    return !started_ || !(step > 0.0 && step <= longest_step_);
+  }
+
+  /// Runs all functors on the sample at `time`, in seconds.
   void run(double time) noexcept {
     quality_.clear();
-    const double step = time - previous_time_;
-    if (!started_ || !(step > 0.0 && step <= longest_step_)) {
+    if (starts_anew(time)) {
       for (const auto& functor : functors_) functor->reset();
     }
     started_ = true;
@@ -166,14 +172,19 @@ inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, doubl
     if (error != nullptr) *error = why;
     return std::nullopt;
   };
-  if (!(rate > 0.0)) return fail("the rate of a loop is above zero samples in a second");
+  if (!(rate > 0.0 && is_finite(rate))) return fail("the rate of a loop is above zero samples in a second");
   if (with == CorrectWith::lams && !chain->has_lams()) {
     return fail("correction with LAMS needs the role 'lams_airspeed'");
   }
   Loop loop(rate);
   for (const std::string& name : chain->extra_names()) loop.add_variable(name);
   for (const Rate& each : rates) {
-    if (chain->derives(each.rate)) loop.add(std::make_unique<RateOfChange>(each.quantity, each.rate));
+    if (!chain->derives(each.rate)) continue;
+    if (each.quantity == Quantity::ambient_temperature && chain->calibrates_recorded_temperature()) {
+      loop.add(RateOfChange::as_recorded(each.quantity, each.rate));
+    } else {
+      loop.add(std::make_unique<RateOfChange>(each.quantity, each.rate));
+    }
   }
   loop.add(std::make_unique<MeasuredQuantities>(chain));
   loop.add(std::make_unique<StaticDefect>(chain));
@@ -182,6 +193,8 @@ inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, doubl
   if (chain->has_lams()) {
     loop.add(std::make_unique<LamsStaticDefect>(chain));
     loop.add(std::make_unique<LamsAir>(chain));
+    loop.add(
+        std::make_unique<LowPass>(Quantity::lams_temperature, Quantity::filtered_lams_temperature, rate));
   }
   if (!loop.order(error)) return std::nullopt;
   return loop;

@@ -7,6 +7,9 @@
 namespace pcor {
 
 /// What was wrong with a sample, or done to it. Each is one bit of the flag variable.
+///
+/// In the sample loop `filter_window_incomplete` is of the sample that leaves the filter, `LowPass::delay`
+/// samples ago; in a processed flight it stands at that sample.
 enum class Quality : std::uint32_t {
   static_pressure_missing = 1U << 0,
   dynamic_pressure_missing = 1U << 1,
@@ -24,6 +27,7 @@ enum class Quality : std::uint32_t {
   after_gap = 1U << 13,
   corrected_with_lams = 1U << 14,
   defect_exceeds_dynamic_pressure = 1U << 15,
+  filter_window_incomplete = 1U << 16,
 };
 
 /// A quality bit and what it means.
@@ -33,7 +37,7 @@ struct QualityFacts {
   std::string_view meaning;
 };
 
-inline constexpr std::array<QualityFacts, 16> quality_facts{{
+inline constexpr std::array<QualityFacts, 17> quality_facts{{
     {Quality::static_pressure_missing, "static_pressure_missing", "no static pressure: nothing is derived"},
     {Quality::dynamic_pressure_missing, "dynamic_pressure_missing",
      "no dynamic pressure: nothing is derived"},
@@ -58,6 +62,8 @@ inline constexpr std::array<QualityFacts, 16> quality_facts{{
      "pressures corrected with LAMS, not with the model"},
     {Quality::defect_exceeds_dynamic_pressure, "defect_exceeds_dynamic_pressure",
      "delta-p of the law above the dynamic pressure, as on the ramp: no delta-p"},
+    {Quality::filter_window_incomplete, "filter_window_incomplete",
+     "too little around the sample to filter its LAMS temperature: none"},
 }};
 
 /// The quality bits of one sample.

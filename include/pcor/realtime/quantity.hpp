@@ -63,6 +63,7 @@ enum class Quantity : std::uint8_t {
   corrected_airspeed,
   lams_temperature,
   lams_dynamic_pressure,
+  filtered_lams_temperature,
 
   count
 };
@@ -149,6 +150,8 @@ inline constexpr std::array<QuantityFacts, quantity_count> quantity_facts{{
     {"corrected_airspeed", "m/s", "true airspeed from the corrected pressures"},
     {"lams_temperature", "K", "ambient temperature from LAMS without a thermometer"},
     {"lams_dynamic_pressure", "hPa", "dynamic pressure from LAMS"},
+    {"filtered_lams_temperature", "K",
+     "ambient temperature from LAMS without periods under 3 s, half a window ago"},
 }};
 
 constexpr const QuantityFacts& facts_of(Quantity quantity) { return quantity_facts[index(quantity)]; }

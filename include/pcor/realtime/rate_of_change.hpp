@@ -1,5 +1,9 @@
 #pragma once
 
+#include <memory>
+#include <utility>
+#include <vector>
+
 #include "pcor/realtime/functor.hpp"
 
 namespace pcor {
@@ -11,8 +15,13 @@ namespace pcor {
 /// after a value that was missing or infinite.
 class RateOfChange final : public Functor {
  public:
-  RateOfChange(Quantity quantity, Quantity rate)
-      : Functor({Quantity::time, quantity}, {rate}), quantity_(quantity), rate_(rate) {}
+  RateOfChange(Quantity quantity, Quantity rate) : RateOfChange(quantity, rate, {Quantity::time, quantity}) {}
+
+  /// The rate of a quantity as it is recorded, for the functor that completes it in place and reads the rate:
+  /// it waits for no one.
+  static std::unique_ptr<RateOfChange> as_recorded(Quantity quantity, Quantity rate) {
+    return std::unique_ptr<RateOfChange>(new RateOfChange(quantity, rate, {Quantity::time}));
+  }
 
   void reset() noexcept override { started_ = false; }
 
@@ -27,6 +36,9 @@ class RateOfChange final : public Functor {
   }
 
  private:
+  RateOfChange(Quantity quantity, Quantity rate, std::vector<Quantity> inputs)
+      : Functor(std::move(inputs), {rate}), quantity_(quantity), rate_(rate) {}
+
   Quantity quantity_;
   Quantity rate_;
   bool started_ = false;

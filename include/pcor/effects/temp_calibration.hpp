@@ -1,0 +1,41 @@
+#pragma once
+
+#include "pcor/physics/constants.hpp"
+#include "pcor/realtime/effect.hpp"
+
+namespace pcor::effects {
+
+struct TempCalibration {
+  static constexpr EffectFacts facts() {
+    EffectFacts facts;
+    facts.id = "temp-calibration";
+    facts.title = "calibration of the ambient temperature";
+    facts.where = Where::ambient_temperature;
+    facts.formula = "a0 + a1 * (ambient_temperature - 273.15) + a2 * (ambient_temperature - 273.15)^2";
+    facts.parameters[0] = {"a0", "K", 0.0, -5.0, 5.0, 0.5};
+    facts.parameters[1] = {"a1", "1", 0.0, -0.05, 0.05, 0.005};
+    facts.parameters[2] = {"a2", "1/K", 0.0, -0.001, 0.001, 0.0001};
+    facts.needs = {Quantity::ambient_temperature, Quantity::count, Quantity::count, Quantity::count};
+    facts.size = "0.3 to 0.55 K and a slope to 0.01: 0.24 hPa/K (C-130), 0.42 hPa/K (GV)";
+    facts.look_alikes =
+        "temp-offset, recovery-factor, lams-scale, qcf-gain, temp-deice-heat, humidity-neglected, "
+        "horizontal-gradient, hydrostatic-t-gradient, gps-height";
+    facts.manoeuvre =
+        "climbs and descents through many temperatures, there and back, with GPS height: pcor temperature "
+        "finds it by the hydrostatic equation";
+    facts.source = "memo eq. 24 and its addition on the GV: T + a0 + a1 T + a2 T^2, T in degC";
+    facts.example.inputs[0] = {Quantity::ambient_temperature, 253.15};
+    facts.example.parameters = {0.55, 0.01, 0.00025};
+    facts.example.value = 0.45;
+    return facts;
+  }
+
+  template <class State, class P>
+  static auto value(const State& state, const P* parameter) {
+    using S = typename State::Scalar;
+    const S celsius = state[Quantity::ambient_temperature] - S(constants::ice_point);
+    return parameter[0] + celsius * (parameter[1] + parameter[2] * celsius);
+  }
+};
+
+}  // namespace pcor::effects
