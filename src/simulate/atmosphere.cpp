@@ -43,7 +43,8 @@ double gravity(double latitude, double height) {
   const double surface =
       9.7803253359 * (1.0 + 0.00193185265241 * square) / std::sqrt(1.0 - 0.00669437999014 * square);
   constexpr double earth_radius = 6378137.0;  // m, the semi-major axis of WGS 84
-  return surface * (1.0 - 2.0 * height / earth_radius);
+  const double across = height / earth_radius;
+  return surface * (1.0 - 2.0 * (1.00680267 - 0.00670562 * square) * across + 3.0 * across * across);
 }
 
 Column::Column(const Scenario::Atmosphere& a, double latitude) : bottom_(a.ground_height - below_ground) {

@@ -8,7 +8,7 @@
 namespace pcor::simulate {
 
 /// Gravity, m/s2, at a latitude (deg) and height (m): Somigliana's formula of WGS 84, falling with height as
-/// 2 z/a. Accuracy 1e-5 up to 15 km.
+/// the ellipsoid's field does to second order. Accuracy 1e-7 up to 20 km.
 double gravity(double latitude, double height);
 
 /// The column of air over a place: hydrostatic balance of moist air, integrated upwards from the ground.

@@ -74,6 +74,11 @@ double Pilot::isobar_height() const {
          gradient_length;
 }
 
+double Pilot::column_height() const {
+  const double latitude = scenario_.latitude + north_ / metres_per_degree;
+  return height() * gravity(latitude, 0.0) / gravity(scenario_.latitude, 0.0);
+}
+
 double Pilot::towards_height(double height, double rate) {
   constexpr double capture = 10.0;        // s
   constexpr double response = 2.0;        // s
@@ -102,7 +107,7 @@ double Pilot::liquid_water() {
 void Pilot::step(const Command& command, const Scenario::Leg& leg) {
   // The air
   const Scenario::Atmosphere& atmosphere = scenario_.atmosphere;
-  const Air air = column_.at(height());
+  const Air air = column_.at(column_height());
   const double edr = dissipation(atmosphere, height_);
   const double aloft = on_ground_ ? std::clamp(speed_ / aircraft_.lift_off_speed, 0.0, 1.0) : 1.0;
   const double moved = std::max(speed_, slowest) * time_step;

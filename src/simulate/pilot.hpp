@@ -59,6 +59,9 @@ class Pilot {
   };
 
   double isobar_height() const;
+  /// The height in the column over the start that has this geopotential: isobars follow the geopotential, and
+  /// gravity grows towards the poles.
+  double column_height() const;
   double liquid_water();
 
   const Scenario& scenario_;
