@@ -15,6 +15,7 @@
 #include "pcor/offline/flight_writer.hpp"
 #include "pcor/offline/utc.hpp"
 #include "pcor/realtime/loop.hpp"
+#include "usual_variables.hpp"
 
 namespace pcor {
 namespace {
@@ -328,6 +329,18 @@ void Processing::copy_inputs(FlightWriter& writer, const FileDescription& descri
   for (const std::string& name : {description.latitude, description.longitude, description.altitude})
     copy(name);
   for (const Input& input : inputs_) copy(input.variable);
+  if (!options_.hydrostatic) return;
+  // What a fit of temperature needs besides: the height, the way, and how it was flown.
+  for (const Quantity role :
+       {Quantity::altitude, Quantity::latitude, Quantity::ground_speed, Quantity::ground_track,
+        Quantity::heading, Quantity::roll, Quantity::vertical_speed, Quantity::flaps}) {
+    std::vector<std::string> names = usual_variables(role);
+    if (const std::string given = variable_of(role); !given.empty()) names.insert(names.begin(), given);
+    const auto found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
+      return flight_.has(name) && flight_.variable(name).is_series;
+    });
+    if (found != names.end()) copy(*found);
+  }
 }
 
 void Processing::define(FlightWriter& writer) {

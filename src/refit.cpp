@@ -792,6 +792,10 @@ void Refit::write_models(const Eigen::MatrixXd& covariance, const std::vector<st
     provenance.emplace_back("samples_not_used", ProvenanceValue{std::move(masks)});
     provenance.emplace_back("rms_hpa", ProvenanceValue{result_.rms});
     provenance.emplace_back("r2", ProvenanceValue{result_.r_squared});
+    // How the temperature was calibrated stays: the pressures do not change it.
+    for (auto& entry : file.provenance) {
+      if (entry.first == "temperature") provenance.push_back(std::move(entry));
+    }
     file.provenance = std::move(provenance);
     LawFacts law;
     law.source = fmt::format("refit by pcor to {}{}", result_.reference_text,

@@ -66,6 +66,8 @@ std::function<void()> add_diagnose(CLI::App& program);
 std::function<void()> add_add(CLI::App& program);
 std::function<void()> add_refit(CLI::App& program);
 std::function<void()> add_improve(CLI::App& program);
+std::function<void()> add_check(CLI::App& program);
+std::function<void()> add_temperature(CLI::App& program);
 std::function<void()> add_simulate(CLI::App& program);
 std::function<void()> add_effects(CLI::App& program);
 

@@ -20,13 +20,17 @@ CLI::Validator is_amount() {
 }
 
 void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
-  command.add_option("flights", options.flights, "the flights, netCDF files")
-      ->required()
-      ->type_name("IN.nc...");
+  add_flight_options(command, options);
   command
       .add_option("--reference", options.reference,
                   "what to hold the model against: lams, static:OTHER.toml or pressure:VARIABLE")
       ->type_name("REFERENCE");
+}
+
+void add_flight_options(CLI::App& command, ComparisonOptions& options) {
+  command.add_option("flights", options.flights, "the flights, netCDF files")
+      ->required()
+      ->type_name("IN.nc...");
   command.add_option("--exclude", options.exclude, "a regime that takes no part, e.g. turn or cloud")
       ->type_name("REGIME");
   command

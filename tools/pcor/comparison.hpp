@@ -26,6 +26,9 @@ CLI::Validator is_amount();
 
 void add_comparison_options(CLI::App& command, ComparisonOptions& options);
 
+/// As `add_comparison_options`, without the reference: flights, and which samples take part.
+void add_flight_options(CLI::App& command, ComparisonOptions& options);
+
 /// The regime called `name` on the option `option`. @throws Error with the names that there are.
 Regime regime_of(const std::string& name, const std::string& option);
 

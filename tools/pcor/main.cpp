@@ -85,10 +85,11 @@ int main(int argc, char** argv) {
   program.require_subcommand(1);
   program.footer("Exit status: 0 done, 1 the work could not be done, 2 usage.");
 
-  constexpr std::array<pcor::tool::AddCommand, 8> commands{
-      &pcor::tool::add_process,  &pcor::tool::add_compare, &pcor::tool::add_diagnose,
-      &pcor::tool::add_add,      &pcor::tool::add_refit,   &pcor::tool::add_improve,
-      &pcor::tool::add_simulate, &pcor::tool::add_effects};
+  constexpr std::array<pcor::tool::AddCommand, 10> commands{
+      &pcor::tool::add_process, &pcor::tool::add_compare,     &pcor::tool::add_diagnose,
+      &pcor::tool::add_add,     &pcor::tool::add_refit,       &pcor::tool::add_improve,
+      &pcor::tool::add_check,   &pcor::tool::add_temperature, &pcor::tool::add_simulate,
+      &pcor::tool::add_effects};
   std::vector<std::function<void()>> runs;
   runs.reserve(commands.size());
   for (const auto add : commands) runs.push_back(add(program));

@@ -17,9 +17,10 @@ namespace pcor {
 /// How a flight is processed.
 struct ProcessOptions {
   CorrectWith correct_with = CorrectWith::model;
-  bool copy_all = false;     ///< copy every variable of the input, not only coordinates and what was used
-  bool hydrostatic = false;  ///< write the steps of hydrostatic height, `HYDSTEP`
-  std::string suffix{};      ///< added to the name of every derived variable
+  bool copy_all = false;  ///< copy every variable of the input, not only coordinates and what was used
+  /// Write the steps of hydrostatic height, `HYDSTEP`, and copy what a fit of temperature needs besides.
+  bool hydrostatic = false;
+  std::string suffix{};  ///< added to the name of every derived variable
   TimeStamp time_stamp = TimeStamp::begin;
   std::string history{};  ///< what the output says of its making, e.g. the command line
   std::function<void(std::size_t done, std::size_t total)> progress{};  ///< told after every block of records

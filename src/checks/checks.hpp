@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "../flight_air.hpp"
+#include "pcor/offline/check.hpp"
+
+namespace pcor {
+
+/// A pair of pressures as measured, hPa, one value for each record.
+struct MeasuredPair {
+  std::string name{};  ///< for example "PSFRD/QCFR"
+  std::vector<double> static_pressure{};
+  std::vector<double> dynamic_pressure{};
+};
+
+/// A flight as the checks see it.
+struct CheckedFlight {
+  FlightAir air;
+  std::optional<FlightAir> second{};  ///< the second static system, where there is one
+  std::string second_name{};          ///< of it, for example "PSFRD/QCFR"
+  bool second_corrected = false;      ///< by a model of its own; else it is as measured
+  /// The pairs of the two systems as measured: where the pressures of the first were corrected by the
+  /// flight's own processing, its pair is the first that was measured. Fewer where they are not recorded.
+  std::vector<MeasuredPair> measured{};
+};
+
+using CheckedFlights = std::vector<CheckedFlight>;
+
+/// The checks. Each gets all flights, and returns a result with its name whether it could run or not.
+CheckResult check_total_pressure(const CheckedFlights& flights);
+CheckResult check_static_pressure(const CheckedFlights& flights);
+CheckResult check_reverse_heading(const CheckedFlights& flights);
+CheckResult check_circles(const CheckedFlights& flights);
+CheckResult check_speed_run(const CheckedFlights& flights);
+CheckResult check_pitch(const CheckedFlights& flights);
+CheckResult check_yaw(const CheckedFlights& flights);
+CheckResult check_layers(const CheckedFlights& flights);
+CheckResult check_lams_temperature(const CheckedFlights& flights);
+CheckResult check_spectrum(const CheckedFlights& flights);
+
+}  // namespace pcor

@@ -1,0 +1,162 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "circle_fit.hpp"
+#include "flown.hpp"
+#include "leg_pair.hpp"
+#include "pcor/offline/utc.hpp"
+
+namespace pcor {
+namespace {
+
+/// As for the reverse heading, m/s.
+constexpr double size_that_matters = 0.3;
+
+/// Less of a turn cannot tell the wind from the airspeed well.
+constexpr double least_turn = 300.0;  // deg
+
+/// Noise of one circle that its samples cannot show, m/s: the wind drifts while the heading goes round once.
+/// In simulated air (0.3 m/s rms of mesoscale drift with a memory of 300 s) errors of circles are right with
+/// it.
+constexpr double drift_of_wind = 0.1;
+
+struct Circle {
+  Flown flown;
+  CircleFit fit;
+};
+
+Estimated with_drift(const Estimated& number) {
+  return {number.value, std::hypot(number.error, drift_of_wind)};
+}
+
+std::vector<Estimated> errors_of(const std::vector<Circle>& circles) {
+  std::vector<Estimated> errors;
+  for (const Circle& circle : circles) errors.push_back(with_drift(circle.fit.airspeed_error));
+  return errors;
+}
+
+ReportTable table_of(const std::vector<Circle>& circles) {
+  ReportTable table;
+  table.title = "Circles";
+  table.caption =
+      "Wind, error of the airspeed (too high positive) and error of the heading less the sideslip, from the "
+      "ground velocity around one turn. Errors are without the drift of the wind.";
+  table.headers = {"circle",        "turn, deg",    "wind from, deg", "wind, m/s",
+                   "airspeed, m/s", "heading, deg", "rms, m/s"};
+  for (const Circle& circle : circles) {
+    const CircleFit& fit = circle.fit;
+    const double from =
+        std::atan2(-fit.east_wind.value, -fit.north_wind.value) / constants::radians_per_degree;
+    table.rows.push_back({circle.flown.where(), fmt::format("{:+.0f}", fit.turned),
+                          fmt::format("{:.0f}", from < 0.0 ? from + 360.0 : from),
+                          fmt::format("{:.1f}", std::hypot(fit.east_wind.value, fit.north_wind.value)),
+                          with_error(fit.airspeed_error, ""), with_error(fit.heading_error, ""),
+                          fmt::format("{:.2f}", fit.rms)});
+  }
+  return table;
+}
+
+void add_pictures(const CheckedFlights& flights, const std::vector<Circle>& circles, CheckResult& result) {
+  BarPanel bars;
+  bars.title = "Error of the airspeed from each circle";
+  bars.caption = "Error bars have the usual drift of the wind during a circle in them.";
+  bars.axis = "airspeed less that of the circle";
+  bars.unit = "m/s";
+  for (const Circle& circle : circles) {
+    const Estimated error = with_drift(circle.fit.airspeed_error);
+    bars.bars.push_back({fmt::format("{} {} {}", circle.flown.flight->air.samples->name,
+                                     utc_text(circle.flown.interval.begin, "%H:%M"),
+                                     circle.fit.turned < 0.0 ? "left" : "right"),
+                         error.value, error.error});
+  }
+  result.pictures.emplace_back(std::move(bars));
+  std::vector<Flown> all;
+  for (const Circle& circle : circles) all.push_back(circle.flown);
+  const auto left_over = [&](const CheckedFlight& flight) {
+    std::vector<double> values(flight.air.size(), std::nan(""));
+    for (const Circle& circle : circles) {
+      if (circle.flown.flight != &flight) continue;
+      for (std::size_t i = 0; i < circle.flown.places.size(); ++i)
+        values[circle.flown.places[i]] = circle.fit.along[i];
+    }
+    return values;
+  };
+  result.columns.push_back(
+      column_of(flights, "circles left", "ground speed along the heading that is left", "m/s", left_over));
+  result.columns.push_back(column_of(
+      flights, "circles heading", "heading", "deg",
+      [&](const CheckedFlight& flight) { return only_in(flight, all, flight.air.samples->motion.heading); }));
+  BinnedPanel binned;
+  binned.title = "What a circle leaves";
+  binned.caption =
+      "Ground speed along the heading less that of wind, airspeed and its error. A wave over the "
+      "heading is a wind that changed during the circle.";
+  binned.y = {"circles left"};
+  binned.x_choices = {"circles heading"};
+  binned.samples_per_independent = 5.0;
+  result.pictures.emplace_back(std::move(binned));
+}
+
+}  // namespace
+
+CheckResult check_circles(const CheckedFlights& flights) {
+  const std::string name = "circles";
+  if (const std::string missing = missing_for_tail_wind(flights); !missing.empty())
+    return not_run(name, "no flight " + missing);
+  CheckResult result;
+  std::vector<Circle> circles;
+  for (Flown& flown : all_flown(flights, Regime::circle)) {
+    const FlightAir& air = flown.flight->air;
+    Circle circle{
+        flown, fit_circle(flown.of(air.airspeed), flown.of(air.samples->motion.heading),
+                          flown.of(air.east_speed), flown.of(air.north_speed), flown.time(), flown.step())};
+    if (!std::isfinite(circle.fit.airspeed_error.value)) {
+      result.notes.push_back(flown.where() + ": the circle has too few values");
+    } else if (std::abs(circle.fit.turned) < least_turn) {
+      result.notes.push_back(fmt::format("{}: a turn of {:.0f} deg in use, where {:.0f} are needed",
+                                         flown.where(), std::abs(circle.fit.turned), least_turn));
+    } else {
+      circles.push_back(std::move(circle));
+    }
+  }
+  if (circles.empty()) {
+    return not_run(name, result.notes.empty() ? not_flown(Regime::circle)
+                                              : "no circle can be used: " + result.notes.front());
+  }
+  result.name = name;
+  result.ran = true;
+  const Estimated error = combined(errors_of(circles));
+  const auto to_port = std::count_if(circles.begin(), circles.end(),
+                                     [](const Circle& circle) { return circle.fit.turned < 0.0; });
+  std::vector<double> factors;
+  for (const Circle& circle : circles) {
+    const FlightAir& air = circle.flown.flight->air;
+    factors.push_back(pressure_per_airspeed(circle.flown.mean(air.pressure), circle.flown.mean(air.mach),
+                                            circle.flown.mean(air.airspeed)));
+  }
+  const Estimated hpa{mean_value(factors) * error.value, std::abs(mean_value(factors)) * error.error};
+  result.verdict = judge(error, size_that_matters);
+  result.finding = fmt::format(
+      "From {} circle{}, {} to the left and {} to the right, the true airspeed is too {} by {:.2f} +- {:.2f} "
+      "m/s, as if delta-p were off by {}.",
+      circles.size(), circles.size() == 1 ? "" : "s", to_port,
+      circles.size() - static_cast<std::size_t>(to_port), error.value < 0.0 ? "low" : "high",
+      std::abs(error.value), error.error, with_error(hpa, "hPa"));
+  result.cannot_see =
+      "Which of pressure, temperature and laser is wrong: it sees the airspeed alone, in a bank. Sideslip, "
+      "an "
+      "offset of the heading and the angle of attack times the bank look alike, and a wind that drifts while "
+      "the heading goes round looks like an error of the airspeed.";
+  result.numbers = {{"circles", static_cast<double>(circles.size())},
+                    {"airspeed_error_m_s", error.value},
+                    {"airspeed_error_stderr_m_s", error.error},
+                    {"delta_p_error_hpa", hpa.value},
+                    {"delta_p_error_stderr_hpa", hpa.error}};
+  result.tables.push_back(table_of(circles));
+  add_pictures(flights, circles, result);
+  return result;
+}
+
+}  // namespace pcor

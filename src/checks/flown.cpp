@@ -1,0 +1,152 @@
+#include "flown.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pcor/offline/utc.hpp"
+
+namespace pcor {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+bool has_value(const std::vector<double>& series) {
+  return std::any_of(series.begin(), series.end(), [](double x) { return std::isfinite(x); });
+}
+
+}  // namespace
+
+std::vector<double> Flown::time() const {
+  std::vector<double> times;
+  for (const std::size_t place : places) times.push_back(flight->air.time()[place]);
+  return times;
+}
+
+std::vector<double> Flown::of(const std::vector<double>& series) const {
+  std::vector<double> values(places.size(), nan);
+  if (series.empty()) return values;
+  for (std::size_t i = 0; i < places.size(); ++i) values[i] = series[places[i]];
+  return values;
+}
+
+double Flown::mean(const std::vector<double>& series) const { return mean_value(of(series)); }
+
+std::string Flown::where() const {
+  return fmt::format("{}, {} to {}", flight->air.samples->name, utc_text(interval.begin),
+                     utc_text(interval.end, "%H:%M:%S"));
+}
+
+std::vector<Flown> all_flown(const CheckedFlights& flights, Regime regime) {
+  std::vector<Flown> all;
+  for (const CheckedFlight& flight : flights) {
+    const std::vector<double>& time = flight.air.time();
+    for (const Interval& interval : flight.air.samples->intervals) {
+      if (interval.regime != regime) continue;
+      Flown flown{&flight, interval, {}};
+      const auto first = std::lower_bound(time.begin(), time.end(), interval.begin);
+      for (auto at = first; at != time.end() && *at < interval.end; ++at) {
+        const auto place = static_cast<std::size_t>(at - time.begin());
+        if (flight.air.flying[place]) flown.places.push_back(place);
+      }
+      if (!flown.places.empty()) all.push_back(std::move(flown));
+    }
+  }
+  return all;
+}
+
+std::pair<double, double> range_of(const std::vector<double>& values) {
+  std::pair<double, double> range{nan, nan};
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    if (!(value >= range.first)) range.first = value;
+    if (!(value <= range.second)) range.second = value;
+  }
+  return range;
+}
+
+double mean_value(const std::vector<double>& values) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    sum += value;
+    ++count;
+  }
+  return count > 0 ? sum / static_cast<double>(count) : nan;
+}
+
+double standard_deviation(const std::vector<double>& values) {
+  const double mean = mean_value(values);
+  std::vector<double> squares;
+  for (const double value : values) squares.push_back((value - mean) * (value - mean));
+  return std::sqrt(mean_value(squares));
+}
+
+std::string missing_for_tail_wind(const CheckedFlights& flights) {
+  const auto lacking = [&](const auto& series) {
+    return std::none_of(flights.begin(), flights.end(),
+                        [&](const CheckedFlight& flight) { return has_value(series(flight.air)); });
+  };
+  if (!lacking([](const FlightAir& air) { return air.tail_wind; })) return "";
+  if (lacking([](const FlightAir& air) { return air.samples->motion.heading; }))
+    return "has a heading (THDG; [variables] heading names another)";
+  if (lacking([](const FlightAir& air) { return air.east_speed; }))
+    return "has a ground speed and track (GGSPD and GGTRK, or GGVEW and GGVNS; [variables] ground_speed and "
+           "ground_track name others)";
+  if (lacking([](const FlightAir& air) { return air.airspeed; }))
+    return "has a true airspeed: it needs a thermometer (ATX; [variables] recovery_temperature or "
+           "ambient_temperature name one)";
+  return "has heading, ground velocity and true airspeed together";
+}
+
+std::string not_flown(Regime regime) {
+  return fmt::format("no {} was found in the flights ({}); --intervals adds one", facts_of(regime).name,
+                     facts_of(regime).criterion);
+}
+
+ReportColumn column_of(const CheckedFlights& flights, std::string name, std::string title, std::string unit,
+                       const std::function<std::vector<double>(const CheckedFlight&)>& series) {
+  ReportColumn column{std::move(name), std::move(title), std::move(unit), {}};
+  for (const CheckedFlight& flight : flights) {
+    std::vector<double> values = series(flight);
+    values.resize(flight.air.size(), nan);
+    column.values.insert(column.values.end(), values.begin(), values.end());
+  }
+  return column;
+}
+
+std::vector<double> only_at(const std::vector<double>& series, const std::vector<std::size_t>& places) {
+  std::vector<double> values(series.size(), nan);
+  if (series.empty()) return values;
+  for (const std::size_t place : places) values[place] = series[place];
+  return values;
+}
+
+std::vector<double> only_in(const CheckedFlight& flight, const std::vector<Flown>& all,
+                            const std::vector<double>& series) {
+  std::vector<std::size_t> places;
+  for (const Flown& flown : all) {
+    if (flown.flight == &flight) places.insert(places.end(), flown.places.begin(), flown.places.end());
+  }
+  return only_at(series, places);
+}
+
+const std::vector<double>& attack_of(const FlightAir& air) {
+  return air.attack.empty() ? air.samples->motion.attack : air.attack;
+}
+
+const std::vector<double>& sideslip_of(const FlightAir& air) {
+  return air.sideslip.empty() ? air.samples->motion.sideslip : air.sideslip;
+}
+
+CheckResult not_run(std::string name, std::string reason) {
+  CheckResult result;
+  result.name = std::move(name);
+  result.reason = std::move(reason);
+  return result;
+}
+
+}  // namespace pcor

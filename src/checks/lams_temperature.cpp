@@ -1,0 +1,348 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "flown.hpp"
+#include "pcor/offline/noise.hpp"
+#include "pcor/offline/utc.hpp"
+
+namespace pcor {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// The smallest difference that matters, K: what 0.1 to 0.2 hPa of delta-p or 0.1 % of the laser make.
+constexpr double size_that_matters = 0.5;
+constexpr double boundary_layer = 1000.0;    // m above the field
+constexpr double altitude_band = 1000.0;     // m
+constexpr std::size_t fewest_in_cloud = 30;  // samples: fewer do not tell their own scatter
+constexpr std::size_t fewest_samples = 60;   // to say something of a part
+constexpr double longest_period = 256.0;     // s
+constexpr double suspect_share = 0.5;        // of the laser's values missing in a cloud: an iced window
+
+/// The difference of all flights, one flight after another.
+struct Differences {
+  std::vector<double> time{};
+  std::vector<double> values{};  ///< ATLAMS less the thermometer, K; NaN where either may not be used
+  std::vector<double> altitude{};
+  std::vector<bool> in_cloud{};
+  std::vector<bool> near_ground{};  ///< in the lowest kilometre above the field
+  double step = 1.0;
+};
+
+std::vector<bool> in_cloud(const FlightAir& air) {
+  const std::vector<RegimeSet> regimes = regimes_of_samples(air.time(), air.samples->intervals);
+  std::vector<bool> cloud(air.size());
+  for (std::size_t i = 0; i < air.size(); ++i) cloud[i] = regimes[i][static_cast<std::size_t>(Regime::cloud)];
+  return cloud;
+}
+
+/// The pressure altitude where the flight began, m: on the ground, or the lowest flown.
+double field_of(const FlightAir& air) {
+  if (!air.pressure_altitude.empty() && !air.flying.front() && std::isfinite(air.pressure_altitude.front()))
+    return air.pressure_altitude.front();
+  double lowest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < air.size(); ++i) {
+    if (air.flying[i] && air.pressure_altitude[i] < lowest) lowest = air.pressure_altitude[i];
+  }
+  return lowest;
+}
+
+std::vector<double> difference_of(const FlightAir& air) {
+  std::vector<double> difference(air.size(), nan);
+  if (!air.laser || air.temperature.empty()) return difference;
+  for (std::size_t i = 0; i < air.size(); ++i) {
+    if (air.flying[i]) difference[i] = air.laser->temperature[i] - air.temperature[i];
+  }
+  return difference;
+}
+
+Differences all_differences(const CheckedFlights& flights) {
+  Differences all;
+  for (const CheckedFlight& flight : flights) {
+    const FlightAir& air = flight.air;
+    const std::vector<double> difference = difference_of(air);
+    const std::vector<bool> cloud = in_cloud(air);
+    const double field = field_of(air);
+    all.step = air.step();
+    for (std::size_t i = 0; i < air.size(); ++i) {
+      all.time.push_back(air.time()[i]);
+      all.values.push_back(difference[i]);
+      all.altitude.push_back(air.pressure_altitude[i]);
+      all.in_cloud.push_back(cloud[i]);
+      all.near_ground.push_back(air.pressure_altitude[i] < field + boundary_layer);
+    }
+  }
+  return all;
+}
+
+template <class Condition>
+std::vector<double> where(const Differences& all, const Condition& condition) {
+  std::vector<double> values(all.values.size(), nan);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (condition(i)) values[i] = all.values[i];
+  }
+  return values;
+}
+
+/// Mean, error and scatter of a part of the samples.
+struct Part {
+  std::string name;
+  LeastSquares fit;
+};
+
+template <class Condition>
+Part part_of(const Differences& all, std::string name, const Condition& condition) {
+  return {std::move(name), mean_of(where(all, condition), all.time, all.step)};
+}
+
+ReportTable part_table(const std::vector<Part>& parts) {
+  ReportTable table;
+  table.title = "The laser's temperature less the thermometer's";
+  table.caption = "Errors know the memory of the differences.";
+  table.headers = {"where", "samples", "mean, K", "std. error", "scatter, K"};
+  for (const Part& part : parts) {
+    if (part.fit.samples < fewest_samples) continue;
+    table.rows.push_back(
+        {part.name, std::to_string(part.fit.samples), fmt::format("{:+.3f}", part.fit.coefficients[0].value),
+         fmt::format("{:.3f}", part.fit.coefficients[0].error), fmt::format("{:.3f}", part.fit.rms)});
+  }
+  return table;
+}
+
+/// The rms of what changes between neighbouring means of `width` samples, over the square root of two: the
+/// noise of one mean, which is that at periods of about twice the width (Allan's deviation). NaN for fewer
+/// than ten differences.
+double allan_deviation(const std::vector<double>& values, const std::vector<Stretch>& stretches,
+                       std::size_t width) {
+  double squares = 0.0;
+  std::size_t count = 0;
+  for (const Stretch& stretch : stretches) {
+    double before = nan;
+    for (std::size_t first = 0; first + width <= stretch.count; first += width) {
+      double mean = 0.0;
+      for (std::size_t k = 0; k < width; ++k)
+        mean += values[stretch.first + first + k] / static_cast<double>(width);
+      if (!std::isnan(before)) {
+        squares += 0.5 * (mean - before) * (mean - before);
+        ++count;
+      }
+      before = mean;
+    }
+  }
+  return count < 10 ? nan : std::sqrt(squares / static_cast<double>(count));
+}
+
+struct PeriodNoise {
+  double period;       ///< s
+  double near_ground;  ///< K
+  double above;        ///< K
+};
+
+std::vector<PeriodNoise> noise_by_period(const Differences& all) {
+  const std::vector<double> low =
+      where(all, [&](std::size_t i) { return all.near_ground[i] && !all.in_cloud[i]; });
+  const std::vector<double> high =
+      where(all, [&](std::size_t i) { return !all.near_ground[i] && !all.in_cloud[i]; });
+  const std::vector<Stretch> low_parts = stretches_of(low, all.time, all.step);
+  const std::vector<Stretch> high_parts = stretches_of(high, all.time, all.step);
+  std::vector<PeriodNoise> noise;
+  for (std::size_t width = 1; 2.0 * static_cast<double>(width) * all.step <= longest_period; width *= 2) {
+    noise.push_back({2.0 * static_cast<double>(width) * all.step, allan_deviation(low, low_parts, width),
+                     allan_deviation(high, high_parts, width)});
+  }
+  return noise;
+}
+
+/// The clouds of a flight, with what the laser did there. Returns how many look suspect.
+std::size_t look_at_clouds(const FlightAir& air, double outside, ReportTable& table) {
+  std::size_t suspect = 0;
+  const std::vector<double> difference = difference_of(air);
+  for (const Interval& interval : air.samples->intervals) {
+    if (interval.regime != Regime::cloud) continue;
+    std::vector<double> values;
+    std::vector<double> times;
+    std::size_t flown = 0;
+    for (std::size_t i = 0; i < air.size(); ++i) {
+      if (air.time()[i] < interval.begin || air.time()[i] >= interval.end || !air.flying[i]) continue;
+      ++flown;
+      values.push_back(difference[i]);
+      times.push_back(air.time()[i]);
+    }
+    if (flown < fewest_in_cloud) continue;
+    const auto known = static_cast<double>(
+        std::count_if(values.begin(), values.end(), [](double x) { return !std::isnan(x); }));
+    const double missing = 1.0 - known / static_cast<double>(flown);
+    const LeastSquares mean = mean_of(values, times, air.step());
+    const Estimated change{mean.coefficients[0].value - outside, mean.coefficients[0].error};
+    std::string remark;
+    if (missing > suspect_share)
+      remark = "laser mostly missing: an iced window";
+    else if (judge(change, size_that_matters) == CheckVerdict::inconsistent)
+      remark = "suspect";
+    table.rows.push_back({air.samples->name, utc_text(interval.begin), utc_text(interval.end, "%H:%M:%S"),
+                          fmt::format("{:.0f}", 100.0 * missing),
+                          std::isnan(change.value) ? "" : fmt::format("{:+.2f}", mean.coefficients[0].value),
+                          std::isnan(change.value) ? "" : fmt::format("{:.2f}", mean.coefficients[0].error),
+                          remark});
+    if (!remark.empty()) ++suspect;
+  }
+  return suspect;
+}
+
+void add_pictures(const CheckedFlights& flights, const std::vector<PeriodNoise>& noise, CheckResult& result) {
+  result.columns.push_back(column_of(flights, "lams-temperature difference", "ATLAMS - thermometer", "K",
+                                     [](const CheckedFlight& flight) { return difference_of(flight.air); }));
+  result.columns.push_back(
+      column_of(flights, "lams-temperature altitude", "pressure altitude", "m",
+                [](const CheckedFlight& flight) { return flight.air.pressure_altitude; }));
+  const auto celsius = [](std::vector<double> values, const FlightAir& air) {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] = air.flying[i] ? values[i] - constants::ice_point : nan;
+    return values;
+  };
+  result.columns.push_back(
+      column_of(flights, "lams-temperature laser", "ATLAMS", "degC", [&celsius](const CheckedFlight& flight) {
+        return flight.air.laser ? celsius(flight.air.laser->temperature, flight.air) : std::vector<double>{};
+      }));
+  result.columns.push_back(column_of(
+      flights, "lams-temperature thermometer", "thermometer", "degC",
+      [&celsius](const CheckedFlight& flight) { return celsius(flight.air.temperature, flight.air); }));
+  TimePanel temperatures;
+  temperatures.title = "Temperature by the laser and by the thermometer";
+  temperatures.caption = "Figure 3 of the memo: ATLAMS from the pressures of the model, and the thermometer.";
+  temperatures.columns = {"lams-temperature laser", "lams-temperature thermometer"};
+  temperatures.axis = "temperature";
+  result.pictures.emplace_back(std::move(temperatures));
+  BinnedPanel binned;
+  binned.title = "The difference against altitude";
+  binned.caption = "ATLAMS less the thermometer: a slope is an error that one of them has and the other not.";
+  binned.y = {"lams-temperature difference"};
+  binned.x_choices = {"lams-temperature altitude"};
+  binned.samples_per_independent = 10.0;
+  result.pictures.emplace_back(std::move(binned));
+  BarPanel bars;
+  bars.title = "Noise of the difference by period";
+  bars.caption =
+      "Noise of means over half the period. Below 3 s it is the air at the laser's volume that is not the "
+      "air "
+      "at the pitot tube.";
+  bars.axis = "noise";
+  bars.unit = "K";
+  for (const PeriodNoise& each : noise) {
+    if (!std::isnan(each.near_ground))
+      bars.bars.push_back({fmt::format("{:.0f} s, lowest km", each.period), each.near_ground});
+    if (!std::isnan(each.above))
+      bars.bars.push_back({fmt::format("{:.0f} s, above", each.period), each.above});
+  }
+  if (!bars.bars.empty()) result.pictures.emplace_back(std::move(bars));
+}
+
+}  // namespace
+
+CheckResult check_lams_temperature(const CheckedFlights& flights) {
+  const std::string name = "lams-temperature";
+  const bool has_laser = std::any_of(flights.begin(), flights.end(),
+                                     [](const CheckedFlight& f) { return f.air.laser.has_value(); });
+  if (!has_laser) {
+    return not_run(name,
+                   "no flight records a laser airspeed that the model names ([variables] lams_airspeed, with "
+                   "attack and sideslip)");
+  }
+  const bool has_thermometer = std::any_of(flights.begin(), flights.end(), [](const CheckedFlight& f) {
+    return f.air.laser && !f.air.temperature.empty();
+  });
+  if (!has_thermometer) return not_run(name, "the model names no thermometer to hold the laser against");
+  const Differences all = all_differences(flights);
+  const auto clear = [&](std::size_t i) { return !all.in_cloud[i]; };
+  const Part outside = part_of(all, "out of cloud", clear);
+  const Part inside = part_of(all, "in cloud", [&](std::size_t i) { return all.in_cloud[i]; });
+  if (outside.fit.samples < fewest_samples)
+    return not_run(name, "the laser and the thermometer have less than a minute out of cloud together");
+
+  CheckResult result;
+  result.name = name;
+  result.ran = true;
+  const Estimated offset = outside.fit.coefficients[0];
+  result.verdict = judge(offset, size_that_matters);
+  const std::vector<double> clear_values = where(all, clear);
+  const double noise =
+      noise_floor(clear_values, stretches_of(clear_values, all.time, all.step), all.step).rms;
+  result.finding = fmt::format(
+      "Out of cloud the laser's temperature less the thermometer's is {}, with a scatter of {:.2f} K, "
+      "of which {:.2f} K is noise",
+      with_error(offset, "K"), outside.fit.rms, noise);
+  result.numbers = {{"offset_k", offset.value},
+                    {"offset_stderr_k", offset.error},
+                    {"scatter_k", outside.fit.rms},
+                    {"noise_k", noise},
+                    {"samples", static_cast<double>(outside.fit.samples)}};
+  if (inside.fit.samples >= fewest_samples) {
+    const Estimated in_cloud_offset = inside.fit.coefficients[0];
+    result.finding += fmt::format("; in cloud it is {}", with_error(in_cloud_offset, "K"));
+    result.numbers.emplace_back("cloud_offset_k", in_cloud_offset.value);
+    result.numbers.emplace_back("cloud_offset_stderr_k", in_cloud_offset.error);
+    const Estimated change{in_cloud_offset.value - offset.value,
+                           std::hypot(in_cloud_offset.error, offset.error)};
+    if (judge(change, size_that_matters) == CheckVerdict::inconsistent) {
+      result.notes.push_back(
+          "in cloud the difference is another one: the thermometer gets wet (it reads low), or the laser's "
+          "window ices or its light is scattered by drops");
+    }
+  }
+  result.finding += ".";
+
+  const std::vector<PeriodNoise> by_period = noise_by_period(all);
+  ReportTable periods;
+  periods.title = "Noise of the difference by period";
+  periods.caption =
+      "K, of means over half the period: out of cloud, in the lowest kilometre above the field, and above "
+      "it.";
+  periods.headers = {"period, s", "lowest km", "above"};
+  const auto text = [](double kelvin) { return std::isnan(kelvin) ? "" : fmt::format("{:.3f}", kelvin); };
+  for (const PeriodNoise& each : by_period)
+    periods.rows.push_back({fmt::format("{:.0f}", each.period), text(each.near_ground), text(each.above)});
+  std::vector<Part> parts{
+      outside, inside,
+      part_of(all, "lowest km above the field, out of cloud",
+              [&](std::size_t i) { return all.near_ground[i] && clear(i); }),
+      part_of(all, "higher, out of cloud", [&](std::size_t i) { return !all.near_ground[i] && clear(i); })};
+  const auto [lowest, highest] = range_of(all.altitude);
+  for (double from = std::floor(lowest / altitude_band) * altitude_band; from < highest;
+       from += altitude_band) {
+    parts.push_back(part_of(
+        all, fmt::format("{:.0f} to {:.0f} m, out of cloud", from, from + altitude_band), [&](std::size_t i) {
+          return all.altitude[i] >= from && all.altitude[i] < from + altitude_band && clear(i);
+        }));
+  }
+  result.tables.push_back(part_table(parts));
+  result.tables.push_back(std::move(periods));
+  std::size_t suspect = 0;
+  ReportTable clouds;
+  clouds.title = "Clouds";
+  clouds.caption = "ATLAMS less the thermometer in each cloud of 30 samples or more.";
+  clouds.headers = {"flight", "begin (UTC)", "end", "laser missing, %", "mean, K", "std. error", "remark"};
+  for (const CheckedFlight& flight : flights) {
+    if (flight.air.laser && !flight.air.temperature.empty())
+      suspect += look_at_clouds(flight.air, offset.value, clouds);
+  }
+  if (suspect > 0) {
+    result.notes.push_back(fmt::format("{} of {} clouds look suspect: the table of clouds names them",
+                                       suspect, clouds.rows.size()));
+  }
+  if (!clouds.rows.empty()) result.tables.push_back(std::move(clouds));
+  result.cannot_see =
+      "It is independent of the thermometer as far as the fit of delta-p is: the thermometer took part in "
+      "that, "
+      "so an error that the whole fit shares is hidden, and with delta-p from LAMS sample by sample the "
+      "laser's "
+      "temperature would be the thermometer's exactly, whatever is wrong. An offset of the thermometer, a "
+      "wrong "
+      "recovery factor, the scale of the laser and the elevation of its beam look alike.";
+  add_pictures(flights, by_period, result);
+  return result;
+}
+
+}  // namespace pcor

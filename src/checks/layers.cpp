@@ -1,0 +1,231 @@
+#include "../layers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "flown.hpp"
+#include "pcor/offline/utc.hpp"
+
+namespace pcor {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// The smallest error of the thermometer that matters, K: the typical one (memo, after eq. 22).
+constexpr double size_that_matters = 0.3;
+
+/// A line with more error at 0 degC, K, is not worth telling.
+constexpr double largest_useful_error = 1.0;
+
+/// Why a flight has no layers; empty where it has.
+std::string trouble_with(const FlightAir& air, const FlightLayers& found) {
+  if (air.temperature.empty()) return "the model names no thermometer, so there is no temperature to check";
+  if (const std::string trouble = trouble_with_height(air); !trouble.empty()) return trouble;
+  if (!found.layers.empty()) return "";
+  const LayerOptions options;
+  return fmt::format(
+      "there is no climb or descent of {:.0f} m at {:.0f} m/s or more without a gap in pressure, temperature "
+      "or GPS height",
+      options.least_thickness, options.least_climb_rate);
+}
+
+ReportTable layer_table(const std::vector<FlightLayers>& flights) {
+  ReportTable table;
+  table.title = "Layers";
+  table.caption =
+      "T_p is what height and pressure say, T_m what the thermometer says; both are means over the height of "
+      "the layer. The error is that of T_p.";
+  table.headers = {"flight",    "begin (UTC)", "end",          "from, m", "to, m",
+                   "T_p, degC", "T_m, degC",   "T_p - T_m, K", "error, K"};
+  for (const FlightLayers& flight : flights) {
+    for (const Layer& layer : flight.layers) {
+      table.rows.push_back(
+          {flight.flight, utc_text(layer.begin), utc_text(layer.end, "%H:%M:%S"),
+           fmt::format("{:.0f}", layer.height_begin), fmt::format("{:.0f}", layer.height_end),
+           fmt::format("{:.2f}", layer.hydrostatic_temperature() - constants::ice_point),
+           fmt::format("{:.2f}", layer.measured_temperature() - constants::ice_point),
+           fmt::format("{:+.2f}", layer.difference()), fmt::format("{:.2f}", layer.errors.total())});
+    }
+  }
+  return table;
+}
+
+ReportTable error_table(const std::vector<FlightLayers>& flights) {
+  ReportTable table;
+  table.title = "Where the error of a layer comes from";
+  table.caption =
+      "Standard errors of T_p, K. Noise counts at the two ends of a layer alone, because the steps between "
+      "them cancel, and does not fall with the number of samples.";
+  table.headers = {"flight",
+                   "begin (UTC)",
+                   "GPS height",
+                   "pressure noise",
+                   "constant error of delta-p",
+                   "changing error of delta-p",
+                   "slope of the isobars"};
+  const auto kelvin = [](double error) { return fmt::format("{:.2f}", error); };
+  for (const FlightLayers& flight : flights) {
+    for (const Layer& layer : flight.layers) {
+      table.rows.push_back({flight.flight, utc_text(layer.begin), kelvin(layer.errors.height_noise),
+                            kelvin(layer.errors.pressure_noise), kelvin(layer.errors.static_bias),
+                            kelvin(layer.errors.static_change), kelvin(layer.errors.gradient)});
+    }
+  }
+  return table;
+}
+
+/// A number of each layer at the records of its flight that are in it.
+std::vector<double> spread(const CheckedFlight& flight, const FlightLayers& found,
+                           double (Layer::*number)() const, double less) {
+  std::vector<double> values(flight.air.size(), nan);
+  for (const Layer& layer : found.layers) {
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(layer.first);
+    std::fill(begin, begin + static_cast<std::ptrdiff_t>(layer.last - layer.first + 1),
+              (layer.*number)() - less);
+  }
+  return values;
+}
+
+void add_pictures(const CheckedFlights& flights, const std::vector<FlightLayers>& all, CheckResult& result) {
+  BarPanel bars;
+  bars.title = "What the thermometer lacks";
+  bars.caption =
+      "T_p - T_m of every layer. Errors are shared: layers of one climb have an end in common, and those of "
+      "one flight the slope of the isobars.";
+  bars.axis = "T_p - T_m";
+  bars.unit = "K";
+  for (const FlightLayers& flight : all) {
+    for (const Layer& layer : flight.layers) {
+      bars.bars.push_back({fmt::format("{} {:.0f} to {:.0f} m", utc_text(layer.begin, "%H:%M"),
+                                       layer.height_begin, layer.height_end),
+                           layer.difference(), layer.errors.total()});
+    }
+  }
+  result.pictures.emplace_back(std::move(bars));
+  const auto column = [&](const char* name, const char* title, double (Layer::*number)() const, double less,
+                          const char* unit) {
+    result.columns.push_back(column_of(flights, name, title, unit, [&](const CheckedFlight& flight) {
+      return spread(flight, all[static_cast<std::size_t>(&flight - flights.data())], number, less);
+    }));
+  };
+  column("layers hydrostatic", "T_p, hydrostatic", &Layer::hydrostatic_temperature, constants::ice_point,
+         "degC");
+  column("layers measured", "T_m, thermometer", &Layer::measured_temperature, constants::ice_point, "degC");
+  result.columns.push_back(
+      column_of(flights, "layers d-value", "D-value", "m", [](const CheckedFlight& flight) {
+        std::vector<double> values = flight.air.d_value;
+        for (std::size_t i = 0; i < values.size(); ++i) {
+          if (!flight.air.flying[i]) values[i] = nan;
+        }
+        return values;
+      }));
+  TimePanel temperatures;
+  temperatures.title = "Temperature of the layers";
+  temperatures.caption = "One line over each layer.";
+  temperatures.columns = {"layers hydrostatic", "layers measured"};
+  temperatures.axis = "temperature";
+  result.pictures.emplace_back(std::move(temperatures));
+  TimePanel heights;
+  heights.title = "D-value";
+  heights.caption =
+      "Geopotential height less pressure altitude. In level flight its slope is that of the isobars along "
+      "the "
+      "track; in a climb it follows the temperature of the air.";
+  heights.columns = {"layers d-value"};
+  result.pictures.emplace_back(std::move(heights));
+}
+
+}  // namespace
+
+CheckResult check_layers(const CheckedFlights& flights) {
+  CheckResult result;
+  std::vector<FlightLayers> all;
+  std::string trouble;
+  for (const CheckedFlight& flight : flights) {
+    FlightLayers found;
+    if (!flight.air.temperature.empty() && trouble_with_height(flight.air).empty())
+      found = find_layers(flight.air);
+    found.flight = flight.air.samples->name;
+    const std::string reason = trouble_with(flight.air, found);
+    if (!reason.empty()) {
+      if (trouble.empty()) trouble = fmt::format("{}: {}", found.flight, reason);
+      result.notes.push_back(fmt::format("{}: {}", found.flight, reason));
+      found.layers.clear();
+    }
+    for (const std::string& note : found.notes)
+      result.notes.push_back(fmt::format("{}: {}", found.flight, note));
+    all.push_back(std::move(found));
+  }
+  const LayerFit fit = fit_layers(all);
+  if (fit.layers == 0) return not_run("layers", trouble.empty() ? "there is no flight" : trouble);
+
+  result.name = "layers";
+  result.ran = true;
+  result.verdict = judge({fit.offset, fit.offset_error}, size_that_matters);
+  result.finding =
+      fmt::format("Over {} layer{} the hydrostatic equation asks for {} on the thermometer", fit.layers,
+                  fit.layers == 1 ? "" : "s", with_error({fit.offset, fit.offset_error}, "K"));
+  double coldest = std::numeric_limits<double>::infinity();
+  double warmest = -coldest;
+  for (const FlightLayers& flight : all) {
+    for (const Layer& layer : flight.layers) {
+      coldest = std::min(coldest, layer.measured_temperature());
+      warmest = std::max(warmest, layer.measured_temperature());
+    }
+  }
+  if (std::isnan(fit.c1)) {
+    result.finding += fmt::format(
+        "; the layers are too few or too alike ({:.0f} to {:.0f} degC) to tell how it changes with "
+        "temperature.",
+        coldest - constants::ice_point, warmest - constants::ice_point);
+  } else {
+    const double range = warmest - coldest;
+    if (judge({fit.c1 * range, fit.c1_error * range}, size_that_matters) == CheckVerdict::inconsistent)
+      result.verdict = CheckVerdict::inconsistent;
+    const Estimated slope{fit.c1, fit.c1_error};
+    const Estimated at_freezing{fit.correction_at(constants::ice_point),
+                                fit.correction_error_at(constants::ice_point)};
+    result.finding +=
+        at_freezing.error > largest_useful_error
+            ? fmt::format("; how it changes from {:.0f} to {:.0f} degC they leave open ({} for each degree).",
+                          coldest - constants::ice_point, warmest - constants::ice_point,
+                          with_error(slope, "K", 3))
+            : fmt::format("; as a line, {} at 0 degC and {} for each degree.", with_error(at_freezing, "K"),
+                          with_error(slope, "K", 4));
+    const double absolute = fit.correction_at(0.0);
+    result.notes.push_back(fmt::format(
+        "in the memo's form, T_m + c0 + c1 T_m with absolute temperatures, c0 is {} and c1 {}; their "
+        "errors are all but the same error",
+        with_error({absolute, fit.correction_error_at(0.0)}, "K"),
+        with_error({fit.c1, fit.c1_error}, "K/K", 4)));
+  }
+  if (fit.error_scale > 1.0) {
+    result.notes.push_back(fmt::format(
+        "the layers scatter {:.2f} times as much as their errors allow; the errors of the fit have been "
+        "made larger by that",
+        fit.error_scale));
+  }
+  result.cannot_see =
+      "Which of thermometer, pressure and height is wrong: an error of delta-p that grows with height, and "
+      "isobars that slope along the track, look like a warmer or colder layer; a constant error of delta-p "
+      "is "
+      "all but cancelled between the ends, so it is not seen at all. An offset of the thermometer, a wrong "
+      "recovery factor, heat of de-icing and neglected humidity look alike. A thermometer or a static line "
+      "that lags errs up and down with opposite signs.";
+  result.numbers = {{"offset_k", fit.offset},
+                    {"offset_stderr_k", fit.offset_error},
+                    {"offset_at_0_degc_k", fit.correction_at(constants::ice_point)},
+                    {"offset_at_0_degc_stderr_k", fit.correction_error_at(constants::ice_point)},
+                    {"slope", fit.c1},
+                    {"slope_stderr", fit.c1_error},
+                    {"layers", static_cast<double>(fit.layers)}};
+  result.tables.push_back(layer_table(all));
+  result.tables.push_back(error_table(all));
+  add_pictures(flights, all, result);
+  return result;
+}
+
+}  // namespace pcor

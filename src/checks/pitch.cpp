@@ -1,0 +1,22 @@
+#include "angle_sensitivity.hpp"
+
+namespace pcor {
+
+CheckResult check_pitch(const CheckedFlights& flights) {
+  AngleCheck check;
+  check.name = "pitch";
+  check.angle = "angle of attack";
+  check.regime = Regime::pitch_manoeuvre;
+  check.witnesses = {Witness::laser, Witness::height, Witness::second_system};
+  check.angle_of = attack_of;
+  check.ratio_of = [](const FlightAir& air) -> const std::vector<double>& { return air.attack_ratio; };
+  check.variables = "ATTACK or AKRD; [variables] attack names another";
+  check.cannot_see =
+      "What goes with the angle of attack in a pitch manoeuvre and is not it: the load factor, and with a "
+      "lag "
+      "the change of pressure as the aircraft rises and sinks. An error of the elevation of the laser's beam "
+      "looks like a slope too.";
+  return run_angle_check(flights, check);
+}
+
+}  // namespace pcor

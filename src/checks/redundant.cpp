@@ -1,0 +1,111 @@
+#include "redundant.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pcor/offline/noise.hpp"
+
+namespace pcor {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// For how many samples one independent one stands, in the distances from a line.
+double memory_of(const LineFit& line, const Redundant& both) {
+  std::vector<double> left(both.first.size());
+  for (std::size_t i = 0; i < left.size(); ++i)
+    left[i] = both.second[i] - line.offset - line.slope * both.first[i];
+  return mean_of(left, both.time, both.step).samples_per_independent;
+}
+
+LineFit with_memory(LineFit line, const Redundant& both) {
+  const double root = std::sqrt(memory_of(line, both));
+  line.slope_error *= root;
+  line.offset_error *= root;
+  return line;
+}
+
+}  // namespace
+
+Redundant redundant(const CheckedFlights& flights, const SeriesOfFlight& first, const SeriesOfFlight& second,
+                    const std::function<std::vector<bool>(const CheckedFlight&)>& used) {
+  Redundant both;
+  for (const CheckedFlight& flight : flights) {
+    const std::vector<double> a = first(flight);
+    const std::vector<double> b = second(flight);
+    if (a.empty() || b.empty()) continue;
+    const std::vector<bool> in_use = used(flight);
+    both.step = flight.air.step();
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const bool known = in_use[i] && std::isfinite(a[i]) && std::isfinite(b[i]);
+      both.first.push_back(known ? a[i] : nan);
+      both.second.push_back(known ? b[i] : nan);
+      both.time.push_back(flight.air.time()[i]);
+    }
+  }
+  return both;
+}
+
+RedundantFit fit_of(const Redundant& both) {
+  RedundantFit fit;
+  fit.ordinary = with_memory(ordinary_fit(both.first, both.second), both);
+  fit.orthogonal = with_memory(orthogonal_fit(both.first, both.second), both);
+  std::vector<double> difference(both.first.size());
+  for (std::size_t i = 0; i < difference.size(); ++i) difference[i] = both.second[i] - both.first[i];
+  const LeastSquares mean = mean_of(difference, both.time, both.step);
+  fit.difference = mean.coefficients.front();
+  fit.scatter = mean.rms;
+  fit.samples = mean.samples;
+  const auto [least, greatest] = range_of(both.first);
+  fit.across = {(fit.orthogonal.slope - 1.0) * (greatest - least),
+                fit.orthogonal.slope_error * (greatest - least)};
+  return fit;
+}
+
+std::vector<bool> steady(const CheckedFlight& flight, const std::vector<double>& pressure, double fastest) {
+  const std::vector<double>& time = flight.air.time();
+  const auto reach = static_cast<std::size_t>(std::max(1.0, std::round(2.5 / flight.air.step())));
+  std::vector<bool> result(pressure.size(), false);
+  for (std::size_t i = reach; i + reach < pressure.size(); ++i) {
+    const double rate = (pressure[i + reach] - pressure[i - reach]) / (time[i + reach] - time[i - reach]);
+    result[i] = flight.air.flying[i] && std::abs(rate) <= fastest;
+  }
+  return result;
+}
+
+void add_numbers(const RedundantFit& fit, CheckResult& result) {
+  result.numbers.insert(result.numbers.end(), {{"slope", fit.ordinary.slope},
+                                               {"slope_stderr", fit.ordinary.slope_error},
+                                               {"offset_hpa", fit.ordinary.offset},
+                                               {"offset_stderr_hpa", fit.ordinary.offset_error},
+                                               {"rms_hpa", fit.ordinary.rms},
+                                               {"mean_difference_hpa", fit.difference.value},
+                                               {"mean_difference_stderr_hpa", fit.difference.error},
+                                               {"scatter_hpa", fit.scatter},
+                                               {"orthogonal_slope", fit.orthogonal.slope},
+                                               {"orthogonal_slope_stderr", fit.orthogonal.slope_error},
+                                               {"orthogonal_offset_hpa", fit.orthogonal.offset},
+                                               {"orthogonal_offset_stderr_hpa", fit.orthogonal.offset_error},
+                                               {"orthogonal_rms_hpa", fit.orthogonal.rms},
+                                               {"samples", static_cast<double>(fit.samples)}});
+}
+
+ReportTable table_of(const RedundantFit& fit, const std::string& title) {
+  ReportTable table;
+  table.title = title;
+  table.caption = "Standard errors know the memory of the differences. The offset is that at 0 hPa.";
+  table.headers = {"fit", "slope", "std. error", "offset, hPa", "std. error", "rms, hPa"};
+  const auto row = [&](const char* name, const LineFit& line) {
+    table.rows.push_back({name, fmt::format("{:.6f}", line.slope), fmt::format("{:.6f}", line.slope_error),
+                          fmt::format("{:+.3f}", line.offset), fmt::format("{:.3f}", line.offset_error),
+                          fmt::format("{:.3f}", line.rms)});
+  };
+  row("ordinary", fit.ordinary);
+  row("orthogonal", fit.orthogonal);
+  return table;
+}
+
+}  // namespace pcor

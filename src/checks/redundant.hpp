@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "flown.hpp"
+#include "pcor/offline/line_fit.hpp"
+
+namespace pcor {
+
+/// Two measurements of one pressure over all flights, one flight after another, NaN where either may not be
+/// used.
+struct Redundant {
+  std::vector<double> first{};   ///< hPa
+  std::vector<double> second{};  ///< hPa
+  std::vector<double> time{};    ///< s since 1970 UTC
+  double step = 1.0;             ///< s
+};
+
+/// The lines through them and the mean of their difference, with errors for the memory of what is left.
+struct RedundantFit {
+  LineFit ordinary{};       ///< second on first: all noise is in the second
+  LineFit orthogonal{};     ///< both have equal noise
+  Estimated difference{};   ///< mean of second less first, hPa
+  double scatter = 0.0;     ///< of the difference, hPa
+  Estimated across{};       ///< how the difference changes from the least to the greatest pressure, hPa
+  std::size_t samples = 0;  ///< in use
+};
+
+/// The first series against the second at the records that are `used`, over all flights. Both may be empty
+/// for a flight.
+using SeriesOfFlight = std::function<std::vector<double>(const CheckedFlight&)>;
+Redundant redundant(const CheckedFlights& flights, const SeriesOfFlight& first, const SeriesOfFlight& second,
+                    const std::function<std::vector<bool>(const CheckedFlight&)>& used);
+
+RedundantFit fit_of(const Redundant& both);
+
+/// The records in the air at which neither pressure changes by more than `fastest`, hPa/s, over five seconds.
+std::vector<bool> steady(const CheckedFlight& flight, const std::vector<double>& pressure, double fastest);
+
+/// The numbers of a fit for scripts, those of the interface first.
+void add_numbers(const RedundantFit& fit, CheckResult& result);
+
+/// The two fits as a table.
+ReportTable table_of(const RedundantFit& fit, const std::string& title);
+
+}  // namespace pcor

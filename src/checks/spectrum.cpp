@@ -1,0 +1,294 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <unsupported/Eigen/FFT>
+
+#include "flown.hpp"
+#include "pcor/offline/line_fit.hpp"
+#include "pcor/offline/noise.hpp"
+#include "pcor/physics/geodesy.hpp"
+
+namespace pcor {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double pi = 3.14159265358979323846;
+
+/// The largest noise of delta-p that does no harm, hPa: the rms of the memo's fits (eq. 18 and 20).
+constexpr double size_that_matters = 0.3;
+constexpr std::size_t segment_length = 256;  // samples
+constexpr std::size_t fewest_segments = 8;   // for a slope with an error
+constexpr double flattest_fall = -0.8;       // half of -5/3: nearer to a white floor than to turbulence
+constexpr double margin = 2.0;               // standard errors
+
+/// What the spectrum is of.
+struct Source {
+  std::string name;  ///< "delta-p from LAMS"
+  std::vector<double> (*series)(const CheckedFlight& flight);
+};
+
+std::vector<double> in_flight(std::vector<double> values, const FlightAir& air) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!air.flying[i]) values[i] = nan;
+  }
+  return values;
+}
+
+std::vector<double> laser_defect(const CheckedFlight& flight) {
+  if (!flight.air.laser) return {};
+  return in_flight(flight.air.laser->static_defect, flight.air);
+}
+
+std::vector<double> second_system(const CheckedFlight& flight) {
+  if (!flight.second || flight.second->pressure.size() != flight.air.size()) return {};
+  std::vector<double> difference = flight.second->pressure;
+  for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= flight.air.pressure[i];
+  return in_flight(std::move(difference), flight.air);
+}
+
+/// What D-value is as a pressure: rho g for each metre.
+std::vector<double> d_value_as_pressure(const CheckedFlight& flight) {
+  const FlightAir& air = flight.air;
+  if (air.d_value.empty() || air.temperature.empty() || !trouble_with_height(air).empty()) return {};
+  std::vector<double> values(air.size());
+  for (std::size_t i = 0; i < air.size(); ++i)
+    values[i] = air.d_value[i] * constants::standard_gravity * air.pressure[i] /
+                (air.gas_constant[i] * air.temperature[i]);
+  return in_flight(std::move(values), air);
+}
+
+/// Power spectral densities, one for each segment.
+struct Spectrum {
+  double step = 1.0;                                ///< s
+  std::vector<std::vector<double>> periodograms{};  ///< hPa2/Hz at k/(256 steps), k = 1 to 128
+
+  double frequency(std::size_t k) const { return static_cast<double>(k + 1) / (segment_length * step); }
+  double mean(std::size_t k) const {
+    double sum = 0.0;
+    for (const std::vector<double>& each : periodograms) sum += each[k];
+    return sum / static_cast<double>(periodograms.size());
+  }
+};
+
+/// One-sided periodogram of a segment without its line, through Hann's window. Sums to the variance.
+std::vector<double> periodogram(const double* values, double step) {
+  std::vector<double> times(segment_length);
+  for (std::size_t i = 0; i < segment_length; ++i) times[i] = static_cast<double>(i);
+  const LineFit line = ordinary_fit(times, std::vector<double>(values, values + segment_length));
+  std::vector<double> windowed(segment_length);
+  double power = 0.0;
+  for (std::size_t i = 0; i < segment_length; ++i) {
+    const double window =
+        0.5 - 0.5 * std::cos(2.0 * pi * (static_cast<double>(i) + 0.5) / static_cast<double>(segment_length));
+    windowed[i] = window * (values[i] - line.offset - line.slope * times[i]);
+    power += window * window;
+  }
+  Eigen::FFT<double> transform;
+  std::vector<std::complex<double>> amplitudes;
+  transform.fwd(amplitudes, windowed);
+  std::vector<double> density(segment_length / 2);
+  for (std::size_t k = 0; k < density.size(); ++k) {
+    const double sides = k + 1 == segment_length / 2 ? 1.0 : 2.0;
+    density[k] = sides * std::norm(amplitudes[k + 1]) * step / power;
+  }
+  return density;
+}
+
+Spectrum spectrum_of(const CheckedFlights& flights, const Source& source) {
+  Spectrum spectrum;
+  spectrum.step = flights.front().air.step();
+  for (const CheckedFlight& flight : flights) {
+    const std::vector<double> values = source.series(flight);
+    if (values.empty() || flight.air.step() != spectrum.step) continue;
+    for (const Stretch& stretch : stretches_of(values, flight.air.time(), flight.air.step())) {
+      for (std::size_t first = 0; first + segment_length <= stretch.count; first += segment_length / 2)
+        spectrum.periodograms.push_back(periodogram(&values[stretch.first + first], spectrum.step));
+    }
+  }
+  return spectrum;
+}
+
+/// The slope of log power over log frequency in the last two octaves, from the segments one by one: their
+/// scatter is its error. (Half of each segment is that of the next, which through Hann's window are all but
+/// independent.)
+Estimated fall_of(const Spectrum& spectrum) {
+  std::vector<double> slopes;
+  for (const std::vector<double>& each : spectrum.periodograms) {
+    std::vector<double> x;
+    std::vector<double> y;
+    // The last frequency has another distribution.
+    for (std::size_t k = segment_length / 8 - 1; k + 1 < segment_length / 2; ++k) {
+      if (!(each[k] > 0.0)) continue;
+      x.push_back(std::log(spectrum.frequency(k)));
+      y.push_back(std::log(each[k]));
+    }
+    const LineFit line = ordinary_fit(x, y);
+    if (std::isfinite(line.slope)) slopes.push_back(line.slope);
+  }
+  if (slopes.size() < 2) return {nan, nan};
+  const auto count = static_cast<double>(slopes.size());
+  return {mean_value(slopes), standard_deviation(slopes) / std::sqrt(count)};
+}
+
+std::string in_words(const Estimated& fall) {
+  if (fall.value - margin * fall.error > flattest_fall)
+    return "so the spectrum flattens towards a floor of noise or resolution";
+  if (fall.value + margin * fall.error < flattest_fall)
+    return "so it still falls, as that of turbulence (-5/3) does, and the noise is below this";
+  return "which is too uncertain to tell a floor of noise from turbulence (-5/3)";
+}
+
+struct Octave {
+  double longest;  ///< s
+  double shortest;
+  double rms;    ///< hPa
+  double error;  ///< hPa
+};
+
+std::vector<Octave> octaves_of(const Spectrum& spectrum) {
+  std::vector<Octave> octaves;
+  for (std::size_t last = segment_length / 2; last >= 2; last /= 2) {
+    // Places of the frequencies above last/2 and up to last.
+    std::vector<double> power;
+    for (const std::vector<double>& each : spectrum.periodograms) {
+      double sum = 0.0;
+      for (std::size_t k = last / 2; k < last; ++k) sum += each[k] / (segment_length * spectrum.step);
+      power.push_back(sum);
+    }
+    const double rms = std::sqrt(mean_value(power));
+    const double error =
+        power.size() < 2 || !(rms > 0.0)
+            ? 0.0
+            : standard_deviation(power) / std::sqrt(static_cast<double>(power.size())) / (2.0 * rms);
+    const double length = static_cast<double>(segment_length) * spectrum.step;
+    octaves.push_back(
+        {length / static_cast<double>(last) * 2.0, length / static_cast<double>(last), rms, error});
+  }
+  return octaves;
+}
+
+/// The white noise that has the density of the highest octave at all frequencies: its rms, hPa.
+Estimated floor_of(const Octave& highest) {
+  // The octave is the upper half of all frequencies.
+  return {std::sqrt(2.0) * highest.rms, std::sqrt(2.0) * highest.error};
+}
+
+/// How much delta-p from LAMS changes with the airspeed, hPa per m/s: gamma M^2 p/((1 + 0.2 M^2) v), the mean
+/// of all that was flown.
+double pressure_per_speed(const CheckedFlights& flights) {
+  std::vector<double> sensitivities;
+  for (const CheckedFlight& flight : flights) {
+    const FlightAir& air = flight.air;
+    for (std::size_t i = 0; i < air.airspeed.size(); ++i) {
+      const double square = air.mach[i] * air.mach[i];
+      if (air.flying[i])
+        sensitivities.push_back(1.4 * square * air.pressure[i] / ((1.0 + 0.2 * square) * air.airspeed[i]));
+    }
+  }
+  return mean_value(sensitivities);
+}
+
+/// The smallest step between recorded static pressures, hPa; NaN where nothing changes.
+double resolution_of(const CheckedFlights& flights) {
+  double least = nan;
+  for (const CheckedFlight& flight : flights) {
+    const std::vector<double>& pressure = flight.air.measured_static;
+    for (std::size_t i = 1; i < pressure.size(); ++i) {
+      const double step = std::abs(pressure[i] - pressure[i - 1]);
+      if (step > 0.0 && !(step >= least)) least = step;
+    }
+  }
+  return least;
+}
+
+}  // namespace
+
+CheckResult check_spectrum(const CheckedFlights& flights) {
+  const std::string name = "spectrum";
+  if (flights.empty()) return not_run(name, "there is no flight");
+  const std::vector<Source> sources{{"delta-p from LAMS", laser_defect},
+                                    {"the difference of the two static systems", second_system},
+                                    {"the D-value, as a pressure,", d_value_as_pressure}};
+  Spectrum spectrum;
+  const Source* source = nullptr;
+  for (const Source& each : sources) {
+    spectrum = spectrum_of(flights, each);
+    source = &each;
+    if (spectrum.periodograms.size() >= fewest_segments) break;
+  }
+  if (spectrum.periodograms.size() < fewest_segments) {
+    return not_run(name, fmt::format("no flight has a laser, a second static system or a GPS height over {} "
+                                     "stretches of {} samples without a gap, in the air",
+                                     fewest_segments, segment_length));
+  }
+  const std::vector<Octave> octaves = octaves_of(spectrum);
+  const Estimated fall = fall_of(spectrum);
+  const Estimated floor = floor_of(octaves.front());
+  const double per_speed = pressure_per_speed(flights);
+
+  CheckResult result;
+  result.name = name;
+  result.ran = true;
+  result.verdict = judge(floor, size_that_matters);
+  result.finding =
+      fmt::format("At the highest frequencies {} has the power of white noise of {:.3f} +- {:.3f} hPa",
+                  source->name, floor.value, floor.error);
+  if (std::isfinite(per_speed))
+    result.finding += fmt::format(" (that of {:.2f} m/s of airspeed)", floor.value / per_speed);
+  result.finding += fmt::format("; over the last two octaves power goes as frequency to the {}, {}.",
+                                with_error(fall, ""), in_words(fall));
+  const double resolution = resolution_of(flights);
+  if (std::isfinite(resolution)) {
+    result.notes.push_back(
+        fmt::format("the static pressure is recorded in steps of {:.2g} hPa at the least, which makes white "
+                    "noise of {:.2g} hPa",
+                    resolution, resolution / std::sqrt(12.0)));
+  }
+  result.cannot_see =
+      "Which sensor the noise is of: pressures, thermometer, laser and the air between laser and pitot tube "
+      "add "
+      "up. Noise of the transducers and small eddies look alike where the spectrum does not flatten, and "
+      "means "
+      "over the sample interval hide part of both. It says nothing of errors that last longer than two "
+      "minutes.";
+  result.numbers = {{"floor_hpa", floor.value},
+                    {"floor_stderr_hpa", floor.error},
+                    {"floor_m_s", floor.value / per_speed},
+                    {"slope", fall.value},
+                    {"slope_stderr", fall.error},
+                    {"segments", static_cast<double>(spectrum.periodograms.size())}};
+  ReportTable table;
+  table.title = "Power by period";
+  table.caption = fmt::format("Of {}, over {} segments of {} samples.", source->name,
+                              spectrum.periodograms.size(), segment_length);
+  table.headers = {"periods, s", "rms, hPa", "std. error"};
+  BarPanel bars;
+  bars.title = "Power by period";
+  bars.caption =
+      "Rms in octaves of the period. White noise has bars that fall by the square root of two from one "
+      "octave "
+      "to the next longer one; turbulence has bars that grow.";
+  bars.axis = "rms";
+  bars.unit = "hPa";
+  for (const Octave& octave : octaves) {
+    const std::string periods = fmt::format("{:.3g} to {:.3g} s", octave.shortest, octave.longest);
+    table.rows.push_back({periods, fmt::format("{:.4f}", octave.rms), fmt::format("{:.4f}", octave.error)});
+    bars.bars.push_back({periods, octave.rms, octave.error});
+  }
+  result.tables.push_back(std::move(table));
+  result.pictures.emplace_back(std::move(bars));
+  result.columns.push_back(
+      column_of(flights, "spectrum series", "what the spectrum is of", "hPa",
+                [source](const CheckedFlight& flight) { return source->series(flight); }));
+  TimePanel series;
+  series.title = "What the spectrum is of";
+  series.caption = fmt::format("In time: {}.", source->name);
+  series.columns = {"spectrum series"};
+  result.pictures.emplace_back(std::move(series));
+  return result;
+}
+
+}  // namespace pcor

@@ -1,0 +1,255 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "flown.hpp"
+#include "leg_pair.hpp"
+#include "pcor/offline/utc.hpp"
+#include "pcor/physics/constants.hpp"
+#include "pcor/physics/geodesy.hpp"
+
+namespace pcor {
+namespace {
+
+/// The smallest error of delta-p from the slow to the fast end of a run that matters, hPa.
+constexpr double size_that_matters = 0.3;
+
+/// What changes between the slow and the fast end of a run and is too slow for its samples to show as noise:
+/// the wind of the scale of a run, m/s, and the error of a GPS height, m. In simulated air (0.3 m/s rms of
+/// mesoscale drift with a memory of 300 s, 0.15 m of GPS with one of 60 s) errors of runs are right with
+/// them.
+constexpr double change_of_wind = 0.2;
+constexpr double change_of_height = 0.15;
+
+/// How a series goes with the airspeed in a run.
+struct Trend {
+  double scatter = 0.0;        ///< standard deviation
+  double range = 0.0;          ///< greatest less least
+  Estimated slope{};           ///< per m/s of airspeed, beside a drift in time
+  Estimated pressure_error{};  ///< what delta-p is off by at the fast end if right at the slow end, hPa
+};
+
+struct Run {
+  Flown flown;
+  double airspeed_range = 0.0;  ///< m/s
+  Estimated dynamic_slope{};    ///< of DVALUE, m per hPa of dynamic pressure
+  Trend height;                 ///< DVALUE, m
+  Trend wind;                   ///< UXW, m/s
+};
+
+std::vector<double> less_mean(std::vector<double> values) {
+  const double mean = mean_value(values);
+  for (double& value : values) value -= mean;
+  return values;
+}
+
+/// A straight line against `x` with a drift in time beside it.
+Estimated slope_of(const std::vector<double>& y, const std::vector<double>& x, const Flown& flown) {
+  const std::vector<double> time = flown.time();
+  return least_squares({std::vector<double>(y.size(), 1.0), less_mean(time), less_mean(x)}, y, time,
+                       flown.step())
+      .coefficients[2];
+}
+
+/// @param per_unit what delta-p is off by for one unit of the series, hPa
+/// @param change that the series makes of itself from end to end
+Trend trend_of(const std::vector<double>& series, const Flown& flown, double airspeed_range, double per_unit,
+               double change) {
+  const std::vector<double> values = flown.of(series);
+  Trend trend;
+  trend.scatter = standard_deviation(values);
+  const auto [least, greatest] = range_of(values);
+  trend.range = greatest - least;
+  trend.slope = slope_of(values, flown.of(flown.flight->air.airspeed), flown);
+  const double across = airspeed_range * per_unit;
+  trend.pressure_error = {across * trend.slope.value,
+                          std::hypot(across * trend.slope.error, per_unit * change)};
+  return trend;
+}
+
+Run run_of(const Flown& flown) {
+  const FlightAir& air = flown.flight->air;
+  Run run;
+  run.flown = flown;
+  const auto [slow, fast] = range_of(flown.of(air.airspeed));
+  run.airspeed_range = fast - slow;
+  const double pressure = flown.mean(air.pressure);
+  const double weight = pressure / (flown.mean(air.gas_constant) * flown.mean(air.temperature)) *
+                        constants::standard_gravity;  // rho g: hPa per m
+  const std::vector<double> d_value = trouble_with_height(air).empty() ? air.d_value : std::vector<double>{};
+  run.height = trend_of(d_value, flown, run.airspeed_range, weight, change_of_height);
+  run.dynamic_slope = slope_of(flown.of(d_value), flown.of(air.dynamic), flown);
+  // The tail wind is too low where the airspeed is too high.
+  run.wind = trend_of(air.tail_wind, flown, run.airspeed_range,
+                      -pressure_per_airspeed(pressure, flown.mean(air.mach), flown.mean(air.airspeed)),
+                      change_of_wind);
+  return run;
+}
+
+bool known(const Trend& trend) { return std::isfinite(trend.slope.value); }
+
+std::vector<Estimated> errors_of(const std::vector<Run>& runs, Trend Run::*trend) {
+  std::vector<Estimated> errors;
+  for (const Run& run : runs) errors.push_back((run.*trend).pressure_error);
+  return errors;
+}
+
+/// Height and wind are blind to different errors, so one that is inconsistent is enough; else the one that is
+/// known better decides.
+CheckVerdict verdict_of(const Estimated& height, const Estimated& wind) {
+  const CheckVerdict of_height = judge(height, size_that_matters);
+  const CheckVerdict of_wind = judge(wind, size_that_matters);
+  for (const CheckVerdict verdict : {of_height, of_wind}) {
+    if (verdict == CheckVerdict::inconsistent) return verdict;
+  }
+  return !(height.error <= wind.error) && std::isfinite(wind.error) ? of_wind : of_height;
+}
+
+ReportTable table_of_heights(const std::vector<Run>& runs) {
+  ReportTable table;
+  table.title = "DVALUE in speed runs";
+  table.caption =
+      "Scatter and range of DVALUE (GPS height less pressure altitude), its slopes against the airspeed and "
+      "the dynamic pressure beside a drift in time, and the error of delta-p from the slow to the fast end "
+      "that the first slope stands for.";
+  table.headers = {"run",         "airspeed, m/s",    "sd, m",
+                   "range, m",    "slope, m per m/s", "slope, m per hPa of q",
+                   "delta-p, hPa"};
+  for (const Run& run : runs) {
+    if (!known(run.height)) continue;
+    table.rows.push_back({run.flown.where(), fmt::format("{:.0f}", run.airspeed_range),
+                          fmt::format("{:.1f}", run.height.scatter), fmt::format("{:.1f}", run.height.range),
+                          with_error(run.height.slope, "", 3), with_error(run.dynamic_slope, "", 3),
+                          with_error(run.height.pressure_error, "")});
+  }
+  return table;
+}
+
+ReportTable table_of_winds(const std::vector<Run>& runs) {
+  ReportTable table;
+  table.title = "Tail wind in speed runs";
+  table.caption =
+      "Scatter and range of the tail wind, its slope against the airspeed beside a drift in time, and the "
+      "error of delta-p from the slow to the fast end that it stands for.";
+  table.headers = {"run", "airspeed, m/s", "sd, m/s", "range, m/s", "slope, m/s per m/s", "delta-p, hPa"};
+  for (const Run& run : runs) {
+    if (!known(run.wind)) continue;
+    table.rows.push_back({run.flown.where(), fmt::format("{:.0f}", run.airspeed_range),
+                          fmt::format("{:.2f}", run.wind.scatter), fmt::format("{:.2f}", run.wind.range),
+                          with_error(run.wind.slope, "", 4), with_error(run.wind.pressure_error, "")});
+  }
+  return table;
+}
+
+void add_pictures(const CheckedFlights& flights, const std::vector<Run>& runs, CheckResult& result) {
+  const auto departures = [&](std::vector<double> FlightAir::*series) {
+    return [&runs, series](const CheckedFlight& flight) {
+      std::vector<double> values(flight.air.size(), std::nan(""));
+      for (const Run& run : runs) {
+        if (run.flown.flight != &flight) continue;
+        const std::vector<double> here = less_mean(run.flown.of(flight.air.*series));
+        for (std::size_t i = 0; i < here.size(); ++i) values[run.flown.places[i]] = here[i];
+      }
+      return values;
+    };
+  };
+  std::vector<Flown> all;
+  for (const Run& run : runs) all.push_back(run.flown);
+  result.columns.push_back(
+      column_of(flights, "speed-run airspeed", "true airspeed", "m/s",
+                [&](const CheckedFlight& flight) { return only_in(flight, all, flight.air.airspeed); }));
+  const auto panel = [&](const char* name, const char* title, const char* unit, const char* caption,
+                         std::vector<double> FlightAir::*series) {
+    result.columns.push_back(column_of(flights, name, title, unit, departures(series)));
+    BinnedPanel binned;
+    binned.title = fmt::format("{} in speed runs", title);
+    binned.caption = caption;
+    binned.y = {name};
+    binned.x_choices = {"speed-run airspeed"};
+    binned.samples_per_independent = 10.0;
+    result.pictures.emplace_back(std::move(binned));
+  };
+  panel("speed-run height", "DVALUE less its mean", "m",
+        "A pressure that errs with the speed makes a slope; the isobars that the aircraft crosses, a drift.",
+        &FlightAir::d_value);
+  panel("speed-run wind", "Tail wind less its mean", "m/s",
+        "The wind does not know how fast the aircraft flies: a slope is an error of the airspeed.",
+        &FlightAir::tail_wind);
+}
+
+}  // namespace
+
+CheckResult check_speed_run(const CheckedFlights& flights) {
+  const std::string name = "speed-run";
+  if (std::none_of(flights.begin(), flights.end(),
+                   [](const CheckedFlight& flight) { return !flight.air.airspeed.empty(); }))
+    return not_run(name, "no flight " + missing_for_tail_wind(flights));
+  std::vector<Flown> flown = all_flown(flights, Regime::speed_run);
+  if (flown.empty()) return not_run(name, not_flown(Regime::speed_run));
+  std::vector<Run> runs;
+  for (const Flown& each : flown) {
+    Run run = run_of(each);
+    if (known(run.height) || known(run.wind)) runs.push_back(std::move(run));
+  }
+  if (runs.empty()) {
+    const std::string wind = missing_for_tail_wind(flights);
+    return not_run(name, fmt::format("the speed runs have neither a DVALUE ({}) nor a tail wind{}",
+                                     trouble_with_height(flown.front().flight->air),
+                                     wind.empty() ? "" : " (no flight " + wind + ")"));
+  }
+  CheckResult result;
+  result.name = name;
+  result.ran = true;
+  const Estimated height = combined(errors_of(runs, &Run::height));
+  const Estimated wind = combined(errors_of(runs, &Run::wind));
+  const bool has_height = std::isfinite(height.value);
+  const bool has_wind = std::isfinite(wind.value);
+  result.verdict = verdict_of(height, wind);
+  const auto average = [&](Trend Run::*trend, double Trend::*number) {
+    std::vector<double> values;
+    for (const Run& run : runs) values.push_back(run.*trend.*number);
+    return mean_value(values);
+  };
+  result.finding = fmt::format("Over {} speed run{}", runs.size(), runs.size() == 1 ? "" : "s");
+  if (has_height) {
+    result.finding += fmt::format(
+        " DVALUE scatters by {:.1f} m and goes with the airspeed as if delta-p were off by {} from the slow "
+        "to "
+        "the fast end",
+        average(&Run::height, &Trend::scatter), with_error(height, "hPa"));
+  } else {
+    result.notes.push_back("DVALUE takes no part: " + trouble_with_height(runs.front().flown.flight->air));
+  }
+  if (has_wind) {
+    result.finding += fmt::format(
+        "{} the tail wind scatters by {:.2f} m/s, over a range of {:.1f} m/s, and goes with the airspeed as "
+        "if "
+        "it were {}",
+        has_height ? ";" : "", average(&Run::wind, &Trend::scatter), average(&Run::wind, &Trend::range),
+        with_error(wind, "hPa"));
+  } else {
+    result.notes.push_back("the tail wind takes no part: no flight " + missing_for_tail_wind(flights));
+  }
+  result.finding += ".";
+  result.cannot_see =
+      "Errors that are the same at all speeds, such as an offset of a transducer; and what goes with the "
+      "speed "
+      "in these runs alone: angle of attack, thrust and dynamic pressure change together.";
+  result.numbers = {{"runs", static_cast<double>(runs.size())},
+                    {"d_value_sd_m", average(&Run::height, &Trend::scatter)},
+                    {"d_value_range_m", average(&Run::height, &Trend::range)},
+                    {"tail_wind_sd_m_s", average(&Run::wind, &Trend::scatter)},
+                    {"tail_wind_range_m_s", average(&Run::wind, &Trend::range)},
+                    {"delta_p_across_hpa", height.value},
+                    {"delta_p_across_stderr_hpa", height.error},
+                    {"delta_p_across_from_wind_hpa", wind.value},
+                    {"delta_p_across_from_wind_stderr_hpa", wind.error}};
+  for (ReportTable table : {table_of_heights(runs), table_of_winds(runs)}) {
+    if (!table.rows.empty()) result.tables.push_back(std::move(table));
+  }
+  add_pictures(flights, runs, result);
+  return result;
+}
+
+}  // namespace pcor

@@ -1,0 +1,90 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "redundant.hpp"
+
+namespace pcor {
+namespace {
+
+/// The smallest difference of two corrected static pressures that matters, hPa: the rms with which the memo's
+/// fits meet LAMS (R47).
+constexpr double size_that_matters = 0.3;
+
+bool has_second(const CheckedFlight& flight) { return flight.second.has_value(); }
+
+std::vector<double> own(const CheckedFlight& flight) {
+  return has_second(flight) ? flight.air.pressure : std::vector<double>{};
+}
+
+std::vector<double> other(const CheckedFlight& flight) {
+  return has_second(flight) ? flight.second->pressure : std::vector<double>{};
+}
+
+std::vector<bool> used(const CheckedFlight& flight) { return flight.air.flying; }
+
+std::vector<double> in_the_air(const CheckedFlight& flight, std::vector<double> values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!flight.air.flying[i]) values[i] = std::nan("");
+  }
+  return values;
+}
+
+}  // namespace
+
+CheckResult check_static_pressure(const CheckedFlights& flights) {
+  const auto first = std::find_if(flights.begin(), flights.end(), has_second);
+  if (first == flights.end()) {
+    return not_run("static-pressure",
+                   "no flight has a second static system (known are PSFD/QCF, PSFRD/QCFR, PSF/QCF and "
+                   "PS_A/QC_A); --second OTHER.toml names one with its correction");
+  }
+  const RedundantFit fit = fit_of(redundant(flights, own, other, used));
+  if (std::isnan(fit.ordinary.slope)) {
+    return not_run(
+        "static-pressure",
+        fmt::format("{} and the model have too few values at the same time in the air", first->second_name));
+  }
+  CheckResult result;
+  result.name = "static-pressure";
+  result.ran = true;
+  result.finding = fmt::format(
+      "The static pressure of {} less that of the model is {} in the mean, with slope {:.6f} +- {:.6f} and "
+      "rms "
+      "{:.3f} hPa about the orthogonal line.",
+      first->second_name, with_error(fit.difference, "hPa", 3), fit.orthogonal.slope,
+      fit.orthogonal.slope_error, fit.orthogonal.rms);
+  if (first->second_corrected) {
+    result.verdict = together(judge(fit.difference, size_that_matters), judge(fit.across, size_that_matters));
+  } else {
+    // What its own defect is nobody said, so a difference is no fault of the model.
+    result.verdict = CheckVerdict::cannot_tell;
+    result.finding += fmt::format(
+        " The pressure of {} is as measured, so the difference is its own defect too: --second OTHER.toml "
+        "gives its correction.",
+        first->second_name);
+  }
+  result.cannot_see =
+      "Errors that both systems have: what both laws were fitted to (the scale of LAMS, the temperature), "
+      "and all that acts on both ports alike.";
+  add_numbers(fit, result);
+  result.tables.push_back(
+      table_of(fit, fmt::format("Static pressure of {} against the model's", first->second_name)));
+  result.columns.push_back(column_of(flights, "static-pressure one", "static pressure of the model", "hPa",
+                                     [](const CheckedFlight& f) { return in_the_air(f, own(f)); }));
+  result.columns.push_back(column_of(flights, "static-pressure two",
+                                     "static pressure of " + first->second_name, "hPa",
+                                     [](const CheckedFlight& f) { return in_the_air(f, other(f)); }));
+  PairPanel panel;
+  panel.title = first->second_corrected ? "Corrected static pressures of the two systems"
+                                        : "Static pressure of the model and of a second system as measured";
+  panel.caption = "The line makes the distances perpendicular to it small.";
+  panel.x = "static-pressure one";
+  panel.y = "static-pressure two";
+  panel.lines = {{1.0, 0.0, "equal"}, {fit.orthogonal.slope, fit.orthogonal.offset, "fitted line"}};
+  result.pictures.emplace_back(std::move(panel));
+  return result;
+}
+
+}  // namespace pcor

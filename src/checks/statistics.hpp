@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "pcor/offline/check.hpp"
+
+namespace pcor {
+
+/// A number with its standard error.
+struct Estimated {
+  double value = 0.0;
+  double error = 0.0;
+};
+
+/// Least squares of a few columns, with errors that know that neighbours in time err alike.
+struct LeastSquares {
+  std::vector<Estimated> coefficients{};  ///< one for each column; NaN where the fit is not possible
+  std::vector<double> residuals{};        ///< of each sample; NaN where it took no part
+  double rms = 0.0;                       ///< of the residuals
+  std::size_t samples = 0;
+  double samples_per_independent = 1.0;  ///< of the residuals
+};
+
+/// Fits y = c_1 x_1 + c_2 x_2 + ... over the samples at which all have a value. The noise is the
+/// autoregression that fits the residuals best, and the covariance of the coefficients is
+/// (X'X)^-1 X'C X (X'X)^-1 with its autocovariance C, times n/(n - k) for n independent samples and k
+/// columns. NaN where the columns are not independent or there are fewer than three samples more than
+/// columns.
+LeastSquares least_squares(const std::vector<std::vector<double>>& columns, const std::vector<double>& y,
+                           const std::vector<double>& time, double step);
+
+/// The mean of a series, with its error and its scatter (`rms`): `least_squares` with a column of ones.
+LeastSquares mean_of(const std::vector<double>& values, const std::vector<double>& time, double step);
+
+/// The mean of independent estimates, weighted by their errors. Where they scatter more than their errors
+/// allow, the error is that of the scatter. Estimates that are no numbers are left out; NaN for none.
+Estimated combined(const std::vector<Estimated>& estimates);
+
+/// The verdict on a number that would be zero if all were well. `size` is the smallest one that matters.
+///
+/// Inconsistent: beyond `size` and beyond three standard errors. Consistent: not beyond `size`, with a
+/// standard error not beyond it either. In between, and for what is no number, it cannot be told.
+CheckVerdict judge(const Estimated& number, double size);
+
+/// The verdict on two together: inconsistent if one is, else what cannot be told if one cannot.
+CheckVerdict together(CheckVerdict a, CheckVerdict b);
+
+/// "+0.31 +- 0.04 hPa".
+std::string with_error(const Estimated& number, const std::string& unit, int digits = 2);
+
+}  // namespace pcor

@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "redundant.hpp"
+
+namespace pcor {
+namespace {
+
+/// The smallest difference of two total pressures that matters, hPa: twice what the transducers of two
+/// pairs are good for together (R5: 0.1 hPa of PSF, 0.05 hPa of QCF).
+constexpr double size_that_matters = 0.3;
+
+/// The avionics delay and smooth their pressures by some half a second, so transients are left out (R7): at
+/// this rate, hPa/s, half a second is 0.05 hPa.
+constexpr double fastest_of_avionics = 0.1;
+
+bool has_two(const CheckedFlight& flight) { return flight.measured.size() > 1; }
+
+bool is_avionics(const MeasuredPair& pair) { return pair.name.rfind("PS_A", 0) == 0; }
+
+std::vector<double> total_of(const CheckedFlight& flight, std::size_t number) {
+  if (!has_two(flight)) return {};
+  const MeasuredPair& pair = flight.measured[number];
+  std::vector<double> total = pair.static_pressure;
+  for (std::size_t i = 0; i < total.size(); ++i) total[i] += pair.dynamic_pressure[i];
+  return total;
+}
+
+bool with_avionics(const CheckedFlight& flight) {
+  return has_two(flight) && (is_avionics(flight.measured[0]) || is_avionics(flight.measured[1]));
+}
+
+std::vector<bool> used(const CheckedFlight& flight) {
+  if (!with_avionics(flight)) return flight.air.flying;
+  const std::vector<bool> one = steady(flight, total_of(flight, 0), fastest_of_avionics);
+  const std::vector<bool> two = steady(flight, flight.measured[0].static_pressure, fastest_of_avionics);
+  std::vector<bool> both(one.size());
+  for (std::size_t i = 0; i < both.size(); ++i) both[i] = one[i] && two[i];
+  return both;
+}
+
+SeriesOfFlight static_of(std::size_t number) {
+  return [number](const CheckedFlight& flight) {
+    return has_two(flight) ? flight.measured[number].static_pressure : std::vector<double>{};
+  };
+}
+
+SeriesOfFlight total(std::size_t number) {
+  return [number](const CheckedFlight& flight) { return total_of(flight, number); };
+}
+
+}  // namespace
+
+CheckResult check_total_pressure(const CheckedFlights& flights) {
+  const auto first = std::find_if(flights.begin(), flights.end(), has_two);
+  if (first == flights.end()) {
+    return not_run("total-pressure",
+                   "no flight has a second pair of pressures (known are PSFD/QCF, PSFRD/QCFR, PSF/QCF and "
+                   "PS_A/QC_A); --second OTHER.toml names one");
+  }
+  const std::string& one = first->measured[0].name;
+  const std::string& two = first->measured[1].name;
+  const Redundant totals = redundant(flights, total(0), total(1), used);
+  const RedundantFit fit = fit_of(totals);
+  if (std::isnan(fit.ordinary.slope)) {
+    return not_run("total-pressure",
+                   fmt::format("{} and {} have too few values at the same time in the air", one, two));
+  }
+  const RedundantFit statics = fit_of(redundant(flights, static_of(0), static_of(1), used));
+
+  CheckResult result;
+  result.name = "total-pressure";
+  result.ran = true;
+  result.verdict = together(judge(fit.difference, size_that_matters), judge(fit.across, size_that_matters));
+  result.finding = fmt::format(
+      "The total pressure of {} less that of {} is {} in the mean, with slope {:.6f} +- {:.6f} and rms "
+      "{:.3f} "
+      "hPa about the line, while the static pressures alone differ by {:+.2f} hPa with a scatter of {:.2f} "
+      "hPa.",
+      two, one, with_error(fit.difference, "hPa", 3), fit.ordinary.slope, fit.ordinary.slope_error,
+      fit.ordinary.rms, statics.difference.value, statics.scatter);
+  result.cannot_see =
+      "Static defects, which cancel in the total pressure, and what both pitots lose alike, at large angles "
+      "for example.";
+  add_numbers(fit, result);
+  result.numbers.emplace_back("static_mean_difference_hpa", statics.difference.value);
+  result.numbers.emplace_back("static_mean_difference_stderr_hpa", statics.difference.error);
+  result.numbers.emplace_back("static_scatter_hpa", statics.scatter);
+  result.tables.push_back(table_of(fit, fmt::format("Total pressure of {} against {}", two, one)));
+  if (std::any_of(flights.begin(), flights.end(), with_avionics))
+    result.notes.push_back(
+        fmt::format("The avionics smooth their pressures, so samples in which the pressure "
+                    "changes by more than {} hPa/s are left out",
+                    fastest_of_avionics));
+  const auto of_used = [](const SeriesOfFlight& series) {
+    return [series](const CheckedFlight& flight) {
+      std::vector<double> values = series(flight);
+      if (values.empty()) return values;
+      const std::vector<bool> in_use = used(flight);
+      std::vector<std::size_t> places;
+      for (std::size_t i = 0; i < in_use.size(); ++i) {
+        if (in_use[i]) places.push_back(i);
+      }
+      return only_at(values, places);
+    };
+  };
+  result.columns.push_back(
+      column_of(flights, "total-pressure one", "total pressure, " + one, "hPa", of_used(total(0))));
+  result.columns.push_back(
+      column_of(flights, "total-pressure two", "total pressure, " + two, "hPa", of_used(total(1))));
+  PairPanel panel;
+  panel.title = "Total pressures of the two systems";
+  panel.caption =
+      "Static defects cancel in the total pressure, so what is left is of the transducers, the "
+      "pitots and the lines.";
+  panel.x = "total-pressure one";
+  panel.y = "total-pressure two";
+  panel.lines = {{1.0, 0.0, "equal"}, {fit.orthogonal.slope, fit.orthogonal.offset, "fitted line"}};
+  result.pictures.emplace_back(std::move(panel));
+  return result;
+}
+
+}  // namespace pcor

@@ -1,0 +1,22 @@
+#include "angle_sensitivity.hpp"
+
+namespace pcor {
+
+CheckResult check_yaw(const CheckedFlights& flights) {
+  AngleCheck check;
+  check.name = "yaw";
+  check.angle = "sideslip";
+  check.regime = Regime::yaw_manoeuvre;
+  check.witnesses = {Witness::laser, Witness::second_system, Witness::height};
+  check.with_square = true;
+  check.angle_of = sideslip_of;
+  check.ratio_of = [](const FlightAir& air) -> const std::vector<double>& { return air.sideslip_ratio; };
+  check.variables = "SSLIP or SSRD; [variables] sideslip names another";
+  check.cannot_see =
+      "An error of the azimuth of the laser's beam, which looks like a slope; an offset of the sideslip, "
+      "which "
+      "shares it out between the slope and the square; and what both static systems have alike.";
+  return run_angle_check(flights, check);
+}
+
+}  // namespace pcor

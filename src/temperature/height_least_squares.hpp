@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "height_record.hpp"
+#include "pcor/offline/temperature.hpp"
+
+namespace pcor {
+
+/// Least squares on height (memo eq. 23 and 24): the coefficients with which the integral keeps closest to
+/// the height by GPS, from the mean height of each stretch. Errors take every sample for independent, as the
+/// memo does.
+TemperatureFit fit_height_by_least_squares(const std::vector<HeightRecord>& records, std::size_t terms);
+
+/// The height by GPS less the integral with a correction, about its mean in each stretch, m.
+std::vector<double> height_differences(const HeightRecord& record, const std::vector<double>& coefficients);
+
+}  // namespace pcor

@@ -1,0 +1,293 @@
+#include "height_likelihood.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <future>
+#include <limits>
+#include <nlopt.hpp>
+
+namespace pcor {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// The states, in their order.
+enum State : Eigen::Index { drift, wander, slope_east, slope_north, pressure_error, state_count };
+
+// What is filtered: the height, the columns of the coefficients, and the trace of a pressure error.
+constexpr Eigen::Index filtered = 2 + static_cast<Eigen::Index>(calibration_terms);
+using Covariance = Eigen::Matrix<double, state_count, state_count>;
+using Vector = Eigen::Matrix<double, state_count, 1>;
+using Means = Eigen::Matrix<double, state_count, filtered>;
+using Row = Eigen::Matrix<double, 1, filtered>;
+
+constexpr double unknown_height = 1e8;  // m2: the variance of a height that is not known
+
+/// Means over a block of noise that remembers itself, given what it was at the start: exact for a block of
+/// any length. From the start on the noise itself fades, and its mean has a part of the start left.
+struct BlockMean {
+  double fading;      // of the noise over the block
+  double kept;        // part of the start in the mean
+  double variance;    // of the noise at the end, given its start
+  double of_mean;     // of the mean, given its start
+  double covariance;  // of both
+
+  BlockMean(double sigma, double memory, double length) {
+    const double ratio = memory / length;
+    const double square = sigma * sigma;
+    fading = std::exp(-1.0 / ratio);
+    kept = ratio * (1.0 - fading);
+    variance = square * (1.0 - fading * fading);
+    of_mean = square * ratio * (2.0 - ratio * (3.0 - fading * (4.0 - fading)));
+    covariance = square * ratio * (1.0 - fading) * (1.0 - fading);
+  }
+};
+
+/// The filter over one flight; tells `see` the innovations of every block and their variance. Heights are
+/// means over blocks, so what moves the states within a block is in its height too.
+template <class See>
+void filter(const HeightRecord& record, const HeightNoise& noise, const HeightPrior& prior, const See& see) {
+  Covariance p = Covariance::Zero();
+  Means x = Means::Zero();
+  p(wander, wander) = noise.wander * noise.wander;
+  p(slope_east, slope_east) = p(slope_north, slope_north) = prior.slope * prior.slope;
+  p(pressure_error, pressure_error) = prior.pressure * prior.pressure;
+  const bool has_slopes = prior.slope > 0.0 && record.has_position;
+  const double walk = noise.walk * noise.walk;
+  const HeightBlock* before = nullptr;
+  for (const HeightBlock& block : record.blocks) {
+    if (before != nullptr) {
+      const double gap = block.time - before->time - 0.5 * (block.length + before->length);
+      if (gap > 0.0) {
+        const double fading = std::exp(-gap / noise.wander_time);
+        x.row(wander) *= fading;
+        p.row(wander) *= fading;
+        p.col(wander) *= fading;
+        p(wander, wander) += noise.wander * noise.wander * (1.0 - fading * fading);
+        p(drift, drift) += walk * gap;
+      }
+    }
+    if (before != nullptr && has_slopes) {
+      // The drift moves by slope times way; first the slopes' uncertainty reaches it.
+      const double to_east = block.east - before->east;
+      const double to_north = block.north - before->north;
+      x.row(drift) += to_east * x.row(slope_east) + to_north * x.row(slope_north);
+      p.row(drift) += to_east * p.row(slope_east) + to_north * p.row(slope_north);
+      p.col(drift) += to_east * p.col(slope_east) + to_north * p.col(slope_north);
+      const double change = noise.slope_change * noise.slope_change * (block.time - before->time);
+      p(slope_east, slope_east) += change;
+      p(slope_north, slope_north) += change;
+    }
+    if (block.starts_stretch) {
+      p.row(drift).setZero();
+      p.col(drift).setZero();
+      p(drift, drift) = unknown_height;
+      x.row(drift).setZero();
+    }
+    before = &block;
+
+    const BlockMean slow(noise.wander, noise.wander_time, block.length);
+    // Where the static pressure is too high the integral is too low, and the rest too high.
+    Vector seen = Vector::Zero();
+    seen(drift) = 1.0;
+    seen(wander) = slow.kept;
+    seen(pressure_error) = block.pressure_error;
+    Vector reached = p * seen;
+    const double variance = seen.dot(reached) + slow.of_mean + walk * block.length / 3.0 +
+                            noise.white * noise.white / static_cast<double>(block.samples);
+    Row measured;
+    measured << block.excess, block.columns[0], block.columns[1], block.columns[2], block.pressure_error;
+    const Row innovation = measured - seen.transpose() * x;
+    see(block, innovation, variance);
+
+    // To the end of the block, where what came within it goes with what was measured.
+    x.row(wander) *= slow.fading;
+    p.row(wander) *= slow.fading;
+    p.col(wander) *= slow.fading;
+    p(wander, wander) += slow.variance;
+    p(drift, drift) += walk * block.length;
+    reached(wander) = reached(wander) * slow.fading + slow.covariance;
+    reached(drift) += 0.5 * walk * block.length;
+    const Vector gain = reached / variance;
+    x.noalias() += gain * innovation;
+    p.noalias() -= gain * reached.transpose();
+  }
+}
+
+/// Parameters of the noise as the search sees them: logarithms, within bounds.
+struct Searched {
+  double HeightNoise::*value;
+  double least;
+  double greatest;
+};
+
+constexpr std::array<Searched, 5> searched{{
+    {&HeightNoise::white, 1e-2, 100.0},
+    {&HeightNoise::wander, 1e-3, 30.0},
+    {&HeightNoise::wander_time, 15.0, 1200.0},
+    {&HeightNoise::walk, 1e-5, 3.0},
+    {&HeightNoise::slope_change, 1e-10, 1e-5},
+}};
+
+std::vector<double> as_logarithms(const HeightNoise& noise) {
+  std::vector<double> x;
+  for (const Searched& each : searched)
+    x.push_back(std::log(std::clamp(noise.*each.value, each.least, each.greatest)));
+  return x;
+}
+
+HeightNoise as_noise(const std::vector<double>& x) {
+  HeightNoise noise;
+  for (std::size_t i = 0; i < searched.size(); ++i) noise.*searched[i].value = std::exp(x[i]);
+  return noise;
+}
+
+double objective(const std::vector<double>& x, std::vector<double>&, void* function) {
+  return (*static_cast<std::function<double(const std::vector<double>&)>*>(function))(x);
+}
+
+}  // namespace
+
+HeightEquations& HeightEquations::operator+=(const HeightEquations& other) {
+  information += other.information;
+  right += other.right;
+  squares += other.squares;
+  log_determinant += other.log_determinant;
+  pressure_error += other.pressure_error;
+  blocks += other.blocks;
+  return *this;
+}
+
+Eigen::MatrixXd HeightEquations::covariance(Eigen::Index terms) const {
+  if (terms == 0) return Eigen::MatrixXd(0, 0);
+  const Eigen::VectorXd scale = information.diagonal()
+                                    .head(terms)
+                                    .cwiseMax(std::numeric_limits<double>::min())
+                                    .cwiseSqrt()
+                                    .cwiseInverse();
+  const Eigen::MatrixXd scaled =
+      scale.asDiagonal() * information.topLeftCorner(terms, terms) * scale.asDiagonal();
+  const Eigen::MatrixXd inverse = scale.asDiagonal() * scaled.inverse() * scale.asDiagonal();
+  return 0.5 * (inverse + inverse.transpose());
+}
+
+Eigen::VectorXd HeightEquations::best(Eigen::Index terms) const {
+  return covariance(terms) * right.head(terms);
+}
+
+double HeightEquations::log_information(Eigen::Index terms) const {
+  return terms == 0 ? 0.0 : -std::log(covariance(terms).determinant());
+}
+
+double HeightEquations::deviance_at(const Eigen::VectorXd& a) const {
+  const Eigen::Index n = a.size();
+  return log_determinant + squares - 2.0 * a.dot(right.head(n)) + a.dot(information.topLeftCorner(n, n) * a);
+}
+
+double HeightEquations::deviance(Eigen::Index terms) const { return deviance_at(best(terms)); }
+
+HeightEquations height_equations(const HeightRecord& record, const HeightNoise& noise,
+                                 const HeightPrior& prior) {
+  HeightEquations result;
+  filter(record, noise, prior, [&](const HeightBlock& block, const Row& innovation, double variance) {
+    if (block.starts_stretch) return;  // it says what the unknown height is, and nothing else
+    const double weight = 1.0 / variance;
+    const Eigen::Vector3d columns = innovation.segment<3>(1).transpose();
+    result.information.noalias() += weight * columns * columns.transpose();
+    result.right += weight * innovation(0) * columns;
+    result.squares += weight * innovation(0) * innovation(0);
+    result.pressure_error += weight * innovation(4) * columns;
+    result.log_determinant += std::log(variance);
+    ++result.blocks;
+  });
+  return result;
+}
+
+std::vector<double> height_innovations(const HeightRecord& record, const HeightNoise& noise,
+                                       const HeightPrior& prior, const Eigen::Vector3d& coefficients) {
+  std::vector<double> result;
+  filter(record, noise, prior, [&](const HeightBlock& block, const Row& innovation, double variance) {
+    const double left = innovation(0) - innovation.segment<3>(1).dot(coefficients);
+    result.push_back(block.starts_stretch ? nan : left / std::sqrt(variance));
+  });
+  return result;
+}
+
+HeightEquations height_equations(const std::vector<HeightRecord>& records, const HeightNoise& noise,
+                                 const HeightPrior& prior, std::size_t threads) {
+  const std::size_t parts = std::max<std::size_t>(1, std::min(threads, records.size()));
+  const auto sum_of = [&](std::size_t part) {
+    HeightEquations sum;
+    for (std::size_t i = part; i < records.size(); i += parts)
+      sum += height_equations(records[i], noise, prior);
+    return sum;
+  };
+  std::vector<std::future<HeightEquations>> others;
+  for (std::size_t part = 1; part < parts; ++part)
+    others.push_back(std::async(std::launch::async, sum_of, part));
+  HeightEquations sum = sum_of(0);
+  for (std::future<HeightEquations>& other : others) sum += other.get();
+  return sum;
+}
+
+MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::Index terms,
+                               const HeightPrior& prior, const HeightNoise& start, std::size_t threads,
+                               const HeldCoefficient* held) {
+  MostLikely best;
+  best.deviance = std::numeric_limits<double>::infinity();
+  std::function<double(const std::vector<double>&)> deviance = [&](const std::vector<double>& x) {
+    const HeightNoise noise = as_noise(x);
+    const HeightEquations equations = height_equations(records, noise, prior, threads);
+    ++best.evaluations;
+    double value = 0.0;
+    if (held == nullptr) {
+      value = equations.deviance(terms) + equations.log_information(terms);
+    } else {
+      // The other coefficients follow the held one.
+      const Eigen::MatrixXd covariance = equations.covariance(terms);
+      Eigen::VectorXd a = covariance * equations.right.head(terms);
+      a += covariance.col(held->term) * ((held->value - a[held->term]) / covariance(held->term, held->term));
+      // What is left to explain the heights are the others: their information is all without the held one's.
+      value = equations.deviance_at(a) + equations.log_information(terms) +
+              std::log(covariance(held->term, held->term));
+    }
+    if (!std::isfinite(value)) return std::numeric_limits<double>::max();
+    if (value < best.deviance) {
+      best.deviance = value;
+      best.noise = noise;
+      best.equations = equations;
+    }
+    return value;
+  };
+  std::vector<double> lower;
+  std::vector<double> upper;
+  for (const Searched& each : searched) {
+    lower.push_back(std::log(each.least));
+    upper.push_back(std::log(each.greatest));
+  }
+  std::vector<double> x = as_logarithms(start);
+  // BOBYQA finds the valley; a second start from its end mends steps that stopped at a bound.
+  constexpr int rounds = 2;
+  for (int round = 0; round < rounds; ++round) {
+    nlopt::opt search(nlopt::LN_BOBYQA, static_cast<unsigned>(x.size()));
+    search.set_lower_bounds(lower);
+    search.set_upper_bounds(upper);
+    search.set_min_objective(objective, &deviance);
+    search.set_initial_step(round == 0 && held == nullptr ? 1.0 : 0.3);
+    search.set_ftol_abs(1e-3);
+    search.set_maxeval(200);
+    double least = 0.0;
+    try {
+      search.optimize(x, least);
+    } catch (const nlopt::roundoff_limited&) {
+      // What was found by then is what counts.
+    }
+    x = as_logarithms(best.noise);
+    if (held != nullptr) break;
+  }
+  return best;
+}
+
+}  // namespace pcor

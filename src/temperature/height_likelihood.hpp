@@ -1,0 +1,94 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <functional>
+#include <vector>
+
+#include "height_record.hpp"
+
+namespace pcor {
+
+/// The noise of heights: what the height by GPS less the integral of the hydrostatic equation does besides
+/// the error of the thermometer.
+///
+/// The integral drifts: where isobaric surfaces are not level or not still, an error made once stays. So the
+/// difference is a random walk, and the slope of the isobars, a state of its own, adds what the aircraft
+/// flies along it; the GPS adds noise that remembers itself and noise that does not.
+struct HeightNoise {
+  double white = 0.3;          ///< of a block's mean height, m
+  double wander = 0.3;         ///< of the slow part of the GPS noise, m
+  double wander_time = 60.0;   ///< its memory, s
+  double walk = 0.01;          ///< random walk of the integral, m/s^(1/2)
+  double slope_change = 1e-7;  ///< random walk of the slope of the isobars, 1/s^(1/2)
+};
+
+/// What the fit is told of a flight and does not find.
+struct HeightPrior {
+  double slope =
+      1e-4;  ///< of the isobars at the start, each direction; 0: they are level, or taken off before
+  double pressure = 0.0;  ///< of a constant error of the static pressure in each flight, hPa
+};
+
+/// The Gaussian likelihood of heights, reduced to what the coefficients need: up to a constant,
+///
+///     -2 ln L = log_determinant + squares - 2 a' right + a' information a
+struct HeightEquations {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  double squares = 0.0;
+  double log_determinant = 0.0;
+  /// What an error of the static pressure of 1 hPa in all flights would add to `right`.
+  Eigen::Vector3d pressure_error = Eigen::Vector3d::Zero();
+  std::size_t blocks = 0;
+
+  HeightEquations& operator+=(const HeightEquations& other);
+  /// -2 ln L at the best coefficients of the first `terms` powers, the others zero.
+  double deviance(Eigen::Index terms) const;
+  /// The best coefficients of the first `terms` powers, and their covariance.
+  Eigen::VectorXd best(Eigen::Index terms) const;
+  Eigen::MatrixXd covariance(Eigen::Index terms) const;
+  /// ln det of the information on the first `terms` coefficients.
+  double log_information(Eigen::Index terms) const;
+  /// -2 ln L at given coefficients.
+  double deviance_at(const Eigen::VectorXd& coefficients) const;
+};
+
+/// One pass of a Kalman filter over a flight: states are the drift of the integral, the slow GPS noise, the
+/// two slopes of the isobars, and an error of the static pressure. The integral of every stretch starts at an
+/// unknown height. Coefficients enter as columns that are filtered like the data, so one pass serves all
+/// values of them. Time grows with the number of blocks.
+HeightEquations height_equations(const HeightRecord& record, const HeightNoise& noise,
+                                 const HeightPrior& prior);
+
+/// The innovations of that filter at given coefficients, in standard deviations: white with variance 1 where
+/// the noise is as described. NaN at the start of a stretch.
+std::vector<double> height_innovations(const HeightRecord& record, const HeightNoise& noise,
+                                       const HeightPrior& prior, const Eigen::Vector3d& coefficients);
+
+/// The sum over flights, several at a time.
+HeightEquations height_equations(const std::vector<HeightRecord>& records, const HeightNoise& noise,
+                                 const HeightPrior& prior, std::size_t threads);
+
+/// The noise that makes the heights likeliest, with the coefficients of the first `terms` powers at their
+/// best.
+/// @param held if not empty, coefficient `held_term` keeps the value `held_value`
+struct MostLikely {
+  HeightNoise noise;
+  HeightEquations equations;
+  double deviance = 0.0;  ///< -2 ln of the restricted likelihood
+  int evaluations = 0;
+};
+
+/// A coefficient that does not follow the others.
+struct HeldCoefficient {
+  Eigen::Index term = 0;
+  double value = 0.0;
+};
+
+/// The noise that makes the heights likeliest, with the coefficients of the first `terms` powers at their
+/// best, or one of them held. NLopt searches (BOBYQA) over the logarithms of the noise from `start` on.
+MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::Index terms,
+                               const HeightPrior& prior, const HeightNoise& start, std::size_t threads,
+                               const HeldCoefficient* held = nullptr);
+
+}  // namespace pcor

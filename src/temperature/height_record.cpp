@@ -1,0 +1,344 @@
+#include "height_record.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pcor/offline/error.hpp"
+#include "pcor/physics/geodesy.hpp"
+#include "pcor/physics/hydrostatic.hpp"
+
+namespace pcor {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double least_height_range = 300.0;  // m
+
+using Powers = std::array<double, calibration_terms>;
+
+/// The integral at a sample that takes part.
+struct Point {
+  std::size_t sample = 0;
+  bool starts_stretch = false;
+  double excess = 0.0;  // m
+  Powers columns{};
+  double pressure_error = 0.0;  // m/hPa
+};
+
+double median(std::vector<double> values) {
+  if (values.empty()) return nan;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The integral along a flight, sample by sample.
+class Integration {
+ public:
+  Integration(const FlightAir& air, const std::vector<double>& steps, const HeightRecordOptions& options)
+      : air_(air), steps_(steps), options_(options) {}
+
+  std::vector<Point> run(HeightRecord& record) {
+    const std::vector<RegimeSet> regimes = regimes_of_samples(air_.time(), air_.samples->intervals);
+    std::vector<Point> points;
+    for (std::size_t i = 0; i < air_.size(); ++i) {
+      const bool takes_part = air_.flying[i] && !regimes[i][static_cast<std::size_t>(Regime::take_off)];
+      if (!takes_part) {
+        going_ = false;
+        continue;
+      }
+      advance(i);
+      if (!going_ || last_ != i) continue;
+      if (std::isnan(air_.geopotential_height[i])) {
+        ++record.missing_heights;
+        continue;
+      }
+      points.push_back({i, starts_, air_.geopotential_height[i] - height_, columns_, pressure_error_});
+      starts_ = false;
+    }
+    return points;
+  }
+
+ private:
+  /// Takes the integral to sample `i`; starts anew after a gap.
+  void advance(std::size_t i) {
+    const bool known = !std::isnan(air_.pressure[i]) && !std::isnan(air_.temperature[i]);
+    if (!known) {
+      if (going_ && air_.time()[i] - air_.time()[last_] > options_.longest_bridge) going_ = false;
+      return;
+    }
+    if (going_) {
+      const double across = air_.time()[i] - air_.time()[last_];
+      const double step = step_between(last_, i);
+      if (across > options_.longest_bridge || std::isnan(step)) {
+        going_ = false;
+      } else {
+        const double before = air_.temperature[last_] - constants::ice_point;
+        const double here = air_.temperature[i] - constants::ice_point;
+        const double mean = 0.5 * (before + here) + constants::ice_point;
+        height_ += step * mean;
+        pressure_error_ += air_.gas_constant[i] * mean / constants::standard_gravity *
+                           (1.0 / air_.pressure[i] - 1.0 / air_.pressure[last_]);
+        double power_before = 1.0;
+        double power_here = 1.0;
+        for (double& column : columns_) {
+          column += step * 0.5 * (power_before + power_here);
+          power_before *= before;
+          power_here *= here;
+        }
+      }
+    }
+    if (!going_) {
+      going_ = true;
+      starts_ = true;
+      height_ = 0.0;
+      columns_ = {};
+      pressure_error_ = 0.0;
+    }
+    last_ = i;
+  }
+
+  double step_between(std::size_t before, std::size_t here) const {
+    if (!steps_.empty()) {
+      double sum = 0.0;
+      for (std::size_t i = before + 1; i <= here; ++i) sum += steps_[i];
+      return sum;
+    }
+    return hydrostatic_step(air_.pressure[before], air_.pressure[here],
+                            0.5 * (air_.gas_constant[before] + air_.gas_constant[here]));
+  }
+
+  const FlightAir& air_;
+  const std::vector<double>& steps_;
+  const HeightRecordOptions& options_;
+  bool going_ = false;
+  bool starts_ = false;
+  std::size_t last_ = 0;
+  double height_ = 0.0;
+  Powers columns_{};
+  double pressure_error_ = 0.0;
+};
+
+/// Marks what the GPS does that no air does: a spike is left out, at a step the integral starts anew.
+void mark_steps(std::vector<Point>& points, HeightRecord& record) {
+  constexpr double least_step = 5.0;   // m; smaller ones are part of the noise model
+  constexpr double deviations = 10.0;  // robust standard deviations of a change within a second
+  constexpr std::size_t longest_spike = 60;
+  std::vector<double> changes;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    if (!points[i].starts_stretch) changes.push_back(std::abs(points[i].excess - points[i - 1].excess));
+  }
+  const double limit = std::max(least_step, deviations * 1.4826 * median(changes));
+  std::vector<Point> kept;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    Point point = points[i];
+    if (!point.starts_stretch && !kept.empty() && std::abs(point.excess - kept.back().excess) > limit) {
+      std::size_t end = i + 1;
+      while (end < points.size() && end - i < longest_spike && !points[end].starts_stretch &&
+             std::abs(points[end].excess - kept.back().excess) > limit)
+        ++end;
+      const bool comes_back = end < points.size() && end - i < longest_spike && !points[end].starts_stretch;
+      if (comes_back) {
+        record.height_spikes += end - i;
+        i = end - 1;
+        continue;
+      }
+      point.starts_stretch = true;
+      ++record.height_steps;
+    }
+    kept.push_back(point);
+  }
+  points = std::move(kept);
+}
+
+/// Sums over a block.
+class BlockMeans {
+ public:
+  BlockMeans(const FlightAir& air, const std::vector<double>& east, const std::vector<double>& north)
+      : air_(air), east_(east), north_(north) {}
+
+  void add(const Point& point) {
+    const std::size_t i = point.sample;
+    if (block_.samples == 0) {
+      block_.starts_stretch = point.starts_stretch;
+      first_ = i;
+    }
+    ++block_.samples;
+    last_ = i;
+    block_.time += air_.time()[i] - air_.time()[first_];
+    block_.excess += point.excess;
+    for (std::size_t k = 0; k < calibration_terms; ++k) block_.columns[k] += point.columns[k];
+    block_.pressure_error += point.pressure_error;
+    block_.east += east_.empty() ? nan : east_[i];
+    block_.north += north_.empty() ? nan : north_[i];
+    block_.height += air_.geopotential_height[i];
+    block_.pressure += air_.pressure[i];
+    block_.temperature += air_.temperature[i] - constants::ice_point;
+    const double turning = coriolis_parameter(air_.latitude[i]) / constants::standard_gravity;
+    block_.slope_east += turning * wind_north(i);
+    block_.slope_north -= turning * wind_east(i);
+  }
+
+  std::size_t first() const { return first_; }
+  std::size_t samples() const { return block_.samples; }
+
+  HeightBlock take() {
+    HeightBlock result = block_;
+    const auto n = static_cast<double>(block_.samples);
+    for (double* value :
+         {&result.time, &result.excess, &result.east, &result.north, &result.height, &result.pressure,
+          &result.pressure_error, &result.temperature, &result.slope_east, &result.slope_north})
+      *value /= n;
+    for (double& column : result.columns) column /= n;
+    result.time += air_.time()[first_];
+    result.length = n * air_.step();
+    const double kelvin = result.temperature + constants::ice_point;
+    result.metres_per_hpa =
+        air_.gas_constant[last_] * kelvin / (constants::standard_gravity * result.pressure);
+    block_ = {};
+    return result;
+  }
+
+ private:
+  bool has_wind() const {
+    return !air_.east_speed.empty() && !air_.samples->motion.heading.empty() && !air_.airspeed.empty();
+  }
+  double heading(std::size_t i) const {
+    return air_.samples->motion.heading[i] * constants::radians_per_degree;
+  }
+  /// Components of the wind, m/s; NaN where it is not known.
+  double wind_east(std::size_t i) const {
+    return has_wind() ? air_.east_speed[i] - air_.airspeed[i] * std::sin(heading(i)) : nan;
+  }
+  double wind_north(std::size_t i) const {
+    return has_wind() ? air_.north_speed[i] - air_.airspeed[i] * std::cos(heading(i)) : nan;
+  }
+
+  const FlightAir& air_;
+  const std::vector<double>& east_;
+  const std::vector<double>& north_;
+  HeightBlock block_;
+  std::size_t first_ = 0;
+  std::size_t last_ = 0;
+};
+
+/// The way over the ground, m, in one direction. Short gaps of the speed are crossed with the last one known.
+std::vector<double> way(const std::vector<double>& speed, const std::vector<double>& time) {
+  if (speed.empty()) return {};
+  std::vector<double> result(time.size());
+  double here = 0.0;
+  double last = 0.0;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    const double now = std::isnan(speed[i]) ? last : speed[i];
+    if (i > 0) here += 0.5 * (last + now) * (time[i] - time[i - 1]);
+    last = now;
+    result[i] = here;
+  }
+  return result;
+}
+
+/// Leaves out what climbs too slowly; what is left of a climb is a stretch.
+void keep_climbs(std::vector<HeightBlock>& blocks, double least_rate) {
+  if (least_rate <= 0.0) return;
+  std::vector<HeightBlock> kept;
+  bool left_out = true;
+  double direction = 0.0;
+  for (HeightBlock block : blocks) {
+    const bool climbs = std::abs(block.climb) >= least_rate;
+    if (climbs) {
+      const double now = block.climb > 0.0 ? 1.0 : -1.0;
+      block.starts_stretch = block.starts_stretch || left_out || now != direction;
+      direction = now;
+      kept.push_back(block);
+    }
+    left_out = !climbs || (block.starts_stretch && !climbs);
+  }
+  blocks = std::move(kept);
+}
+
+void find_climbs(std::vector<HeightBlock>& blocks) {
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const std::size_t before = blocks[i].starts_stretch || i == 0 ? i : i - 1;
+    const std::size_t after = i + 1 < blocks.size() && !blocks[i + 1].starts_stretch ? i + 1 : i;
+    if (after == before) continue;
+    blocks[i].climb =
+        (blocks[after].height - blocks[before].height) / (blocks[after].time - blocks[before].time);
+  }
+}
+
+}  // namespace
+
+HeightRecord height_record(const FlightAir& air, const std::vector<double>& steps,
+                           const HeightRecordOptions& options) {
+  const std::string& name = air.samples->name;
+  if (air.temperature.empty()) {
+    throw Error(
+        fmt::format("{}: the model names no thermometer; give it recovery_temperature or ambient_temperature "
+                    "in the table [variables]",
+                    name));
+  }
+  if (const std::string trouble = trouble_with_height(air); !trouble.empty())
+    throw Error(fmt::format("{}: {}", name, trouble));
+
+  HeightRecord record;
+  record.name = name;
+  record.notes = air.notes;
+  std::vector<Point> points = Integration(air, steps, options).run(record);
+  mark_steps(points, record);
+
+  const std::vector<double> east = way(air.east_speed, air.time());
+  const std::vector<double> north = way(air.north_speed, air.time());
+  BlockMeans means(air, east, north);
+  const auto finish = [&] {
+    if (means.samples() == 0) return;
+    record.blocks.push_back(means.take());
+    record.samples += record.blocks.back().samples;
+  };
+  for (const Point& point : points) {
+    const bool full = means.samples() > 0 && air.time()[point.sample] - air.time()[means.first()] >=
+                                                 options.block - 0.5 * air.step();
+    if (point.starts_stretch || full) finish();
+    means.add(point);
+  }
+  finish();
+  find_climbs(record.blocks);
+  keep_climbs(record.blocks, options.least_climb_rate);
+
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -lowest;
+  record.least_temperature = lowest;
+  record.greatest_temperature = highest;
+  record.has_position = !east.empty();
+  record.has_wind = true;
+  record.samples = 0;
+  for (std::size_t i = 0; i < record.blocks.size(); ++i) {
+    HeightBlock& block = record.blocks[i];
+    if (i == 0) block.starts_stretch = true;
+    record.stretches += block.starts_stretch ? 1 : 0;
+    record.samples += block.samples;
+    record.has_wind = record.has_wind && !std::isnan(block.slope_east + block.slope_north);
+    lowest = std::min(lowest, block.height);
+    highest = std::max(highest, block.height);
+    record.least_temperature = std::min(record.least_temperature, block.temperature);
+    record.greatest_temperature = std::max(record.greatest_temperature, block.temperature);
+  }
+  if (!(highest - lowest >= least_height_range)) {
+    throw Error(fmt::format(
+        "{}: it climbs by {:.0f} m only{}; a fit of temperature needs climbs or descents of {:.0f} m and "
+        "more",
+        name, record.blocks.empty() ? 0.0 : highest - lowest,
+        options.least_climb_rate > 0.0 ? fmt::format(" at {} m/s or more", options.least_climb_rate) : "",
+        least_height_range));
+  }
+  if (record.has_position) {
+    const HeightBlock& first = record.blocks.front();
+    const HeightBlock& last = record.blocks.back();
+    constexpr double near = 5e4;  // m
+    record.returns = std::hypot(last.east - first.east, last.north - first.north) < near;
+  }
+  return record;
+}
+
+}  // namespace pcor

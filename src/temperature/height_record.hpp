@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "../flight_air.hpp"
+
+namespace pcor {
+
+/// How many powers of the temperature a calibration may have: a0 + a1 t + a2 t^2.
+inline constexpr std::size_t calibration_terms = 3;
+
+/// Means over some seconds of a flight: the height by GPS against the integral of the hydrostatic equation
+/// from the start of the stretch.
+struct HeightBlock {
+  bool starts_stretch = false;  ///< the integral starts anew: its height is not known
+  double time = 0.0;            ///< middle, s since 1970 UTC
+  double length = 0.0;          ///< over which it is the mean, s
+  double excess = 0.0;  ///< geopotential height by GPS less the integral with the uncorrected temperature, m
+  /// What one unit of a0 (K), a1 (1), a2 (1/K) adds to the integral, m.
+  std::array<double, calibration_terms> columns{};
+  double east = 0.0;            ///< way over the ground since the first block, m; NaN where it is not known
+  double north = 0.0;           ///< m
+  double height = 0.0;          ///< geopotential height by GPS, m
+  double pressure = 0.0;        ///< corrected static pressure, hPa
+  double temperature = 0.0;     ///< uncorrected, degC
+  double metres_per_hpa = 0.0;  ///< R_a T/(g p): thickness of a layer of 1 hPa, m/hPa
+  double pressure_error = 0.0;  ///< what 1 hPa too much of static pressure would add to `excess`, m/hPa
+  double climb = 0.0;           ///< m/s
+  double slope_east = 0.0;  ///< of isobaric surfaces by the geostrophic wind, 1; NaN where there is no wind
+  double slope_north = 0.0;
+  std::size_t samples = 0;
+};
+
+/// A flight as the fit of temperature sees it.
+struct HeightRecord {
+  std::string name;
+  std::vector<HeightBlock> blocks;
+  std::size_t stretches = 0;
+  std::size_t samples = 0;          ///< those that are in blocks
+  std::size_t height_steps = 0;     ///< steps of the GPS height, at which the integral starts anew
+  std::size_t height_spikes = 0;    ///< samples whose GPS height is left out
+  std::size_t missing_heights = 0;  ///< samples in the air without GPS height
+  bool has_position = false;        ///< the way over the ground is known
+  bool has_wind = false;
+  bool returns = false;               ///< it ends within 50 km of where it began
+  double least_temperature = 0.0;     ///< degC
+  double greatest_temperature = 0.0;  ///< degC
+  std::vector<std::string> notes;
+};
+
+struct HeightRecordOptions {
+  double block = 10.0;            ///< s
+  double least_climb_rate = 0.0;  ///< m/s; slower blocks are left out, and each climb is a stretch
+  double longest_bridge = 10.0;   ///< s without pressure or temperature that the integral crosses in one step
+};
+
+/// Integrates the hydrostatic equation along a flight (memo eq. 24 in its exact form, geopotential height),
+/// after the take-off, with flaps in, anew after every gap and every step of the GPS height.
+///
+/// @param steps if not empty, R_a dp/(g p) of every record as `pcor process --hydrostatic` wrote it, m/K;
+///        else it is found from pressure and humidity
+/// @throws Error if the height is none that goes with the pressure (`trouble_with_height`), the flight has no
+/// temperature, or it neither climbs nor descends by 300 m.
+HeightRecord height_record(const FlightAir& air, const std::vector<double>& steps,
+                           const HeightRecordOptions& options);
+
+}  // namespace pcor

@@ -1,0 +1,80 @@
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "../flight_air.hpp"
+#include "calibration.hpp"
+#include "pcor/offline/temperature.hpp"
+
+namespace pcor {
+namespace {
+
+constexpr int most_rounds = 12;
+constexpr double settled_defect = 1e-3;       // hPa
+constexpr double settled_temperature = 1e-3;  // K
+
+/// The rms difference of delta-p of two models over the flights, in the air, hPa.
+double defect_change(const std::vector<std::filesystem::path>& flights, const ModelFile& before,
+                     const ModelFile& after, const TemperatureOptions& options) {
+  double squares = 0.0;
+  double count = 0.0;
+  for (const std::filesystem::path& path : flights) {
+    const Flight flight(path, options.time_stamp);
+    const FlightAir first = read_flight_air(flight, before, options.mask);
+    const FlightAir second = read_flight_air(flight, after, options.mask);
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      const double change = second.static_defect[i] - first.static_defect[i];
+      if (!first.flying[i] || std::isnan(change)) continue;
+      squares += change * change;
+      count += 1.0;
+    }
+  }
+  return std::sqrt(squares / count);
+}
+
+double correction_at(double temperature, const std::vector<double>& coefficients) {
+  double sum = 0.0;
+  double power = 1.0;
+  for (const double coefficient : coefficients) {
+    sum += coefficient * power;
+    power *= temperature;
+  }
+  return sum;
+}
+
+}  // namespace
+
+CalibrationInTurn calibrate_in_turn(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
+                                    const Reference& reference, const RefitOptions& refit_options,
+                                    const TemperatureOptions& temperature_options) {
+  CalibrationInTurn result;
+  TemperatureOptions options = temperature_options;
+  ModelFile current = model;
+  std::vector<double> coefficients;
+  for (const ModelEffect& effect : model.model.effects) {
+    if (effect.id == calibration_id) coefficients = effect.parameters;
+  }
+  while (!result.converged && result.rounds.size() < most_rounds) {
+    result.pressure = refit(flights, current, reference, refit_options);
+    result.temperature = fit_temperature(flights, result.pressure.model, options);
+    // The degree is chosen once, lest it goes to and fro.
+    options.degree = static_cast<int>(result.temperature.likelihood.coefficients.size()) - 1;
+
+    CalibrationRound round;
+    round.rms_hpa = result.pressure.rms;
+    round.coefficients = result.temperature.likelihood.coefficients;
+    round.defect_change = defect_change(flights, current, result.pressure.model, options);
+    for (const TemperatureCorrection& at : result.temperature.corrections) {
+      const double change =
+          correction_at(at.temperature, round.coefficients) - correction_at(at.temperature, coefficients);
+      round.temperature_change = std::max(round.temperature_change, std::abs(change));
+    }
+    result.converged = round.defect_change < settled_defect && round.temperature_change < settled_temperature;
+    coefficients = round.coefficients;
+    current = result.temperature.model;
+    result.rounds.push_back(std::move(round));
+  }
+  return result;
+}
+
+}  // namespace pcor

@@ -1,0 +1,113 @@
+#include "isobar_slope.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "pcor/physics/geodesy.hpp"
+
+namespace pcor {
+namespace {
+
+constexpr double level_climb = 1.0;     // m/s: slower is level
+constexpr double climbing = 1.5;        // m/s: faster is a climb or a descent
+constexpr double bin_hpa = 10.0;        // of isobaric surfaces that are met more than once
+constexpr double usual_slope = 1e-4;    // 10 m in 100 km (R78)
+constexpr double height_scatter = 2.0;  // m, of surfaces about a plane
+
+/// A place at which the height of an isobaric surface is known, and which surface or leg it belongs to.
+struct Sighting {
+  long group = 0;
+  double east = 0.0;
+  double north = 0.0;
+  double height = 0.0;
+};
+
+double height_at(const HeightBlock& block, double pressure) {
+  // metres_per_hpa is R_a T/(g p): the thickness to a surface nearby.
+  return block.height + block.metres_per_hpa * block.pressure * std::log(block.pressure / pressure);
+}
+
+std::vector<Sighting> sightings(const HeightRecord& record, IsobarSlope option) {
+  std::vector<Sighting> result;
+  long leg = 0;
+  double leg_pressure = 0.0;
+  bool was_level = false;
+  for (const HeightBlock& block : record.blocks) {
+    const double rate = std::abs(block.climb);
+    if (option == IsobarSlope::level_legs) {
+      const bool is_level = rate < level_climb;
+      if (is_level && (!was_level || std::abs(block.pressure - leg_pressure) > bin_hpa)) {
+        ++leg;
+        leg_pressure = block.pressure;
+      }
+      was_level = is_level;
+      if (is_level) result.push_back({leg, block.east, block.north, height_at(block, leg_pressure)});
+      continue;
+    }
+    if (option == IsobarSlope::climb_descent && rate < climbing) continue;
+    const long bin = std::lround(block.pressure / bin_hpa);
+    result.push_back({bin, block.east, block.north, height_at(block, bin_hpa * static_cast<double>(bin))});
+  }
+  return result;
+}
+
+}  // namespace
+
+IsobarSlopeEstimate estimate_isobar_slope(const HeightRecord& record, IsobarSlope option) {
+  const std::vector<Sighting> all = sightings(record, option);
+  std::map<long, Eigen::Vector4d> sums;  // east, north, height, number
+  for (const Sighting& s : all) {
+    Eigen::Vector4d& sum = sums.try_emplace(s.group, Eigen::Vector4d::Zero()).first->second;
+    sum += Eigen::Vector4d(s.east, s.north, s.height, 1.0);
+  }
+  IsobarSlopeEstimate result;
+  // The scatter of surfaces against their usual slope: a direction that is not flown stays level.
+  Eigen::Matrix2d information =
+      Eigen::Matrix2d::Identity() * (height_scatter * height_scatter / (usual_slope * usual_slope));
+  Eigen::Vector2d right = Eigen::Vector2d::Zero();
+  for (const Sighting& s : all) {
+    const Eigen::Vector4d& sum = sums.at(s.group);
+    if (sum[3] < 2.0) continue;
+    const Eigen::Vector2d place(s.east - sum[0] / sum[3], s.north - sum[1] / sum[3]);
+    information += place * place.transpose();
+    right += place * (s.height - sum[2] / sum[3]);
+    ++result.blocks;
+  }
+  const Eigen::Vector2d slope = information.ldlt().solve(right);
+  result.east = slope[0];
+  result.north = slope[1];
+  return result;
+}
+
+void take_off_isobar_slope(HeightRecord& record, IsobarSlope option) {
+  if (option == IsobarSlope::none || option == IsobarSlope::fitted) return;
+  if (!record.has_position) {
+    record.notes.emplace_back(
+        "the way over the ground is not recorded (GGSPD and GGTRK, or GGVEW and GGVNS): isobars are taken "
+        "for level");
+    return;
+  }
+  if (option == IsobarSlope::geostrophic) {
+    if (!record.has_wind) {
+      record.notes.emplace_back("without heading and airspeed there is no wind: isobars are taken for level");
+      return;
+    }
+    double rise = 0.0;
+    for (std::size_t i = 1; i < record.blocks.size(); ++i) {
+      HeightBlock& here = record.blocks[i];
+      const HeightBlock& before = record.blocks[i - 1];
+      rise += 0.5 * ((before.slope_east + here.slope_east) * (here.east - before.east) +
+                     (before.slope_north + here.slope_north) * (here.north - before.north));
+      here.excess -= rise;
+    }
+    return;
+  }
+  const IsobarSlopeEstimate slope = estimate_isobar_slope(record, option);
+  for (HeightBlock& block : record.blocks)
+    block.excess -= slope.east * block.east + slope.north * block.north;
+}
+
+}  // namespace pcor

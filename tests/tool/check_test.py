@@ -1,0 +1,205 @@
+#!/usr/bin/env python3
+"""`pcor check` as a user meets it, on simulated flights, and on flights that lack what a check needs.
+
+    check_test.py TOOL SOURCE_DIRECTORY
+
+Random numbers are fixed, so a test that passes does so on every run.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import unittest
+
+import netCDF4
+
+sys.dont_write_bytecode = True  # no __pycache__ in the source directory
+import comparison_test  # noqa: E402
+from comparison_test import FLIGHTS, OTHER_SYSTEM, SCENARIO, SHORT_GV, ComparisonTest, addresses_in  # noqa: E402
+from tool_test import TOOL  # noqa: E402
+
+NAMES = ["total-pressure", "static-pressure", "reverse-heading", "circles", "speed-run", "pitch", "yaw", "layers",
+         "lams-temperature", "spectrum"]
+# Two minutes of yaw, which are called a manoeuvre, and headings to compare.
+HEADINGS = SCENARIO.replace("cycles = 10", "cycles = 14").replace(
+    '[[leg]]\nkind = "landing"',
+    '[[leg]]\nkind = "reverse-heading"\n\n[[leg]]\nkind = "circle"\n\n[[leg]]\nkind = "landing"')
+ONE, TWO, GV = (FLIGHTS / name for name in ("one.nc", "two.nc", "gv.nc"))
+
+
+def setUpModule():
+    scenario = FLIGHTS / "scenario.toml"
+    for output, text, seed in ((ONE, HEADINGS, 3), (TWO, HEADINGS, 4), (GV, SHORT_GV, 20)):
+        scenario.write_text(text)
+        subprocess.run([TOOL, "simulate", scenario, "-o", output, "--seed", str(seed), "--quiet"], check=True)
+
+
+def tearDownModule():
+    comparison_test.MADE.cleanup()
+
+
+class CheckTest(ComparisonTest):
+    def check(self, *arguments, flights=(ONE,)):
+        """The checks by name."""
+        return {each["name"]: each for each in self.json_of("check", *flights, *arguments)["checks"]}
+
+    def changed(self, change, name="changed.nc"):
+        path = self.path / name
+        shutil.copy(ONE, path)
+        with netCDF4.Dataset(path, "a") as file:
+            change(file)
+        return path
+
+    def without(self, *variables):
+        """A flight in which these variables have other names, which nobody looks for."""
+        def change(file):
+            for variable in variables:
+                file.renameVariable(variable, "NO_" + variable)
+        return self.changed(change)
+
+    def assert_not_run(self, check, *words):
+        self.assertFalse(check["ran"], check["finding"])
+        self.assertIsNone(check["verdict"])
+        for word in words:
+            self.assertIn(word, check["reason"])
+
+
+class Results(CheckTest):
+    def test_json(self):
+        result = self.json_of("check", ONE, "-m", self.model(), "--second", OTHER_SYSTEM)
+        self.assertEqual([each["name"] for each in result["checks"]], NAMES)
+        for each in result["checks"]:
+            self.assertLessEqual({"name", "ran", "reason", "verdict", "numbers", "finding", "cannot_see", "tables",
+                                  "notes"}, set(each))
+            self.assertEqual(each["ran"], each["reason"] == "")
+            if each["ran"]:
+                self.assertIn(each["verdict"], ("consistent", "inconsistent", "cannot tell"))
+                self.assertTrue(each["cannot_see"])
+                self.assertTrue(each["numbers"])
+        for name in NAMES[:7]:
+            self.assertTrue(result["checks"][NAMES.index(name)]["ran"], name)
+        for each in result["checks"][:2]:
+            self.assertLessEqual({"slope", "offset_hpa", "rms_hpa"}, set(each["numbers"]))
+
+    def test_several_flights(self):
+        both = self.check("-m", self.model(), flights=(ONE, TWO))
+        self.assertEqual(both["reverse-heading"]["numbers"]["pairs"], 2)
+        self.assertEqual(both["circles"]["numbers"]["circles"], 2)
+
+    def test_a_second_system_without_a_model_is_as_measured(self):
+        check = self.check("-m", self.model())["static-pressure"]
+        self.assertEqual(check["verdict"], "cannot tell")
+        self.assertIn("as measured", check["finding"])
+        check = self.check("-m", self.model(), "--second", OTHER_SYSTEM)["static-pressure"]
+        self.assertEqual(check["verdict"], "consistent")
+
+    def test_without_a_model(self):
+        """The files of the simulator have no corrected pressures, so the pair is as measured."""
+        result = self.json_of("check", ONE)
+        self.assertEqual(result["model"], "PSFD/QCF as recorded")
+        self.assertEqual([each["name"] for each in result["checks"]], NAMES)
+
+    def test_text(self):
+        text = self.done("check", ONE, "-m", self.model(), "--second", OTHER_SYSTEM).stdout
+        for name in NAMES:
+            self.assertRegex(text, rf"(?m)^{name} ")
+        self.assertNotIn("nan", text)
+
+    def test_command_to_copy(self):
+        self.model(name="my model.toml")
+        self.link(ONE, "flight 1.nc")
+        text = self.done("check", "flight 1.nc", "-m", "my model.toml", cwd=self.path).stdout
+        self.assertIn("'flight 1.nc'", self.run_as_printed(text))
+        text = self.done("check", "flight 1.nc", cwd=self.path).stdout
+        self.assertIn("'flight 1.nc'", self.run_as_printed(text))
+
+    def test_quiet(self):
+        result = self.done("check", ONE, "--quiet")
+        self.assertEqual((result.stdout, result.stderr), ("", ""))
+
+    def test_report(self):
+        report = self.path / "check.html"
+        self.done("check", ONE, TWO, "-m", self.model(), "--second", OTHER_SYSTEM, "--report", report)
+        html = report.read_text()
+        self.assertEqual(addresses_in(html), set())
+        for word in ("Verdicts", "Reverse heading", "What it cannot see"):
+            self.assertIn(word, html)
+
+    def test_intervals(self):
+        veto = self.write("veto.toml", 'format = "pcor-intervals/1"\n[[veto]]\nregime = "circle"\n'
+                          'begin = "20:00:00"\nend = "23:00:00"\n')
+        self.assert_not_run(self.check("-m", self.model(), "--intervals", veto)["circles"], "no circle was found")
+
+
+class BadInput(CheckTest):
+    def test_no_heading(self):
+        checks = self.check("-m", self.model(), flights=(self.without("THDG"),))
+        for name in ("reverse-heading", "circles"):
+            self.assert_not_run(checks[name], "heading", "THDG")
+        self.assertTrue(checks["total-pressure"]["ran"])
+
+    def test_no_ground_velocity(self):
+        checks = self.check(flights=(self.without("GGSPD", "GGTRK"),))
+        for name in ("reverse-heading", "circles"):
+            self.assert_not_run(checks[name], "ground speed", "GGSPD")
+
+    def test_no_height(self):
+        checks = self.check("-m", self.model(), flights=(self.without("GGALT"),))
+        self.assertTrue(checks["pitch"]["ran"], checks["pitch"]["reason"])  # against the laser
+
+    def test_no_second_system(self):
+        checks = self.check(flights=(self.without("PSFRD", "QCFR", "PS_A", "QC_A"),))
+        for name in ("total-pressure", "static-pressure"):
+            self.assert_not_run(checks[name], "second", "PSFRD/QCFR", "--second")
+
+    def test_no_manoeuvres(self):
+        for name, regime in (("pitch", "pitch manoeuvre"), ("yaw", "yaw manoeuvre"), ("speed-run", "speed run")):
+            veto = self.write("veto.toml", f'format = "pcor-intervals/1"\n[[veto]]\nregime = "{regime}"\n'
+                              'begin = "20:00:00"\nend = "23:00:00"\n')
+            self.assert_not_run(self.check("--intervals", veto)[name], f"no {regime} was found", "--intervals")
+
+    def test_a_single_leg(self):
+        legs = self.write("legs.toml", 'format = "pcor-intervals/1"\n[[veto]]\nregime = "reverse heading"\n'
+                          'begin = "20:00:00"\nend = "23:00:00"\n[[add]]\nregime = "reverse heading"\npair = 1\n'
+                          'begin = "20:06:00"\nend = "20:07:00"\n')
+        self.assert_not_run(self.check("--intervals", legs)["reverse-heading"], "single leg", "two are needed")
+
+    def test_a_flight_without_values(self):
+        def change(file):
+            for name, variable in file.variables.items():
+                if variable.dimensions and name != "Time" and variable.dtype.kind == "f":
+                    variable[:] = float("nan")
+        nothing = self.changed(change)
+        for arguments in ((), ("-m", self.model())):
+            for check in self.check(*arguments, flights=(nothing,)).values():
+                self.assert_not_run(check, "changed.nc")
+        report = self.path / "check.html"
+        self.done("check", nothing, "--report", report)
+        self.assertIn("not run", report.read_text())
+        # Another flight is checked all the same, and the result says which was not.
+        result = self.json_of("check", nothing, TWO)
+        self.assertTrue(result["checks"][0]["ran"])
+        self.assertTrue(any("changed.nc" in note for note in result["notes"]))
+
+    def test_refuses(self):
+        model = self.model()
+        other = self.write("other.toml", model.read_text().replace('"PSFD"', '"PSFX"'))
+        for arguments, words in (((ONE, ONE), ["one.nc", "twice"]), ((ONE, GV), ["aircraft"]),
+                                 ((self.path / "none.nc",), ["none.nc"]), ((ONE, "-m", other), ["PSFX", "PSFD"]),
+                                 ((ONE, "--second", self.path / "none.toml"), ["none.toml"]),
+                                 ((ONE, "-m", model, "--second", model), ["second", "PSFD/QCF"]),
+                                 ((ONE, "-m", model, "--json", model), ["input"])):
+            with self.subTest(words):
+                self.refused("check", *arguments, words=words, output=self.path / "nothing")
+
+    def test_usage(self):
+        for arguments in ((), (ONE, "--secnd", OTHER_SYSTEM)):
+            result = self.run_tool("check", *arguments)
+            self.assertEqual(result.returncode, 2)
+
+
+if __name__ == "__main__":
+    if not os.access(TOOL, os.X_OK):
+        sys.exit(f"{TOOL} is not a program")
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

@@ -1,0 +1,667 @@
+#!/usr/bin/env python3
+"""`pcor temperature` as a user meets it, on simulated flights whose thermometer reads wrong by a known amount.
+
+    temperature_test.py TOOL SOURCE_DIRECTORY
+
+The flights are two and a half hours of a C-130 that climbs and descends over a triangle, where isobars rise by 10 m
+in 100 km. Faults are written into copies of them. Random numbers are fixed, so a test that passes does so on every
+run.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import tomllib
+import unittest
+from pathlib import Path
+
+import netCDF4
+import numpy
+
+sys.dont_write_bytecode = True  # no __pycache__ in the source directory
+import comparison_test  # noqa: E402
+from comparison_test import LASER, PUBLISHED, ComparisonTest, addresses_in, contents, with_a0  # noqa: E402
+from tool_test import SOURCE, TOOL, replace  # noqa: E402
+
+SCENARIO = (SOURCE / "data/scenarios/c130-climbs.toml").read_text()
+# A wind from the south of g/f times 10 m in 100 km at 40 degrees of latitude: in balance with the slope of isobars.
+IN_BALANCE = replace("^wind_from = 240$", "wind_from = 180\nwind_speed = 10.46\nwind_shear = 0.0")(SCENARIO)
+WITH_LASER = replace(r"^attack_differential_pressure.*$", r"\g<0>\n" + LASER)(PUBLISHED.read_text())
+OTHER_LAW = SOURCE / "data/models/c130-psfd-eq19.toml"
+
+MADE = tempfile.TemporaryDirectory()
+FLIGHTS = Path(MADE.name)
+ONE, TWO, THREE, BALANCED = (FLIGHTS / name for name in ("one.nc", "two.nc", "three.nc", "balanced.nc"))
+PROCESSED = FLIGHTS / "processed.nc"
+
+LEVEL = slice(4600, 5100)  # records of ONE: a level leg at 7 km
+CLIMB = slice(900, 1200)  # five minutes of the first climb
+AND_BACK = slice(0, 5250)  # the first triangle, which ends 30 km from where it began
+
+FLIGHT_KEYS = {"name", "used", "samples", "stretches", "rms_before_m", "rms_after_m"}
+SLOPES = ("fitted", "none", "level-legs", "climb-descent", "whole-flight", "geostrophic")
+
+
+def setUpModule():
+    scenario = FLIGHTS / "scenario.toml"
+    for output, text, seed in ((ONE, SCENARIO, 31), (TWO, SCENARIO, 32), (THREE, SCENARIO, 33),
+                               (BALANCED, IN_BALANCE, 34)):
+        scenario.write_text(text)
+        subprocess.run([TOOL, "simulate", scenario, "-o", output, "--seed", str(seed), "--quiet"], check=True)
+    subprocess.run([TOOL, "process", ONE, "-m", PUBLISHED, "-o", PROCESSED, "--hydrostatic", "--quiet"], check=True)
+
+
+def tearDownModule():
+    comparison_test.MADE.cleanup()
+    MADE.cleanup()
+
+
+def series(path, name):
+    with netCDF4.Dataset(path) as file:
+        return numpy.ma.filled(file[name][:].astype(float), numpy.nan)
+
+
+def changed(name, change):
+    """An edit of one variable: `change` takes and gives its values, NaN where missing."""
+
+    def edit(file):
+        values = change(numpy.ma.filled(file[name][:].astype(float), numpy.nan))
+        file[name][:] = numpy.ma.masked_invalid(values)
+
+    return edit
+
+
+def without(name):
+    return lambda file: file.renameVariable(name, "NOT_" + name)
+
+
+def truth(flight=ONE, processed=PROCESSED):
+    """What has to be added to the measured temperature, as a0 (K) and a1, by regression: the simulator knows the air."""
+    measured, air = series(processed, "ATX"), series(flight, "TRUE_AT")
+    flying = (series(flight, "TRUE_TAS") > 80.0) & ~numpy.isnan(measured)
+    slope, constant = numpy.polyfit(measured[flying], (air - measured)[flying], 1)
+    return {"a0": constant, "a1": slope}
+
+
+class TemperatureTest(ComparisonTest):
+    def edited(self, *edits, name="flight.nc", flight=ONE):
+        path = self.path / name
+        shutil.copy(flight, path)
+        with netCDF4.Dataset(path, "a") as file:
+            for edit in edits:
+                edit(file)
+        return path
+
+    def part(self, records, name="flight.nc"):
+        """Some records of a flight."""
+        path = self.path / name
+        with netCDF4.Dataset(ONE) as whole, netCDF4.Dataset(path, "w", format=whole.data_model) as file:
+            whole.set_auto_maskandscale(False)
+            file.set_auto_maskandscale(False)
+            file.setncatts(whole.__dict__)
+            for dimension in whole.dimensions.values():
+                file.createDimension(dimension.name, None if dimension.isunlimited() else len(dimension))
+            for variable in whole.variables.values():
+                attributes = dict(variable.__dict__)
+                copy = file.createVariable(variable.name, variable.dtype, variable.dimensions,
+                                           fill_value=attributes.pop("_FillValue", None))
+                copy.setncatts(attributes)
+                copy[:] = variable[records] if "Time" in variable.dimensions else variable[:]
+        return path
+
+    def temperature(self, *arguments, flights=(ONE,), model=PUBLISHED, output=None):
+        output = output or self.path / "out.toml"
+        return self.json_of("temperature", *flights, "-m", model, "-o", output, *arguments)
+
+    def text_of(self, *arguments, flights=(ONE,), model=PUBLISHED):
+        output = self.path / "out.toml"
+        return self.done("temperature", *flights, "-m", model, "-o", output, *arguments).stdout
+
+    def refuse(self, *arguments, words, flights=(ONE,), model=PUBLISHED, status=1, **options):
+        output = () if "-o" in arguments else ("-o", self.path / "out.toml")
+        return self.refused("temperature", *flights, "-m", model, *arguments, *output, words=words, status=status,
+                            **options)
+
+    def process(self, flight, model, *arguments, name="corrected.nc"):
+        output = self.path / name
+        self.done("process", flight, "-m", model, "-o", output, "--quiet", *arguments)
+        return output
+
+    def with_laser(self, change=lambda toml: toml, name="laser.toml"):
+        return self.write(name, change(WITH_LASER))
+
+    def assert_is_truth(self, result, errors=3.0):
+        """Within three stated errors; seeds are fixed. By chance a fresh seed would miss it once in 370."""
+        for name, value in truth().items():
+            self.assertAlmostEqual(result["coefficients"][name], value, delta=errors * result["stderr"][name])
+
+    def assert_correction_is_truth(self, result, errors=3.0):
+        """As `assert_is_truth`, of the correction at each temperature, for any degree."""
+        true = truth()
+        for at in result["corrections"]:
+            value = true["a0"] + true["a1"] * at["temperature_degc"]
+            self.assertAlmostEqual(at["correction_k"], value, delta=errors * at["stderr_k"])
+
+    def assert_agree(self, result, other, share):
+        """Coefficients agree to a share of the stated error."""
+        self.assertEqual(result["coefficients"].keys(), other["coefficients"].keys())
+        for name, value in result["coefficients"].items():
+            self.assertAlmostEqual(other["coefficients"][name], value, delta=share * result["stderr"][name])
+
+
+class Fit(TemperatureTest):
+    def test_json_has_the_keys(self):
+        result = self.temperature(flights=(ONE, TWO))
+        self.assertLessEqual({"coefficients", "stderr", "sigma_m", "flights", "samples", "covariance", "profile",
+                              "least_squares", "corrections", "degrees", "per_hpa", "noise", "notes"}, set(result))
+        self.assertEqual(result["coefficients"].keys(), result["stderr"].keys())
+        self.assertEqual([flight["name"] for flight in result["flights"]], ["one.nc", "two.nc"])
+        for flight in result["flights"]:
+            self.assertEqual(set(flight), FLIGHT_KEYS)
+        self.assertEqual(sum(flight["samples"] for flight in result["flights"]), result["samples"])
+
+    def test_finds_what_is_wrong_with_the_thermometer(self):
+        for flights in ((ONE,), (TWO,), (ONE, TWO, THREE)):
+            with self.subTest(flights=len(flights)):
+                result = self.temperature(flights=flights)
+                self.assertEqual(set(result["coefficients"]), {"a0", "a1"})
+                self.assert_is_truth(result)
+
+    def test_least_squares_stands_beside_it_with_smaller_errors(self):
+        result = self.temperature(flights=(ONE, TWO))
+        for name, error in result["least_squares"]["stderr"].items():
+            self.assertLess(error, 0.5 * result["stderr"][name])
+
+    def test_profile_and_curvature_agree(self):
+        """To a tenth of the error, as the search for the noise stops at 0.001 of -2 ln L."""
+        result = self.temperature(flights=(ONE, TWO))
+        for name, (lower, upper) in result["profile"].items():
+            value, error = result["coefficients"][name], result["stderr"][name]
+            self.assertAlmostEqual((value - lower) / error, 1.0, delta=0.1)
+            self.assertAlmostEqual((upper - value) / error, 1.0, delta=0.1)
+
+    def test_errors_of_the_correction_follow_from_the_covariance(self):
+        result = self.temperature()
+        covariance, values = numpy.array(result["covariance"]), list(result["coefficients"].values())
+        for at in result["corrections"]:
+            powers = at["temperature_degc"] ** numpy.arange(len(values))
+            self.assertAlmostEqual(at["correction_k"], powers @ values, delta=1e-9)
+            self.assertAlmostEqual(at["stderr_k"], (powers @ covariance @ powers) ** 0.5, delta=1e-9)
+
+    def test_more_flights_make_smaller_errors(self):
+        """As one over the square root of their number, to a quarter: the noise is found anew."""
+        one, three = self.temperature(), self.temperature(flights=(ONE, TWO, THREE))
+        ratio = one["stderr"]["a0"] / three["stderr"]["a0"]
+        self.assertAlmostEqual(ratio / 3**0.5, 1.0, delta=0.25)
+
+    def test_noise_of_the_gps_is_that_of_the_scenario(self):
+        """0.3 m, of which two and a half hours hold 75 spans of two memories of 60 s: known to 1/sqrt(2 x 75), 8 %;
+        three times that."""
+        self.assertAlmostEqual(self.temperature()["sigma_m"] / 0.3, 1.0, delta=0.24)
+
+    def test_an_error_of_the_pressure_makes_it_less_sure(self):
+        sure, unsure = self.temperature(), self.temperature("--pressure-error", "0.1")
+        expected = (sure["stderr"]["a0"] ** 2 + (0.1 * sure["per_hpa"]["a0"]) ** 2) ** 0.5
+        self.assertGreater(unsure["stderr"]["a0"], 2.0 * sure["stderr"]["a0"])
+        # The likelihood sees a little of the error of the pressure itself, so a fifth.
+        self.assertAlmostEqual(unsure["stderr"]["a0"] / expected, 1.0, delta=0.2)
+
+    def test_what_an_error_of_the_pressure_does(self):
+        """All pressures 1 hPa higher move the coefficients by what is stated; to a tenth, as the likelihood is solved
+        anew with noise that is found anew."""
+        before = self.temperature("--degree", "0")
+        flight = self.edited(changed("PSFD", lambda p: p + 1.0))
+        after = self.temperature("--degree", "0", flights=(flight,))
+        moved = after["coefficients"]["a0"] - before["coefficients"]["a0"]
+        self.assertAlmostEqual(moved / before["per_hpa"]["a0"], 1.0, delta=0.1)
+
+    def test_text(self):
+        text = self.text_of(flights=(ONE, TWO))
+        for words in ("one.nc", "two.nc", "likelihood", "std. error", "least squares", "held-out", "too small"):
+            self.assertIn(words, text)
+
+    def test_command_to_copy(self):
+        self.write("my model.toml", PUBLISHED.read_text())
+        self.link(ONE, "flight 1.nc")
+        text = self.done("temperature", "flight 1.nc", "-m", "my model.toml", "-o", "it's fitted.toml",
+                         cwd=self.path).stdout
+        self.assertIn("pcor process 'flight 1.nc'", self.run_as_printed(text))
+
+    def test_is_quiet(self):
+        result = self.done("temperature", ONE, "-m", PUBLISHED, "-o", self.path / "out.toml", "--quiet")
+        self.assertEqual((result.stdout, result.stderr), ("", ""))
+
+    def test_standard_error_is_empty(self):
+        result = self.done("temperature", ONE, TWO, "-m", PUBLISHED, "-o", self.path / "out.toml")
+        self.assertEqual(result.stderr, "")
+
+    def test_report_is_one_file_that_fetches_nothing(self):
+        report = self.path / "out.html"
+        before = set(contents(self.path))
+        self.temperature("--report", report, flights=(ONE, TWO))
+        self.assertEqual(set(contents(self.path)) - before, {"out.html", "out.toml"})
+        text = report.read_text()
+        self.assertNotRegex(text, r"""(src|href|srcset|data)\s*=\s*["']?\s*(https?:)?//""")
+        self.assertNotRegex(text, r"""url\(\s*["']?(https?:)?//|@import|fetch\(|XMLHttpRequest|import\(""")
+        self.assertEqual(addresses_in(text), set())
+        for words in ("one.nc", "two.nc", "Coefficients", "std. error", "least squares"):
+            self.assertIn(words, text)
+
+
+class Model(TemperatureTest):
+    def test_process_moves_the_temperature_by_the_correction(self):
+        """Temperatures are stored as floats of up to 32 degC, to 1e-6 K each; airspeeds of up to 256 m/s to 8e-6."""
+        a = self.temperature()["coefficients"]
+        after = self.process(ONE, self.path / "out.toml")
+        good = (series(PROCESSED, "PCORFLAG") == 0) & (series(after, "PCORFLAG") == 0)
+        t, t_after = series(PROCESSED, "ATX")[good], series(after, "ATX")[good]
+        self.assertGreater(numpy.count_nonzero(good), 8000)
+        numpy.testing.assert_allclose(t_after, t + a["a0"] + a["a1"] * t, rtol=0.0, atol=4e-6)
+        numpy.testing.assert_allclose((t_after - a["a0"]) / (1.0 + a["a1"]), t, rtol=0.0, atol=4e-6)
+        v, v_after = series(PROCESSED, "TASX")[good], series(after, "TASX")[good]
+        numpy.testing.assert_allclose(v_after, v * numpy.sqrt((t_after + 273.15) / (t + 273.15)), rtol=0.0, atol=3e-5)
+        for name in ("PCOR", "PSXC", "QCXC", "MACHX"):
+            numpy.testing.assert_array_equal(series(after, name)[good], series(PROCESSED, name)[good], name)
+
+    def test_process_comes_closer_to_the_air(self):
+        self.temperature()
+        after = self.process(ONE, self.path / "out.toml")
+        flying = series(ONE, "TRUE_TAS") > 80.0
+        error = numpy.abs(series(after, "ATX") - series(ONE, "TRUE_AT"))[flying]
+        before = numpy.abs(series(PROCESSED, "ATX") - series(ONE, "TRUE_AT"))[flying]
+        self.assertLess(numpy.nanmedian(error), 0.2 * numpy.nanmedian(before))
+
+    def test_only_the_correction_is_added(self):
+        result = self.temperature()
+        before, after = tomllib.loads(PUBLISHED.read_text()), tomllib.loads((self.path / "out.toml").read_text())
+        self.assertEqual(after["effect"][:-1], before["effect"])
+        correction = after["effect"][-1]
+        self.assertEqual(correction["id"], "temp-calibration")
+        self.assertEqual(correction["parameters"], result["coefficients"] | {"a2": 0.0})
+        self.assertEqual(correction["stderr"], result["stderr"])
+        self.assertEqual(correction["fixed"], ["a0", "a1", "a2"])
+        self.assertEqual(after["covariance"]["parameters"], ["temp-calibration.a0", "temp-calibration.a1"])
+        self.assertEqual(after["covariance"]["matrix"], result["covariance"])
+        self.assertEqual(after["provenance"]["temperature"]["flights"], ["one.nc"])
+        for key in before.keys() - {"effect"}:
+            self.assertEqual(after[key], before[key])
+
+    def test_a_second_run_replaces_the_correction(self):
+        first = self.temperature()
+        second = self.temperature(model=self.path / "out.toml", output=self.path / "again.toml")
+        self.assertEqual(second["coefficients"], first["coefficients"])
+        self.assertEqual((self.path / "again.toml").read_text(), (self.path / "out.toml").read_text())
+
+    def test_refit_keeps_the_correction(self):
+        self.temperature(model=self.with_laser())
+        before = tomllib.loads((self.path / "out.toml").read_text())["effect"][-1]
+        self.refit(flights=(ONE,), model=self.path / "out.toml", output=self.path / "refitted.toml")
+        after = tomllib.loads((self.path / "refitted.toml").read_text())
+        self.assertEqual(after["effect"][-1]["parameters"], before["parameters"])
+        self.assertNotEqual(after["effect"][0]["parameters"], tomllib.loads(WITH_LASER)["effect"][0]["parameters"])
+
+    def test_a_correction_after_a_refit_keeps_the_refit(self):
+        self.refit(flights=(ONE,), model=self.with_laser(), output=self.path / "refitted.toml")
+        self.temperature(model=self.path / "refitted.toml")
+        before, after = (tomllib.loads((self.path / name).read_text()) for name in ("refitted.toml", "out.toml"))
+        self.assertEqual(after["effect"][:-1], before["effect"])
+        count = len(before["covariance"]["parameters"])
+        self.assertEqual(after["covariance"]["parameters"][:count], before["covariance"]["parameters"])
+        self.assertEqual([row[:count] for row in after["covariance"]["matrix"][:count]],
+                         before["covariance"]["matrix"])
+
+
+class Iterate(TemperatureTest):
+    def test_converges_and_says_how_far_each_moved(self):
+        result = self.temperature("--iterate", flights=(ONE, TWO), model=self.with_laser())
+        self.assertTrue(result["converged"])
+        rounds = result["rounds"]
+        self.assertGreater(len(rounds), 1)
+        self.assertEqual(rounds[-1]["coefficients"], result["coefficients"])
+        self.assertLess(rounds[-1]["defect_change_hpa"], 1e-3)
+        self.assertLess(rounds[-1]["temperature_change_k"], 1e-3)
+        self.assertGreater(rounds[0]["temperature_change_k"], rounds[-1]["temperature_change_k"])
+        a, b = (numpy.array(list(each["coefficients"].values())) for each in rounds[-2:])
+        moved = [abs((b - a) @ at["temperature_degc"] ** numpy.arange(len(a))) for at in result["corrections"]]
+        self.assertAlmostEqual(rounds[-1]["temperature_change_k"], max(moved), delta=1e-9)
+
+    def test_the_model_has_pressure_and_temperature(self):
+        """The law within four standard errors, by chance missed one time in 16000. The temperature within three of its
+        own and of what the error of the pressure does to it: 0.1 hPa, the rms of the law's coefficients."""
+        result = self.temperature("--iterate", flights=(ONE, TWO), model=self.with_laser())
+        effects = tomllib.loads((self.path / "out.toml").read_text())["effect"]
+        for effect in effects[:3]:
+            name, value = comparison_test.LAW[effect["id"]]
+            self.assertAlmostEqual(effect["parameters"][name], value, delta=4.0 * effect["stderr"][name])
+        error = (result["stderr"]["a0"] ** 2 + (0.1 * result["per_hpa"]["a0"]) ** 2) ** 0.5
+        self.assertAlmostEqual(result["coefficients"]["a0"], truth()["a0"], delta=3.0 * error)
+
+    def test_the_start_does_not_matter(self):
+        """Both stop where a round moves the temperature by less than 0.001 K, and rounds shrink tenfold."""
+        near = self.temperature("--iterate", model=self.with_laser())
+        far = self.temperature("--iterate", model=self.with_laser(with_a0(0.006), "far.toml"))
+        self.assertAlmostEqual(far["coefficients"]["a0"], near["coefficients"]["a0"], delta=3e-3)
+        self.assertAlmostEqual(far["coefficients"]["a1"], near["coefficients"]["a1"], delta=3e-4)
+
+    def test_text_has_the_rounds(self):
+        text = self.text_of("--iterate", model=self.with_laser())
+        self.assertRegex(text, r"round .*delta-p moved, hPa.*temperature moved, K")
+        self.assertIn("pressure and temperature agree with each other", text)
+
+    def test_another_reference(self):
+        result = self.temperature("--iterate", "--reference", "pressure:PS_A")
+        self.assertTrue(result["converged"])
+
+    def test_needs_a_laser_or_a_reference(self):
+        self.refuse("--iterate", words=["lams_airspeed", "--reference pressure:"])
+
+    def test_a_reference_needs_iterate(self):
+        self.refuse("--reference", "lams", words=["--reference", "--iterate"])
+
+    def test_needs_flights_as_recorded(self):
+        self.refuse("--iterate", "--archived", flights=(PROCESSED,), words=["--iterate", "--archived"])
+
+
+class Archived(TemperatureTest):
+    """Archived flights hold the same numbers as floats: steps of some 0.02 m/K to 1e-9, whose errors add up to less
+    than a millimetre over a flight, and ATX to 1e-6 K. What remains is where the search for the noise stops, 0.001 of
+    -2 ln L, and that some records at the ends have no output: a tenth of the stated error covers it."""
+
+    def test_gives_the_same(self):
+        self.assert_agree(self.temperature(), self.temperature("--archived", flights=(PROCESSED,)), share=0.1)
+
+    def test_gives_the_same_if_processed_with_a_correction(self):
+        raw = self.temperature()
+        corrected = self.process(ONE, self.path / "out.toml", "--hydrostatic")
+        self.assert_agree(raw, self.temperature("--archived", flights=(corrected,)), share=0.1)
+
+    def test_gives_the_same_if_processed_with_a_curved_correction(self):
+        raw = self.temperature()
+        self.temperature("--degree", "2")
+        corrected = self.process(ONE, self.path / "out.toml", "--hydrostatic")
+        self.assert_agree(raw, self.temperature("--archived", flights=(corrected,)), share=0.1)
+
+    def test_many(self):
+        flights = [self.process(flight, PUBLISHED, "--hydrostatic", name=flight.name) for flight in (ONE, TWO, THREE)]
+        raw = self.temperature(flights=(ONE, TWO, THREE))
+        self.assert_agree(raw, self.temperature("--archived", flights=flights), share=0.1)
+
+    def test_slopes(self):
+        for slope in SLOPES:
+            with self.subTest(slope):
+                raw = self.temperature("--slope", slope, "--degree", "1")
+                archived = self.temperature("--slope", slope, "--degree", "1", "--archived", flights=(PROCESSED,))
+                self.assert_agree(raw, archived, share=0.1)
+
+    def test_needs_the_steps(self):
+        self.refuse("--archived", flights=(self.process(ONE, PUBLISHED),),
+                    words=["corrected.nc", "HYDSTEP", "--hydrostatic"])
+
+    def test_needs_a_processed_flight(self):
+        self.refuse("--archived", words=["one.nc", "--archived", "pcor process"])
+
+    def test_needs_to_know_the_correction(self):
+        flight = self.edited(lambda file: file["HYDSTEP"].delncattr("temperature_calibration"), flight=PROCESSED)
+        self.refuse("--archived", flights=(flight,), words=["flight.nc", "HYDSTEP", "temperature_calibration"])
+
+
+class Options(TemperatureTest):
+    def test_every_slope(self):
+        """In a wind in balance all but `none` take the slope of 10 m in 100 km off; estimates of it are not without
+        error, which their stated errors do not know, so 0.1 K: a tenth of what it would do."""
+        for slope in SLOPES:
+            with self.subTest(slope):
+                result = self.temperature("--slope", slope, "--degree", "1", flights=(BALANCED,))
+                away = [at["correction_k"] - truth()["a0"] - truth()["a1"] * at["temperature_degc"]
+                        for at in result["corrections"]]
+                if slope == "none":
+                    self.assertGreater(max(map(abs, away)), 0.1)
+                    self.assertIn("--slope fitted", " ".join(result["notes"]))
+                else:
+                    self.assertLess(max(map(abs, away)), 0.1)
+
+    def test_a_slope_of_no_size_is_none(self):
+        none = self.temperature("--slope", "none", "--degree", "1")
+        zero = self.temperature("--slope-size", "0", "--degree", "1")
+        self.assert_agree(none, zero, share=1e-6)
+
+    def test_every_degree(self):
+        """A constant serves at the mean temperature, where the flight spends most of its climbs; a quadratic is right
+        everywhere within its errors."""
+        for degree in (0, 1, 2):
+            with self.subTest(degree):
+                result = self.temperature("--degree", str(degree))
+                self.assertEqual(list(result["coefficients"]), [f"a{k}" for k in range(degree + 1)])
+                if degree > 0:
+                    self.assert_correction_is_truth(result)
+
+    def test_degree_is_chosen_by_held_out_flights(self):
+        degrees = self.temperature(flights=(ONE, TWO, THREE))["degrees"]
+        held_out = {each["degree"]: each["held_out"] for each in degrees}
+        self.assertEqual(min(held_out, key=held_out.get), 1)
+
+    def test_climb_rate(self):
+        everything, climbs = self.temperature(), self.temperature("--min-climb-rate", "2")
+        self.assertLess(climbs["samples"], everything["samples"])
+        self.assertGreater(climbs["flights"][0]["stretches"], everything["flights"][0]["stretches"])
+        self.assert_is_truth(climbs)
+
+    def test_a_climb_rate_that_is_not_flown(self):
+        self.refuse("--min-climb-rate", "20", words=["one.nc", "climbs", "20 m/s"])
+
+    def test_flights_that_return_are_left_out(self):
+        back = self.part(AND_BACK, "back.nc")
+        result = self.temperature("--skip-returning", flights=(ONE, back))
+        self.assertEqual([flight["used"] for flight in result["flights"]], [True, False])
+        self.assertIn("--skip-returning", result["flights"][1]["left_out"])
+        self.assertEqual(result["coefficients"], self.temperature()["coefficients"])
+        self.refuse("--skip-returning", flights=(back,), words=["ends where it began", "--skip-returning"])
+
+    def test_an_excluded_hour_takes_no_part(self):
+        intervals = self.write("intervals.toml", 'format = "pcor-intervals/1"\n[[exclude]]\nbegin = "20:30:00"\n'
+                               'end = "20:40:00"\nreason = "a test"\n')
+        result, everything = self.temperature("--intervals", intervals), self.temperature()
+        self.assertEqual(everything["samples"] - result["samples"], 600)
+        self.assertEqual(result["flights"][0]["stretches"], 2)
+        self.assert_is_truth(result)
+
+
+class BadHeight(TemperatureTest):
+    def test_steps(self):
+        def steps(height):
+            height[4000:] += 40.0
+            height[6000:] -= 55.0
+            return height
+
+        result = self.temperature(flights=(self.edited(changed("GGALT", steps)),))
+        self.assertEqual(result["flights"][0]["stretches"], 3)
+        self.assertIn("2 step(s)", " ".join(result["notes"]))
+        self.assert_is_truth(result)
+
+    def test_spikes(self):
+        def spikes(height):
+            height[3000:3010] += 200.0
+            height[7000] -= 5000.0
+            return height
+
+        result = self.temperature(flights=(self.edited(changed("GGALT", spikes)),))
+        self.assertEqual(result["samples"], self.temperature()["samples"] - 11)
+        self.assertIn("11 sample(s) in spikes", " ".join(result["notes"]))
+        self.assert_is_truth(result)
+
+    def test_dropouts(self):
+        def dropouts(height):
+            for gap in (slice(2000, 2400), slice(3000, 3060), slice(7000, 7001)):
+                height[gap] = numpy.nan
+            return height
+
+        result = self.temperature(flights=(self.edited(changed("GGALT", dropouts)),))
+        self.assertEqual(result["samples"], self.temperature()["samples"] - 461)
+        self.assert_is_truth(result)
+
+    def test_feet_that_are_called_metres(self):
+        flight = self.edited(changed("GGALT", lambda height: height / 0.3048))
+        self.refuse(flights=(flight,), words=["flight.nc", "GGALT", "in feet", "unit"])
+
+    def test_feet_that_are_called_feet(self):
+        """Values are floats of up to 32768 ft, to 1e-3 ft each, which is nothing beside the noise of 0.3 m."""
+        flight = self.edited(changed("GGALT", lambda height: height / 0.3048),
+                             lambda file: file["GGALT"].setncattr("units", "ft"))
+        self.assert_agree(self.temperature(), self.temperature(flights=(flight,)), share=0.1)
+
+    def test_none(self):
+        self.refuse(flights=(self.edited(without("GGALT")),), words=["flight.nc", "GGALT", "[variables] altitude"])
+
+    def test_no_value(self):
+        flight = self.edited(changed("GGALT", lambda height: numpy.nan * height))
+        self.refuse(flights=(flight,), words=["flight.nc", "GGALT"])
+
+    def test_that_stands_still(self):
+        flight = self.edited(changed("GGALT", lambda height: 0.0 * height + 3000.0))
+        self.refuse(flights=(flight,), words=["flight.nc", "GGALT", "pressure altitude"])
+
+
+class BadInput(TemperatureTest):
+    def test_no_climb(self):
+        self.refuse(flights=(self.part(LEVEL),), words=["flight.nc", "climbs by", "m only", "300 m"])
+
+    def test_pressure_that_rises_with_height(self):
+        flight = self.edited(changed("PSFD", lambda p: numpy.nanmin(p) + numpy.nanmax(p) - p))
+        self.refuse(flights=(flight,), words=["flight.nc", "GGALT", "pressure altitude"])
+
+    def test_no_latitude(self):
+        self.refuse(flights=(self.edited(without("GGLAT")),), words=["flight.nc", "latitude", "GGLAT", "gravity"])
+
+    def test_another_latitude(self):
+        def rename(file):
+            file.renameVariable("GGLAT", "LAT_IRS2")
+
+        flight = self.edited(rename)
+        model = self.write("model.toml", replace(r"^vapor_pressure.*$", '\\g<0>\nlatitude = "LAT_IRS2"')(
+            PUBLISHED.read_text()))
+        self.assert_agree(self.temperature(), self.temperature(flights=(flight,), model=model), share=1e-6)
+
+    def test_no_heading(self):
+        """Only the wind needs it."""
+        flight = self.edited(without("THDG"))
+        self.assert_agree(self.temperature(), self.temperature(flights=(flight,)), share=1e-6)
+        geostrophic = self.temperature("--slope", "geostrophic", flights=(flight,))
+        self.assertIn("without heading and airspeed there is no wind", " ".join(geostrophic["notes"]))
+
+    def test_no_way_over_the_ground(self):
+        for slope in ("fitted", "whole-flight", "geostrophic"):
+            with self.subTest(slope):
+                result = self.temperature("--slope", slope, flights=(self.edited(without("GGSPD")),))
+                self.assertIn("over the ground", " ".join(result["notes"]))
+
+    def test_no_thermometer_in_the_model(self):
+        model = self.write("model.toml", replace("^recovery_temperature.*\n", "")(PUBLISHED.read_text()))
+        self.refuse(model=model, words=["one.nc", "thermometer", "recovery_temperature", "[variables]"])
+
+    def test_no_thermometer_in_the_flight(self):
+        model = self.write("model.toml", replace('"TTRR"', '"TTRX"')(PUBLISHED.read_text()))
+        self.refuse(model=model, words=["one.nc", "TTRX", "TTRR", "recovery_temperature"])
+
+    def test_a_thermometer_without_a_value(self):
+        self.refuse(flights=(self.edited(changed("TTRR", lambda t: numpy.nan * t)),), words=["flight.nc", "TTRR"])
+
+    def test_a_flight_without_records(self):
+        self.refuse(flights=(self.part(slice(0, 0)),), words=["flight.nc", "no records"])
+
+    def test_five_minutes(self):
+        """A climb of five minutes tells little of the temperature, and the errors say so: the slope of isobars alone,
+        10 m in 100 km, looks like 1 K."""
+        for degree in ("0", "auto"):
+            with self.subTest(degree):
+                result = self.temperature("--degree", degree, flights=(self.part(CLIMB),))
+                self.assertEqual(result["flights"][0]["samples"], 300)
+                middle = result["corrections"][2]
+                self.assertGreater(middle["stderr_k"], 0.3)
+                true = truth()
+                self.assertAlmostEqual(middle["correction_k"], true["a0"] + true["a1"] * middle["temperature_degc"],
+                                       delta=3.0 * middle["stderr_k"])
+
+    def test_a_correction_that_no_thermometer_needs(self):
+        """Five minutes do not tell a curve: what comes out is beyond the bounds of the catalogue."""
+        self.refuse("--degree", "2", flights=(self.part(CLIMB),), words=["a2", "--degree"])
+
+    def test_a_bad_flight_is_left_out_and_listed(self):
+        bad = self.edited(changed("GGALT", lambda height: height / 0.3048), name="feet.nc")
+        result = self.temperature(flights=(bad, ONE))
+        self.assertEqual([flight["used"] for flight in result["flights"]], [False, True])
+        self.assertIn("in feet", result["flights"][0]["left_out"])
+        self.assertEqual(result["coefficients"], self.temperature()["coefficients"])
+        self.assertEqual(tomllib.loads((self.path / "out.toml").read_text())["provenance"]["temperature"]["flights"],
+                         ["one.nc"])
+
+    def test_a_bad_flight_is_not_the_one_to_process(self):
+        bad = self.edited(changed("GGALT", lambda height: height / 0.3048), name="feet.nc")
+        text = self.text_of(flights=(bad, ONE))
+        self.assertRegex(text, r"feet.nc +left out: .*in feet")
+        self.assertIn("pcor process " + str(ONE), text)
+
+    def test_no_flight_is_good(self):
+        flights = (self.edited(without("GGLAT"), name="first.nc"), self.edited(without("GGALT"), name="second.nc"))
+        self.refuse(flights=flights, words=["none of the 2 flights", "first.nc", "latitude"])
+
+    def test_a_flight_twice(self):
+        self.refuse(flights=(ONE, ONE), words=["one.nc", "twice"])
+
+    def test_flights_of_two_aircraft(self):
+        other = self.edited(lambda file: file.setncattr("platform", "N677F"), name="other.nc")
+        self.refuse(flights=(ONE, other), words=["one.nc", "other.nc", "N130AR", "N677F"])
+
+    def test_no_such_files(self):
+        none = self.path / "none"
+        self.refuse(flights=(ONE, none), words=[none, "no such file"])
+        self.refuse(model=none, words=[none, "no such file"])
+
+    def test_a_file_that_is_no_flight(self):
+        self.refuse(flights=(self.write("flight.nc", "not a flight"),), words=["flight.nc"])
+
+    def test_wrong_usage(self):
+        for option, value in (("--degree", "3"), ("--slope", "steep"), ("--min-climb-rate", "-1"),
+                              ("--pressure-error", "nan"), ("--slope-size", "many")):
+            with self.subTest(option):
+                self.refuse(option, value, words=[option], status=2)
+                (self.path / "out.toml").unlink(missing_ok=True)
+        self.refused("temperature", ONE, "-o", self.path / "out.toml", words=["--model"], status=2)
+        (self.path / "out.toml").unlink(missing_ok=True)
+        self.refused("temperature", ONE, "-m", PUBLISHED, words=["--output"], status=2)
+
+
+class Output(TemperatureTest):
+    def test_replaces_an_old_one_by_a_whole_new_one(self):
+        self.write("out.toml", "old")
+        self.temperature()
+        self.assertIn("temp-calibration", (self.path / "out.toml").read_text())
+
+    def test_is_an_input(self):
+        model = self.write("model.toml", PUBLISHED.read_text())
+        flight = self.edited()
+        for output in (model, flight):
+            with self.subTest(output.name):
+                self.refuse("-o", output, flights=(flight,), model=model, output=output,
+                            words=[output.name, "input"])
+                for option in ("--json", "--report"):
+                    self.refuse(option, output, flights=(flight,), model=model, words=[output.name, "input"])
+
+    def test_two_in_one_place(self):
+        for option in ("--json", "--report"):
+            with self.subTest(option):
+                self.refuse(option, self.path / "out.toml", words=["out.toml", "twice"])
+
+    def test_missing_folder(self):
+        missing = self.path / "none"
+        self.refuse("-o", missing / "out.toml", words=[missing, "make it"], output=missing / "out.toml")
+        for option in ("--json", "--report"):
+            with self.subTest(option):
+                self.refuse(option, missing / "out", words=[missing, "make it"])
+
+
+if __name__ == "__main__":
+    if not os.access(TOOL, os.X_OK):
+        sys.exit(f"{TOOL} is not a program")
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

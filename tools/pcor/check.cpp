@@ -1,0 +1,177 @@
+#include "pcor/offline/check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "comparison.hpp"
+#include "pcor/offline/model_file.hpp"
+#include "progress.hpp"
+
+namespace pcor::tool {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  ComparisonOptions flights;
+  std::string model;
+  std::string second;
+};
+
+nlohmann::ordered_json as_json(const ReportTable& table) {
+  return {{"title", table.title}, {"headers", table.headers}, {"rows", table.rows}};
+}
+
+nlohmann::ordered_json as_json(const CheckResult& result) {
+  nlohmann::ordered_json numbers = nlohmann::ordered_json::object();
+  for (const auto& [name, value] : result.numbers) numbers[name] = value;
+  nlohmann::ordered_json tables = nlohmann::ordered_json::array();
+  for (const ReportTable& table : result.tables) tables.push_back(as_json(table));
+  nlohmann::ordered_json entry{{"name", result.name}, {"ran", result.ran}, {"reason", result.reason}};
+  entry["verdict"] =
+      result.ran ? nlohmann::ordered_json(std::string(name_of(result.verdict))) : nlohmann::ordered_json();
+  entry["numbers"] = std::move(numbers);
+  entry["finding"] = result.finding;
+  entry["cannot_see"] = result.cannot_see;
+  entry["tables"] = std::move(tables);
+  entry["notes"] = result.notes;
+  return entry;
+}
+
+nlohmann::ordered_json as_json(const Checks& checks) {
+  nlohmann::ordered_json result{{"model", checks.model}, {"flights", checks.flights}};
+  result["checks"] = nlohmann::ordered_json::array();
+  for (const CheckResult& each : checks.results) result["checks"].push_back(as_json(each));
+  result["notes"] = checks.notes;
+  return result;
+}
+
+/// The number of a check that stands for it in the short table, with its error.
+std::string key_number(const CheckResult& result) {
+  struct Key {
+    const char* check;
+    const char* number;
+    const char* error;
+    const char* unit;
+  };
+  constexpr Key keys[]{
+      {"total-pressure", "mean_difference_hpa", "mean_difference_stderr_hpa", "hPa between the systems"},
+      {"static-pressure", "mean_difference_hpa", "mean_difference_stderr_hpa", "hPa between the systems"},
+      {"reverse-heading", "airspeed_error_m_s", "airspeed_error_stderr_m_s", "m/s of airspeed"},
+      {"circles", "airspeed_error_m_s", "airspeed_error_stderr_m_s", "m/s of airspeed"},
+      {"speed-run", "delta_p_across_hpa", "delta_p_across_stderr_hpa", "hPa from slow to fast"},
+      {"pitch", "across_hpa", "across_stderr_hpa", "hPa across the swing"},
+      {"yaw", "across_hpa", "across_stderr_hpa", "hPa across the swing"},
+      {"layers", "offset_k", "offset_stderr_k", "K of the thermometer"},
+      {"lams-temperature", "offset_k", "offset_stderr_k", "K between laser and thermometer"},
+      {"spectrum", "floor_hpa", "floor_stderr_hpa", "hPa of white noise"},
+  };
+  const auto number = [&](const std::string& name) {
+    const auto found = std::find_if(result.numbers.begin(), result.numbers.end(),
+                                    [&](const auto& each) { return each.first == name; });
+    return found == result.numbers.end() ? std::nan("") : found->second;
+  };
+  for (const Key& key : keys) {
+    if (result.name == key.check && std::isfinite(number(key.number)))
+      return fmt::format("{:+.3f} +- {:.3f} {}", number(key.number), number(key.error), key.unit);
+  }
+  return "";
+}
+
+/// As the options stand on a command line, for the commands that are advised.
+std::string command_line(const Options& options) {
+  std::string line = tool::command_line(options.flights);
+  if (!options.model.empty()) line += " -m " + quoted(options.model);
+  return line;
+}
+
+/// The command that a user may run next.
+std::string next_step(const Checks& checks, const Options& options, bool has_laser) {
+  const auto any = [&](CheckVerdict verdict) {
+    return std::any_of(checks.results.begin(), checks.results.end(), [verdict](const CheckResult& result) {
+      return result.ran && result.verdict == verdict;
+    });
+  };
+  const bool none_ran = std::none_of(checks.results.begin(), checks.results.end(),
+                                     [](const CheckResult& result) { return result.ran; });
+  if (any(CheckVerdict::inconsistent) && has_laser)
+    return fmt::format("To learn which effect is missing: pcor diagnose {}", command_line(options));
+  if (any(CheckVerdict::inconsistent) && !options.model.empty() && !options.second.empty())
+    return fmt::format("To learn which effect is missing: pcor diagnose {} --reference {}",
+                       command_line(options), quoted("static:" + options.second));
+  if (!any(CheckVerdict::inconsistent) && !none_ran && !options.model.empty())
+    return fmt::format(
+        "Nothing here speaks against the model. To apply it: pcor process {} -m {} -o corrected.nc",
+        quoted(options.flights.flights.front()), quoted(options.model));
+  const std::string second = options.second.empty() ? "" : " --second " + quoted(options.second);
+  return fmt::format("To see the pictures: pcor check {}{} --report check.html", command_line(options),
+                     second);
+}
+
+void print(const Checks& checks, const Options& options, bool has_laser) {
+  if (!checks.model.empty()) fmt::print("{}\n", checks.model);
+  fmt::print("\n{:<18} {:<14} {}\n", "check", "verdict", "number");
+  for (const CheckResult& result : checks.results) {
+    fmt::print("{:<18} {:<14} {}\n", result.name, result.ran ? name_of(result.verdict) : "not run",
+               result.ran ? key_number(result) : "");
+  }
+  for (const CheckResult& result : checks.results) {
+    fmt::print("\n{}: {}\n", result.name, result.ran ? result.finding : "not run: " + result.reason + ".");
+    if (result.ran) fmt::print("  cannot see: {}\n", result.cannot_see);
+    for (const std::string& note : result.notes) {
+      // The reason of a check that did not run says its first note already.
+      if (result.ran || result.reason.find(note) == std::string::npos) fmt::print("  note: {}.\n", note);
+    }
+  }
+  for (const std::string& note : checks.notes) fmt::print("\nNote: {}.\n", note);
+  fmt::print("\n{}\n", next_step(checks, options, has_laser));
+}
+
+void run(const Options& options) {
+  std::vector<std::filesystem::path> inputs = input_files(options.flights);
+  inputs.insert(inputs.end(), {options.model, options.second});
+  refuse_overwriting({options.common.json, options.common.report}, inputs);
+  require_writable(options.common.report);
+  JsonResult json(options.common);
+  std::optional<ModelFile> model;
+  if (!options.model.empty()) model = read_model(options.model);
+  CheckOptions check_options;
+  check_options.mask = mask_options(options.flights);
+  check_options.time_stamp = time_stamp(options.flights);
+  if (!options.second.empty()) check_options.second = read_model(options.second);
+  Checks checks;
+  {
+    Progress bar("checking", !options.common.quiet);
+    check_options.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
+    checks = check(flight_paths(options.flights), model, check_options);
+  }
+  if (!options.common.report.empty()) write_report(check_report(checks), options.common.report);
+  json.write(as_json(checks));
+  const bool has_laser = model && model->variables.count(Quantity::lams_airspeed) > 0;
+  if (wants_text(options.common)) print(checks, options, has_laser);
+}
+
+}  // namespace
+
+std::function<void()> add_check(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(
+      "check", "Hold the pressures against what does not depend on the model: redundant systems, manoeuvres");
+  add_flight_options(*command, options->flights);
+  command
+      ->add_option("-m,--model", options->model,
+                   "the model to check; without it, what the flight's own processing corrected")
+      ->type_name("MODEL.toml");
+  command
+      ->add_option("--second", options->second,
+                   "the model of a second static system; without it, the second pair as measured")
+      ->type_name("OTHER.toml");
+  add_common_options(*command, options->common);
+  return [options] { run(*options); };
+}
+
+}  // namespace pcor::tool

@@ -1,0 +1,259 @@
+#include "pcor/offline/temperature.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "comparison.hpp"
+#include "pcor/offline/error.hpp"
+#include "progress.hpp"
+
+namespace pcor::tool {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  ComparisonOptions comparison;
+  std::string model;
+  std::string output;
+  std::string degree = "auto";
+  std::string slope = "fitted";
+  double slope_size = TemperatureOptions{}.slope_size * 1e5;  // m in 100 km
+  double pressure_error = 0.0;
+  double least_climb_rate = 0.0;
+  bool skip_returning = false;
+  bool archived = false;
+  bool iterate = false;
+};
+
+TemperatureOptions temperature_options(const Options& options) {
+  TemperatureOptions result;
+  result.mask = mask_options(options.comparison);
+  result.time_stamp = time_stamp(options.comparison);
+  if (options.degree != "auto") result.degree = std::stoi(options.degree);
+  result.slope = *isobar_slope_named(options.slope);
+  result.slope_size = options.slope_size * 1e-5;
+  result.pressure_error = options.pressure_error;
+  result.least_climb_rate = options.least_climb_rate;
+  result.skip_returning = options.skip_returning;
+  result.archived = options.archived;
+  return result;
+}
+
+nlohmann::ordered_json by_name(const std::vector<double>& values) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (std::size_t k = 0; k < values.size(); ++k) json[fmt::format("a{}", k)] = values[k];
+  return json;
+}
+
+nlohmann::ordered_json as_json(const TemperatureResult& result) {
+  nlohmann::ordered_json json;
+  json["coefficients"] = by_name(result.likelihood.coefficients);
+  json["stderr"] = by_name(result.likelihood.standard_errors);
+  json["covariance"] = result.covariance;
+  json["profile"] = nlohmann::ordered_json::object();
+  for (std::size_t k = 0; k < result.profile.size(); ++k)
+    json["profile"][fmt::format("a{}", k)] = result.profile[k];
+  json["sigma_m"] = result.likelihood.sigma;
+  json["samples"] = result.samples;
+  json["flights"] = nlohmann::ordered_json::array();
+  for (const FlightHeights& flight : result.flights) {
+    nlohmann::ordered_json one{{"name", flight.flight}, {"used", flight.left_out.empty()}};
+    if (!flight.left_out.empty()) {
+      one["left_out"] = flight.left_out;
+    } else {
+      one["samples"] = flight.samples;
+      one["stretches"] = flight.stretches;
+      one["rms_before_m"] = flight.rms_before;
+      one["rms_after_m"] = flight.rms_after;
+    }
+    json["flights"].push_back(std::move(one));
+  }
+  json["least_squares"] = {{"coefficients", by_name(result.least_squares.coefficients)},
+                           {"stderr", by_name(result.least_squares.standard_errors)},
+                           {"sigma_m", result.least_squares.sigma}};
+  json["corrections"] = nlohmann::ordered_json::array();
+  for (const TemperatureCorrection& at : result.corrections)
+    json["corrections"].push_back({{"temperature_degc", at.temperature},
+                                   {"correction_k", at.correction},
+                                   {"stderr_k", at.standard_error}});
+  json["degrees"] = nlohmann::ordered_json::array();
+  for (const DegreeChoice& choice : result.degrees)
+    json["degrees"].push_back({{"degree", choice.degree},
+                               {"deviance", choice.deviance},
+                               {"held_out", choice.held_out},
+                               {"held_out_stderr", choice.held_out_error}});
+  json["per_hpa"] = by_name(result.per_hpa);
+  json["noise"] = {{"gps_m", result.gps_noise},
+                   {"gps_slow_m", result.gps_wander},
+                   {"gps_memory_s", result.gps_wander_time},
+                   {"drift_m_per_minute", result.drift},
+                   {"innovation_variance", result.innovation_variance},
+                   {"innovation_correlation", result.innovation_correlation}};
+  json["notes"] = result.notes;
+  return json;
+}
+
+nlohmann::ordered_json as_json(const CalibrationInTurn& result) {
+  nlohmann::ordered_json rounds = nlohmann::ordered_json::array();
+  for (const CalibrationRound& round : result.rounds)
+    rounds.push_back({{"rms_hpa", round.rms_hpa},
+                      {"coefficients", by_name(round.coefficients)},
+                      {"defect_change_hpa", round.defect_change},
+                      {"temperature_change_k", round.temperature_change}});
+  return rounds;
+}
+
+void print_flights(const TemperatureResult& result) {
+  fmt::print("{:<28} {:>8} {:>10} {:>9} {:>9} {:>11} {:>10}\n", "flight", "samples", "stretches", "coldest",
+             "warmest", "rms before", "rms after");
+  for (const FlightHeights& flight : result.flights) {
+    if (!flight.left_out.empty()) {
+      fmt::print("{:<28} left out: {}\n", flight.flight, flight.left_out);
+      continue;
+    }
+    fmt::print("{:<28} {:>8} {:>10} {:>7.1f} C {:>7.1f} C {:>9.2f} m {:>8.2f} m\n", flight.flight,
+               flight.samples, flight.stretches, flight.least_temperature, flight.greatest_temperature,
+               flight.rms_before, flight.rms_after);
+  }
+}
+
+void print(const TemperatureResult& result) {
+  print_flights(result);
+  constexpr std::array<const char*, 3> units{"K", "1", "1/K"};
+  fmt::print("\nT corrected = T + a0 + a1 t + ..., t in degC\n");
+  fmt::print("{:<4} {:>12} {:>11} {:>24} {:>27} {:>5}\n", "", "likelihood", "std. error",
+             "likelihood interval", "least squares on height", "unit");
+  for (std::size_t k = 0; k < result.likelihood.coefficients.size(); ++k) {
+    fmt::print("a{:<3} {:>+12.5g} {:>11.2g} {:>24} {:>27} {:>5}\n", k, result.likelihood.coefficients[k],
+               result.likelihood.standard_errors[k],
+               fmt::format("{:+.4g} to {:+.4g}", result.profile[k][0], result.profile[k][1]),
+               fmt::format("{:+.4g} +- {:.2g} (too small)", result.least_squares.coefficients[k],
+                           result.least_squares.standard_errors[k]),
+               units.at(k));
+  }
+  fmt::print("\n{:>12} {:>14} {:>12}\n", "temperature", "correction", "std. error");
+  for (const TemperatureCorrection& at : result.corrections)
+    fmt::print("{:>10.1f} C {:>+12.3f} K {:>10.3f} K\n", at.temperature, at.correction, at.standard_error);
+  fmt::print(
+      "\nheight by GPS: {:.2f} m a sample, {:.2f} m with a memory of {:.0f} s; the integral drifts by {:.3f} "
+      "m in a minute\n",
+      result.gps_noise, result.gps_wander, result.gps_wander_time, result.drift);
+  fmt::print("an error of the static pressure of 0.1 hPa in all flights would change a0 by {:+.3f} K\n",
+             0.1 * result.per_hpa.front());
+  constexpr std::array<const char*, 4> degrees{"none", "constant", "linear", "quadratic"};
+  fmt::print("\n{:<12} {:>16} {:>26}\n", "-2 ln L", "all flights", "held-out flights");
+  for (const DegreeChoice& choice : result.degrees)
+    fmt::print("{:<12} {:>16.1f} {:>26}\n", degrees.at(static_cast<std::size_t>(choice.degree + 1)),
+               choice.deviance,
+               std::isnan(choice.held_out)
+                   ? "-"
+                   : fmt::format("{:.1f} +- {:.1f}", choice.held_out, choice.held_out_error));
+  for (const std::string& note : result.notes) fmt::print("\nNote: {}.\n", note);
+}
+
+void print(const CalibrationInTurn& result) {
+  fmt::print("{:<6} {:>10} {:>18} {:>22}  {}\n", "round", "rms, hPa", "delta-p moved, hPa",
+             "temperature moved, K", "coefficients");
+  for (std::size_t i = 0; i < result.rounds.size(); ++i) {
+    const CalibrationRound& round = result.rounds[i];
+    std::string coefficients;
+    for (const double a : round.coefficients) coefficients += fmt::format("{:+.5g} ", a);
+    fmt::print("{:<6} {:>10.4f} {:>18.4f} {:>22.4f}  {}\n", i + 1, round.rms_hpa, round.defect_change,
+               round.temperature_change, coefficients);
+  }
+  fmt::print("{}\n\n", result.converged ? "pressure and temperature agree with each other"
+                                        : "they still move: use the result with care");
+}
+
+void run(const Options& options) {
+  std::vector<std::filesystem::path> inputs = input_files(options.comparison);
+  inputs.emplace_back(options.model);
+  refuse_overwriting({options.output, options.common.json, options.common.report}, inputs);
+  for (const std::string& output : {options.output, options.common.report}) require_writable(output);
+  if (options.iterate && options.archived)
+    throw Error("--iterate fits pressures again and needs flights as recorded; leave out --archived");
+  if (!options.iterate && !options.comparison.reference.empty())
+    throw Error("--reference is what --iterate fits the pressures to; give both or none");
+  JsonResult json(options.common);
+  const ModelFile model = read_model(options.model);
+  TemperatureOptions with = temperature_options(options);
+  TemperatureResult result;
+  CalibrationInTurn in_turn;
+  {
+    Progress bar("reading", !options.common.quiet && !options.iterate);
+    with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
+    if (options.iterate) {
+      RefitOptions refit_with;
+      refit_with.mask = with.mask;
+      refit_with.time_stamp = with.time_stamp;
+      const Reference reference = read_reference(options.comparison.reference, model);
+      in_turn = calibrate_in_turn(flight_paths(options.comparison), model, reference, refit_with, with);
+      result = in_turn.temperature;
+    } else {
+      result = fit_temperature(flight_paths(options.comparison), model, with);
+    }
+  }
+  save_model(result.model, options.output, inputs);
+  if (!options.common.report.empty()) write_report(temperature_report(result), options.common.report);
+  nlohmann::ordered_json all = as_json(result);
+  if (options.iterate) {
+    all["rounds"] = as_json(in_turn);
+    all["converged"] = in_turn.converged;
+  }
+  json.write(all);
+  if (!wants_text(options.common)) return;
+  if (options.iterate) print(in_turn);
+  print(result);
+  fmt::print("\nwrote {}\nTo apply it: pcor process {} -m {} -o OUT.nc\n", options.output,
+             quoted(options.comparison.flights.front()), quoted(options.output));
+}
+
+}  // namespace
+
+std::function<void()> add_temperature(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      program.add_subcommand("temperature", "Calibrate the temperature by the height in climbs and descents");
+  add_comparison_options(*command, options->comparison);
+  command->add_option("-m,--model", options->model, "the model whose pressures and thermometer are used")
+      ->required()
+      ->type_name("MODEL.toml");
+  command->add_option("-o,--output", options->output, "the model with the correction, whole or not at all")
+      ->required()
+      ->type_name("FITTED.toml");
+  command->add_option("--degree", options->degree, "highest power of the temperature in the correction")
+      ->check(CLI::IsMember({"auto", "0", "1", "2"}))
+      ->capture_default_str();
+  command->add_option("--slope", options->slope, "what is done about isobars that are not level")
+      ->check(CLI::IsMember({"fitted", "none", "level-legs", "climb-descent", "whole-flight", "geostrophic"}))
+      ->capture_default_str();
+  command
+      ->add_option("--slope-size", options->slope_size,
+                   "usual slope of isobars, m in 100 km, from which --slope fitted starts")
+      ->check(is_amount())
+      ->capture_default_str();
+  command
+      ->add_option("--pressure-error", options->pressure_error,
+                   "usual error of the static pressure that lasts for a flight, hPa: makes the errors larger")
+      ->check(is_amount())
+      ->capture_default_str();
+  command
+      ->add_option("--min-climb-rate", options->least_climb_rate,
+                   "m/s; what climbs or descends slower takes no part")
+      ->check(is_amount())
+      ->capture_default_str();
+  command->add_flag("--skip-returning", options->skip_returning,
+                    "flights that end where they began take no part");
+  command->add_flag(
+      "--archived", options->archived,
+      "the flights were written by 'pcor process --hydrostatic': start from their HYDSTEP and ATX");
+  command->add_flag("--iterate", options->iterate,
+                    "refit the pressures and calibrate the temperature in turn until neither moves");
+  add_common_options(*command, options->common);
+  return [options] { run(*options); };
+}
+
+}  // namespace pcor::tool
