@@ -154,9 +154,9 @@ Checks check(const std::vector<std::filesystem::path>& flights, const std::optio
     const std::optional<ModelFile> its_model = model ? model : recorded_model(flight);
     std::string why = its_model ? without_values(flight, *its_model)
                                 : fmt::format(
-                                      "{}: there are no static and dynamic pressures with values "
-                                      "under the usual names (PSXC and QCXC, PSFD and QCF); name "
-                                      "them in the [variables] of a model, -m",
+                                      "{}: there are no static and dynamic pressures with values under the "
+                                      "usual names (PSXC and QCXC, PSFD and QCF); name them in the "
+                                      "[variables] of a model, -m",
                                       path.string());
     if (!why.empty()) {
       unusable.push_back(std::move(why));

@@ -83,10 +83,17 @@ ReportTable verdicts(const Checks& checks) {
   table.caption =
       "Inconsistent: beyond what matters and beyond three standard errors. Consistent: within what matters, "
       "and known as well as that. In between it cannot be told.";
-  table.headers = {"check", "verdict", "what was found"};
+  table.headers = {"check", "verdict", "number", "matters", "what was found"};
   for (const CheckResult& result : checks.results) {
-    table.rows.push_back({heading(result.name), result.ran ? std::string(name_of(result.verdict)) : "not run",
-                          sentence(result.ran ? result.finding : result.reason)});
+    if (!result.ran) {
+      table.rows.push_back({heading(result.name), "not run", "", "", sentence(result.reason)});
+      continue;
+    }
+    const KeyNumber& key = result.key;
+    table.rows.push_back(
+        {heading(result.name), std::string(name_of(result.verdict)),
+         fmt::format("{:+.3f} ± {:.3f} {} {}", key.value, key.standard_error, key.unit, key.what),
+         fmt::format("{:g} {}", key.matters, key.unit), sentence(result.finding)});
   }
   return table;
 }

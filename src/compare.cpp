@@ -321,8 +321,7 @@ void require_one_aircraft(const std::vector<std::pair<std::string, std::string>>
     if (first == nullptr) first = &each;
     if (each.second == first->second) continue;
     throw Error(fmt::format(
-        "{} is of the aircraft '{}' and {} of '{}': a model is of one aircraft; give the flights of "
-        "one",
+        "{} is of the aircraft '{}' and {} of '{}': a model is of one aircraft; give the flights of one",
         first->first, first->second, each.first, each.second));
   }
 }
@@ -333,8 +332,8 @@ void require_each_once(const std::vector<std::filesystem::path>& paths) {
       std::error_code ignored;
       if (std::filesystem::equivalent(paths[i], paths[j], ignored)) {
         throw Error(fmt::format(
-            "{} is given twice: its samples are not new ones; give every flight once, to the fit or "
-            "to --holdout",
+            "{} is given twice: its samples are not new ones; give every flight once, to the fit or to "
+            "--holdout",
             paths[i].string()));
       }
     }

@@ -119,8 +119,7 @@ class Builder {
     time.title = "Residual in time";
     time.caption =
         "Static pressure of the reference less that of the model; regimes are shaded. Drag over a time "
-        "range, or choose "
-        "a regime, and every picture shows its samples alone.";
+        "range, or choose a regime, and every picture shows its samples alone.";
     time.columns = residuals_;
     time.axis = "residual";
     report_.items.emplace_back(std::move(time));
@@ -133,8 +132,7 @@ class Builder {
     binned.title = "Residual against a variable";
     binned.caption =
         "A slope or a bend that is more than the error bars is an effect that the model does not have, or "
-        "has with a "
-        "wrong coefficient.";
+        "has with a wrong coefficient.";
     binned.y = residuals_;
     binned.axis = "residual";
     binned.x_choices = variables_;
@@ -199,8 +197,8 @@ class Builder {
       column("reference_total", "total pressure of the reference",
              [](const F& f) -> const V& { return f.reference_total_pressure; });
       pair("Total pressures of the two systems",
-           "Static defects cancel in the total pressure, so what is left is of the "
-           "transducers, the pitots and the lines. ",
+           "Static defects cancel in the total pressure, so what is left is of the transducers, the pitots "
+           "and the lines. ",
            "total", "reference_total", *comparison_.total_pressure);
     }
     column("corrected", "static pressure of the model",

@@ -555,8 +555,7 @@ void add_residual_panels(Builder& builder, const std::vector<std::string>& resid
   if (builder.report().time.empty()) return;
   builder.add_time("Residual in time",
                    "Static pressure of the reference less that of the model; regimes are shaded. Drag over a "
-                   "time range, or "
-                   "choose a regime, and every picture shows its samples alone.",
+                   "time range, or choose a regime, and every picture shows its samples alone.",
                    residuals, "residual");
   builder.add(RegimeTable{"By regime", "Bias and rms of the residual in each regime of the selected samples.",
                           residuals});

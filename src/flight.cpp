@@ -407,8 +407,7 @@ struct Flight::Implementation {
     if (backward + repeated > 0)
       throw Error(fmt::format(
           "{}: time {} at record {} ({} after {}), {} backward and {} repeated steps in all; cut the file "
-          "there with "
-          "ncks -d {},0,{}",
+          "there with ncks -d {},0,{}",
           path(), bad < bad_before ? "runs backwards" : "repeats", first_bad, utc_text(bad),
           utc_text(bad_before), backward, repeated, file.dimension_name(source.dimension), first_bad - 1));
   }
@@ -462,8 +461,7 @@ UnitConversion Flight::conversion(const std::string& name, const std::string& wa
   if (!is_convertible(stated, wanted))
     throw Error(
         fmt::format("{}: the unit \"{}\" that the model states for {} ({}) is not known or does not convert "
-                    "to {}; correct "
-                    "unit.{} in the [units] of the model",
+                    "to {}; correct unit.{} in the [units] of the model",
                     path().string(), stated, name, role, wanted, role));
   const UnitConversion conversion = UnitConversion::between(stated, wanted, {name, path().string(), role});
   const bool file_says_otherwise =

@@ -209,8 +209,8 @@ class Climb {
     const Diagnosis& now = diagnosis();
     if (now.verdict == Verdict::silent) {
       return fmt::format(
-          "nothing is missing that these flights could show: {} effects were tested, and the rms of "
-          "{} is left at a noise of {}",
+          "nothing is missing that these flights could show: {} effects were tested, and the rms of {} is "
+          "left at a noise of {}",
           now.candidates, shown(now.residual_rms), shown(now.noise_rms));
     }
     for (const Finding& finding : now.findings) {
@@ -220,14 +220,12 @@ class Climb {
       if (names.empty()) {
         return fmt::format(
             "{} may not be the cause, and would change the corrected static pressure by {}, much more than "
-            "it takes "
-            "off the residual; choose it yourself with pcor add",
+            "it takes off the residual; choose it yourself with pcor add",
             finding.effect.id, shown(finding.static_change));
       }
       return fmt::format(
           "these flights cannot tell {} from {}, and the corrected static pressure would differ by {} "
-          "between them; {}; "
-          "or choose one yourself with pcor add",
+          "between them; {}; or choose one yourself with pcor add",
           finding.effect.id, fmt::join(names, ", "),
           shown(std::max(finding.static_risk, finding.static_change)),
           finding.advice.sentence.empty() ? "fly a manoeuvre that tells them apart"

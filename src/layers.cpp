@@ -174,8 +174,7 @@ LayerUncertainty uncertainty_of(const LayerOptions& options, const std::vector<P
     uncertainty.height_noise = std::max(least_height_noise, std::sqrt(squares / freedom));
     notes.push_back(
         fmt::format("the error of the GPS height is taken as {:.2f} m: so much it wavers about the height of "
-                    "the pressure "
-                    "(rms) within {} stretches of {:.0f} s",
+                    "the pressure (rms) within {} stretches of {:.0f} s",
                     uncertainty.height_noise, all.size(), piece_time));
   }
   uncertainty.gradient = options.gradient.value_or(usual_gradient);

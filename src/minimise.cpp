@@ -130,8 +130,7 @@ void minimise(FitFlights& flights, const Eigen::VectorXd& parameters, const cere
   if (!summary.IsSolutionUsable() || !x.allFinite()) {
     throw Error(
         "the fit found no coefficients: from their values in the model the residuals are not numbers; give "
-        "other "
-        "starting values, or look for them with --search");
+        "other starting values, or look for them with --search");
   }
 }
 

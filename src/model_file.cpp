@@ -96,8 +96,8 @@ void save_model(const ModelFile& file, const fs::path& path, const std::vector<f
     std::error_code code;
     if (!fs::equivalent(path, input, code)) continue;
     throw Error(path.string() +
-                ": the model was read from this file, which is never written over; give the "
-                "output another name");
+                ": the model was read from this file, which is never written over; give the output another "
+                "name");
   }
   const std::string text = write_model(file);
   ReplacementFile output(path);

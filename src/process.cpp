@@ -358,8 +358,8 @@ void Processing::define(FlightWriter& writer) {
   const auto define_one = [this, &writer](const OutputVariable& variable) {
     if (writer.has(variable.name)) {
       fail(fmt::format(
-          "it has a variable {} already; give --suffix to name the derived variables apart from the "
-          "input's, e.g. --suffix _NEW",
+          "it has a variable {} already; give --suffix to name the derived variables apart from the input's, "
+          "e.g. --suffix _NEW",
           variable.name));
     }
     summary_.outputs.push_back(variable.name);

@@ -9,6 +9,7 @@
 #include <limits>
 #include <numeric>
 #include <thread>
+#include <utility>
 
 #include "bounded_least_squares.hpp"
 #include "fit_covariance.hpp"
@@ -35,6 +36,21 @@ constexpr double collinear_condition = 300.0;
 // A standard error above this share of an effect's typical size is worth a word.
 constexpr double weak_share = 0.25;
 constexpr int most_omission_steps = 8;
+
+/// Adds what was known of the parameters `held`, which nothing ties to those that were fitted.
+void keep_covariance(Covariance& covariance, const Covariance& before, const std::vector<std::string>& held) {
+  const std::size_t fitted = covariance.parameters.size();
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < before.parameters.size(); ++i) {
+    if (std::find(held.begin(), held.end(), before.parameters[i]) != held.end()) kept.push_back(i);
+  }
+  for (std::vector<double>& row : covariance.matrix) row.resize(fitted + kept.size(), 0.0);
+  for (const std::size_t i : kept) {
+    covariance.parameters.push_back(before.parameters[i]);
+    std::vector<double>& row = covariance.matrix.emplace_back(fitted, 0.0);
+    for (const std::size_t j : kept) row.push_back(before.matrix[i][j]);
+  }
+}
 constexpr int passes_expected = 40;
 
 /// What a fit knows of one parameter beside its value.
@@ -678,8 +694,8 @@ void Refit::list_results(const Eigen::MatrixXd& errors, const std::vector<std::s
     }
     if (parameter.at_bound) {
       result_.notes.push_back(fmt::format(
-          "{} is held at its bound {:.6g}: the flights want it beyond; the errors of the others hold "
-          "only if that bound is true; {}",
+          "{} is held at its bound {:.6g}: the flights want it beyond; the errors of the others hold only if "
+          "that bound is true; {}",
           parameter.name, parameter.value,
           result_.condition_number > collinear_condition
               ? "the coefficients are hard to tell apart here, so rather hold one of them with --fix"
@@ -731,10 +747,8 @@ void Refit::explain_errors(const Eigen::MatrixXd& covariance, const std::vector<
   if (knows_regimes && !has_manoeuvre) {
     grave.emplace_back(
         "the flights have no pitch manoeuvre, yaw manoeuvre or speed run: the coefficients rest on climbs "
-        "and slow "
-        "changes, in which angle of attack, Mach number and weight go together, and may carry effects that "
-        "the model "
-        "does not have");
+        "and slow changes, in which angle of attack, Mach number and weight go together, and may carry "
+        "effects that the model does not have");
   }
   result_.notes.insert(result_.notes.begin(), grave.begin(), grave.end());
 }
@@ -743,9 +757,15 @@ void Refit::write_models(const Eigen::MatrixXd& covariance, const std::vector<st
   const auto place_of = [&](std::size_t parameter) {
     return static_cast<std::size_t>(std::find(fitted.begin(), fitted.end(), parameter) - fitted.begin());
   };
+  const auto name_in_file = [&](std::size_t parameter) {
+    std::string name = parameters_[parameter].name;
+    if (name.rfind("reference:", 0) == 0) name.erase(0, std::string("reference:").size());
+    return name;
+  };
   const auto write = [&](ModelFile& file, std::size_t first) {
     std::size_t p = first;
     std::vector<std::size_t> inside;
+    std::vector<std::string> held;
     for (std::size_t e = 0; e < file.model.effects.size(); ++e) {
       ModelEffect& effect = file.model.effects[e];
       if (file.fits.size() <= e) file.fits.resize(e + 1);
@@ -754,7 +774,10 @@ void Refit::write_models(const Eigen::MatrixXd& covariance, const std::vector<st
         effect.parameters[i] = values_[as_index(p)];
         ParameterFit& fit = file.fits[e][i];
         const std::size_t place = place_of(p);
-        if (place == fitted.size()) continue;
+        if (place == fitted.size()) {
+          held.push_back(name_in_file(p));
+          continue;
+        }
         fit.standard_error.reset();
         const double error = result_.parameters[p].standard_error;
         if (!std::isfinite(error)) continue;
@@ -762,15 +785,14 @@ void Refit::write_models(const Eigen::MatrixXd& covariance, const std::vector<st
         inside.push_back(place);
       }
     }
-    file.covariance = {};
+    const Covariance before = std::exchange(file.covariance, {});
     for (const std::size_t a : inside) {
-      std::string name = parameters_[fitted[a]].name;
-      if (name.rfind("reference:", 0) == 0) name.erase(0, std::string("reference:").size());
-      file.covariance.parameters.push_back(std::move(name));
+      file.covariance.parameters.push_back(name_in_file(fitted[a]));
       std::vector<double> row;
       for (const std::size_t b : inside) row.push_back(covariance(as_index(a), as_index(b)));
       file.covariance.matrix.push_back(std::move(row));
     }
+    keep_covariance(file.covariance, before, held);
     Provenance provenance;
     provenance.emplace_back("program", ProvenanceValue{std::string("pcor " PCOR_VERSION)});
     provenance.emplace_back(
@@ -900,10 +922,8 @@ RefitResult Refit::run() {
   if (uses_prior()) {
     result_.notes.push_back(
         "every coefficient of an effect of the catalogue was drawn to its starting value by the typical size "
-        "of its "
-        "effect; two static systems alone tell only their difference, so how it is shared between them is "
-        "what the "
-        "starting values say");
+        "of its effect; two static systems alone tell only their difference, so how it is shared between "
+        "them is what the starting values say");
   }
   write_models(errors, fitted);
   return std::move(result_);

@@ -59,7 +59,8 @@ void take_from_list(const std::string& path) {
 }
 
 // A new file ".NAME.XXXXXX.part" that no other program has, also not one on another host or one that was
-// killed. Unlike mkstemp it has the permissions of any new file. Empty if it cannot be made; errno says why.
+// killed. Unlike mkstemp it has the permissions of any new file. It is listed before it is there, so a signal
+// at any moment finds it. Empty if it cannot be made; errno says why.
 fs::path make_hidden_file(const fs::path& directory, const std::string& name) {
   constexpr const char* letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
   constexpr std::size_t most_of_name = NAME_MAX - std::string_view("..XXXXXX.part").size();
@@ -70,12 +71,16 @@ fs::path make_hidden_file(const fs::path& directory, const std::string& name) {
     std::string chosen = "." + name.substr(0, most_of_name) + ".";
     for (int j = 0; j < 6; ++j) chosen += letters[letter(random)];
     fs::path path = directory / (chosen + ".part");
+    list_as_unfinished(path.string());
     const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file >= 0) {
       ::close(file);
       return path;
     }
-    if (errno != EEXIST) break;
+    const int reason = errno;
+    take_from_list(path.string());
+    errno = reason;
+    if (reason != EEXIST) break;
   }
   return {};
 }
@@ -121,7 +126,6 @@ ReplacementFile::ReplacementFile(const fs::path& target) : shown_(target) {
   if (path_.empty())
     throw Error(shown_.string() + " cannot be written: " + directory.string() + ": " + std::strerror(errno) +
                 "; check the space and the permissions there, or choose another output");
-  list_as_unfinished(path_.string());
 }
 
 ReplacementFile::~ReplacementFile() {

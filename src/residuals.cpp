@@ -257,8 +257,7 @@ FlightSamples read_samples(const Flight& flight, const ModelFile& model, const R
   if (samples.flaps.empty()) {
     samples.notes.emplace_back(
         "the flight records no flaps, so an approach with flaps and gear out takes part; --min-airspeed or "
-        "--intervals "
-        "leaves it out");
+        "--intervals leaves it out");
   }
   const bool jet = samples.aircraft.find("677") != std::string::npos;
   samples.intervals = find_regimes(samples.motion, jet ? RegimeCriteria::gv() : RegimeCriteria::c130());

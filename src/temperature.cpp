@@ -12,6 +12,7 @@
 
 #include "checks/recorded_model.hpp"
 #include "flight_air.hpp"
+#include "pcor/effects/temp_calibration.hpp"
 #include "pcor/offline/error.hpp"
 #include "temperature/archived_steps.hpp"
 #include "temperature/calibration.hpp"
@@ -208,9 +209,43 @@ class TemperatureCalibration {
       terms_ = 3;
   }
 
+  void maximise() {
+    likeliest_ =
+        maximise_likelihood(records_, static_cast<Eigen::Index>(terms_), prior_, likeliest_.noise, threads_);
+  }
+
+  /// What the most likely correction has that no thermometer needs: "a1 = -0.0785, outside [-0.05, 0.05]".
+  /// Empty where it is possible.
+  std::string impossible() const {
+    const Eigen::VectorXd best = likeliest_.equations.best(static_cast<Eigen::Index>(terms_));
+    for (std::size_t k = 0; k < terms_; ++k) {
+      const ParameterFacts facts = effects::TempCalibration::facts().parameters[k];
+      const double value = best[static_cast<Eigen::Index>(k)];
+      if (value < facts.lower || value > facts.upper) {
+        return fmt::format("{} = {:.3g} {}, outside [{:g}, {:g}]", facts.name, value, facts.unit, facts.lower,
+                           facts.upper);
+      }
+    }
+    return "";
+  }
+
   void fit() {
+    maximise();
+    while (!options_.degree && terms_ > 1 && !impossible().empty()) {
+      result_.notes.push_back(
+          fmt::format("a correction of degree {} is given up, as it comes out as no thermometer needs ({}); "
+                      "more climbs and descents through other temperatures would tell it",
+                      terms_ - 1, impossible()));
+      --terms_;
+      maximise();
+    }
+    if (const std::string trouble = impossible(); !trouble.empty()) {
+      throw Error(fmt::format(
+          "the correction of the temperature comes out as no thermometer needs: {}; {}", trouble,
+          terms_ > 1 ? "these flights do not tell so many coefficients: lower --degree"
+                     : "look whether recovery_temperature and the altitude are what the model says"));
+    }
     const auto n = static_cast<Eigen::Index>(terms_);
-    likeliest_ = maximise_likelihood(records_, n, prior_, likeliest_.noise, threads_);
     const HeightEquations& equations = likeliest_.equations;
     const Eigen::VectorXd best = equations.best(n);
     const Eigen::MatrixXd covariance = equations.covariance(n);
@@ -428,6 +463,10 @@ std::optional<IsobarSlope> isobar_slope_named(std::string_view name) {
 
 TemperatureResult fit_temperature(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
                                   const TemperatureOptions& options) {
+  if (flights.empty()) throw Error("nothing to fit the temperature to; give at least one flight");
+  constexpr int most = static_cast<int>(calibration_terms) - 1;
+  if (options.degree && (*options.degree < 0 || *options.degree > most))
+    throw Error(fmt::format("a correction has no degree {}; give one from 0 to {}", *options.degree, most));
   return TemperatureCalibration(model, options).run(flights);
 }
 

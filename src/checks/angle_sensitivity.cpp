@@ -134,8 +134,8 @@ void add_pictures(const CheckedFlights& flights, const std::vector<AngleSensitiv
   BinnedPanel binned;
   binned.title = fmt::format("Residual against the {} in {}s", check.angle, facts_of(check.regime).name);
   binned.caption =
-      "The static pressure that the manoeuvre asks for less that of the model. A slope is a term "
-      "of the law that is wrong or missing.";
+      "The static pressure that the manoeuvre asks for less that of the model. A slope is a term of the law "
+      "that is wrong or missing.";
   binned.y = {residual};
   binned.x_choices = {angle};
   binned.samples_per_independent = 3.0;
@@ -252,6 +252,7 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
   const Totals totals = totals_of(manoeuvres);
   const Witness witness = *witness_of(*manoeuvres.front().flown.flight, check.witnesses);
   result.verdict = judge(totals.across, size_that_matters);
+  result.key = {totals.across.value, totals.across.error, size_that_matters, "hPa", "across the swing"};
   result.finding = fmt::format(
       "Over {} {}{} the residual against {} changes by {} of {}, {} from one end of the swing to the other.",
       manoeuvres.size(), facts_of(check.regime).name, manoeuvres.size() == 1 ? "" : "s", name_of(witness),

@@ -91,8 +91,8 @@ void add_pictures(const CheckedFlights& flights, const std::vector<Circle>& circ
   BinnedPanel binned;
   binned.title = "What a circle leaves";
   binned.caption =
-      "Ground speed along the heading less that of wind, airspeed and its error. A wave over the "
-      "heading is a wind that changed during the circle.";
+      "Ground speed along the heading less that of wind, airspeed and its error. A wave over the heading is "
+      "a wind that changed during the circle.";
   binned.y = {"circles left"};
   binned.x_choices = {"circles heading"};
   binned.samples_per_independent = 5.0;
@@ -138,6 +138,7 @@ CheckResult check_circles(const CheckedFlights& flights) {
   }
   const Estimated hpa{mean_value(factors) * error.value, std::abs(mean_value(factors)) * error.error};
   result.verdict = judge(error, size_that_matters);
+  result.key = {error.value, error.error, size_that_matters, "m/s", "of airspeed"};
   result.finding = fmt::format(
       "From {} circle{}, {} to the left and {} to the right, the true airspeed is too {} by {:.2f} +- {:.2f} "
       "m/s, as if delta-p were off by {}.",
@@ -146,9 +147,8 @@ CheckResult check_circles(const CheckedFlights& flights) {
       std::abs(error.value), error.error, with_error(hpa, "hPa"));
   result.cannot_see =
       "Which of pressure, temperature and laser is wrong: it sees the airspeed alone, in a bank. Sideslip, "
-      "an "
-      "offset of the heading and the angle of attack times the bank look alike, and a wind that drifts while "
-      "the heading goes round looks like an error of the airspeed.";
+      "an offset of the heading and the angle of attack times the bank look alike, and a wind that drifts "
+      "while the heading goes round looks like an error of the airspeed.";
   result.numbers = {{"circles", static_cast<double>(circles.size())},
                     {"airspeed_error_m_s", error.value},
                     {"airspeed_error_stderr_m_s", error.error},

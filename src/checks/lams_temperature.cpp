@@ -227,8 +227,7 @@ void add_pictures(const CheckedFlights& flights, const std::vector<PeriodNoise>&
   bars.title = "Noise of the difference by period";
   bars.caption =
       "Noise of means over half the period. Below 3 s it is the air at the laser's volume that is not the "
-      "air "
-      "at the pitot tube.";
+      "air at the pitot tube.";
   bars.axis = "noise";
   bars.unit = "K";
   for (const PeriodNoise& each : noise) {
@@ -267,12 +266,13 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
   result.ran = true;
   const Estimated offset = outside.fit.coefficients[0];
   result.verdict = judge(offset, size_that_matters);
+  result.key = {offset.value, offset.error, size_that_matters, "K", "between laser and thermometer"};
   const std::vector<double> clear_values = where(all, clear);
   const double noise =
       noise_floor(clear_values, stretches_of(clear_values, all.time, all.step), all.step).rms;
   result.finding = fmt::format(
-      "Out of cloud the laser's temperature less the thermometer's is {}, with a scatter of {:.2f} K, "
-      "of which {:.2f} K is noise",
+      "Out of cloud the laser's temperature less the thermometer's is {}, with a scatter of {:.2f} K, of "
+      "which {:.2f} K is noise",
       with_error(offset, "K"), outside.fit.rms, noise);
   result.numbers = {{"offset_k", offset.value},
                     {"offset_stderr_k", offset.error},
@@ -335,12 +335,10 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
   if (!clouds.rows.empty()) result.tables.push_back(std::move(clouds));
   result.cannot_see =
       "It is independent of the thermometer as far as the fit of delta-p is: the thermometer took part in "
-      "that, "
-      "so an error that the whole fit shares is hidden, and with delta-p from LAMS sample by sample the "
-      "laser's "
-      "temperature would be the thermometer's exactly, whatever is wrong. An offset of the thermometer, a "
-      "wrong "
-      "recovery factor, the scale of the laser and the elevation of its beam look alike.";
+      "that, so an error that the whole fit shares is hidden, and with delta-p from LAMS sample by sample "
+      "the laser's temperature would be the thermometer's exactly, whatever is wrong. An offset of the "
+      "thermometer, a wrong recovery factor, the scale of the laser and the elevation of its beam look "
+      "alike.";
   add_pictures(flights, by_period, result);
   return result;
 }

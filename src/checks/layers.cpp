@@ -132,8 +132,7 @@ void add_pictures(const CheckedFlights& flights, const std::vector<FlightLayers>
   heights.title = "D-value";
   heights.caption =
       "Geopotential height less pressure altitude. In level flight its slope is that of the isobars along "
-      "the "
-      "track; in a climb it follows the temperature of the air.";
+      "the track; in a climb it follows the temperature of the air.";
   heights.columns = {"layers d-value"};
   result.pictures.emplace_back(std::move(heights));
 }
@@ -165,6 +164,7 @@ CheckResult check_layers(const CheckedFlights& flights) {
   result.name = "layers";
   result.ran = true;
   result.verdict = judge({fit.offset, fit.offset_error}, size_that_matters);
+  result.key = {fit.offset, fit.offset_error, size_that_matters, "K", "of the thermometer"};
   result.finding =
       fmt::format("Over {} layer{} the hydrostatic equation asks for {} on the thermometer", fit.layers,
                   fit.layers == 1 ? "" : "s", with_error({fit.offset, fit.offset_error}, "K"));
@@ -197,24 +197,23 @@ CheckResult check_layers(const CheckedFlights& flights) {
                           with_error(slope, "K", 4));
     const double absolute = fit.correction_at(0.0);
     result.notes.push_back(fmt::format(
-        "in the memo's form, T_m + c0 + c1 T_m with absolute temperatures, c0 is {} and c1 {}; their "
-        "errors are all but the same error",
+        "in the memo's form, T_m + c0 + c1 T_m with absolute temperatures, c0 is {} and c1 {}; their errors "
+        "are all but the same error",
         with_error({absolute, fit.correction_error_at(0.0)}, "K"),
         with_error({fit.c1, fit.c1_error}, "K/K", 4)));
   }
   if (fit.error_scale > 1.0) {
     result.notes.push_back(fmt::format(
-        "the layers scatter {:.2f} times as much as their errors allow; the errors of the fit have been "
-        "made larger by that",
+        "the layers scatter {:.2f} times as much as their errors allow; the errors of the fit have been made "
+        "larger by that",
         fit.error_scale));
   }
   result.cannot_see =
       "Which of thermometer, pressure and height is wrong: an error of delta-p that grows with height, and "
       "isobars that slope along the track, look like a warmer or colder layer; a constant error of delta-p "
-      "is "
-      "all but cancelled between the ends, so it is not seen at all. An offset of the thermometer, a wrong "
-      "recovery factor, heat of de-icing and neglected humidity look alike. A thermometer or a static line "
-      "that lags errs up and down with opposite signs.";
+      "is all but cancelled between the ends, so it is not seen at all. An offset of the thermometer, a "
+      "wrong recovery factor, heat of de-icing and neglected humidity look alike. A thermometer or a static "
+      "line that lags errs up and down with opposite signs.";
   result.numbers = {{"offset_k", fit.offset},
                     {"offset_stderr_k", fit.offset_error},
                     {"offset_at_0_degc_k", fit.correction_at(constants::ice_point)},

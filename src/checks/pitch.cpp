@@ -13,9 +13,8 @@ CheckResult check_pitch(const CheckedFlights& flights) {
   check.variables = "ATTACK or AKRD; [variables] attack names another";
   check.cannot_see =
       "What goes with the angle of attack in a pitch manoeuvre and is not it: the load factor, and with a "
-      "lag "
-      "the change of pressure as the aircraft rises and sinks. An error of the elevation of the laser's beam "
-      "looks like a slope too.";
+      "lag the change of pressure as the aircraft rises and sinks. An error of the elevation of the laser's "
+      "beam looks like a slope too.";
   return run_angle_check(flights, check);
 }
 

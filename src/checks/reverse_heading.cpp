@@ -148,10 +148,9 @@ ReportTable table_of_pairs(const std::vector<Pair>& pairs) {
   table.title = "Reverse headings";
   table.caption =
       "The sum of the tail winds of both legs would be zero. What is left of it, but for the share of "
-      "headings "
-      "that are not opposite, is minus twice the error of the airspeed; delta-p and temperature are what "
-      "would "
-      "make that error alone. Errors of the pairs are without changes of the wind between the legs.";
+      "headings that are not opposite, is minus twice the error of the airspeed; delta-p and temperature are "
+      "what would make that error alone. Errors of the pairs are without changes of the wind between the "
+      "legs.";
   table.headers = {"first leg",     "sum, m/s",     "of the headings",
                    "airspeed, m/s", "delta-p, hPa", "temperature, K"};
   for (const Pair& pair : pairs) {
@@ -202,8 +201,8 @@ void add_pictures(const CheckedFlights& flights, const std::vector<Pair>& pairs,
   TimePanel time;
   time.title = "Tail wind on the legs";
   time.caption =
-      "The wind along the aircraft's axis. On the two legs of a pair it has opposite signs; the "
-      "airspeed's error does not.";
+      "The wind along the aircraft's axis. On the two legs of a pair it has opposite signs; the airspeed's "
+      "error does not.";
   time.columns = {"reverse-heading tail wind"};
   result.pictures.emplace_back(std::move(time));
 }
@@ -233,8 +232,7 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
       if (off > aimed_heading)
         result.notes.push_back(
             fmt::format("{}: the headings of this pair are {:.1f} deg from opposite; the "
-                        "wind's share of {:+.2f} m/s is taken out, as well as the sideslip "
-                        "allows",
+                        "wind's share of {:+.2f} m/s is taken out, as well as the sideslip allows",
                         pair.first.where(), off, pair.result.heading_share));
       pairs.push_back(std::move(pair));
     }
@@ -256,6 +254,7 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
   const Estimated hpa = as_other(&LegPair::pressure_per_airspeed);
   const Estimated kelvin = as_other(&LegPair::temperature_per_airspeed);
   result.verdict = judge(error, size_that_matters);
+  result.key = {error.value, error.error, size_that_matters, "m/s", "of airspeed"};
   result.finding = fmt::format(
       "Over {} pair{} the tail winds of both legs add up to {}, where the wind alone would give zero: the "
       "true airspeed is too {} by {:.2f} +- {:.2f} m/s, as if delta-p were off by {} or the temperature by "
@@ -266,10 +265,8 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
   result.cannot_see =
       "Which of pressure, temperature and laser is wrong: it sees the airspeed alone. Where pressures were "
       "corrected sample by sample with LAMS, or a law was fitted to it, the airspeed is that of LAMS "
-      "whatever "
-      "the temperature, and this is a test of LAMS alone. An error of the airspeed that has opposite signs "
-      "on "
-      "the two legs cancels.";
+      "whatever the temperature, and this is a test of LAMS alone. An error of the airspeed that has "
+      "opposite signs on the two legs cancels.";
   result.numbers = {{"pairs", static_cast<double>(pairs.size())},
                     {"sum_m_s", -2.0 * error.value},
                     {"sum_stderr_m_s", 2.0 * error.error},
@@ -286,15 +283,14 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
     result.numbers.emplace_back("laser_airspeed_error_m_s", laser.value);
     result.numbers.emplace_back("laser_airspeed_error_stderr_m_s", laser.error);
     result.notes.push_back(
-        "The same legs with the laser's airspeed, which is what pressures corrected sample "
-        "by sample with LAMS would give: it is off by " +
+        "The same legs with the laser's airspeed, which is what pressures corrected sample by sample with "
+        "LAMS would give: it is off by " +
         with_error(laser, "m/s"));
   }
   if (pairs.size() < fewest_for_scatter)
     result.notes.push_back(
         fmt::format("With fewer than {} pairs the error rests on an assumed change of the "
-                    "wind of {} m/s between the legs; some 18 pairs reach +-0.2 m/s in the "
-                    "sum",
+                    "wind of {} m/s between the legs; some 18 pairs reach +-0.2 m/s in the sum",
                     fewest_for_scatter, change_of_wind));
   result.tables = {table_of_pairs(pairs), table_of_legs(pairs)};
   add_pictures(flights, pairs, result);

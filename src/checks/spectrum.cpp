@@ -233,6 +233,7 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
   result.name = name;
   result.ran = true;
   result.verdict = judge(floor, size_that_matters);
+  result.key = {floor.value, floor.error, size_that_matters, "hPa", "of white noise"};
   result.finding =
       fmt::format("At the highest frequencies {} has the power of white noise of {:.3f} +- {:.3f} hPa",
                   source->name, floor.value, floor.error);
@@ -249,10 +250,8 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
   }
   result.cannot_see =
       "Which sensor the noise is of: pressures, thermometer, laser and the air between laser and pitot tube "
-      "add "
-      "up. Noise of the transducers and small eddies look alike where the spectrum does not flatten, and "
-      "means "
-      "over the sample interval hide part of both. It says nothing of errors that last longer than two "
+      "add up. Noise of the transducers and small eddies look alike where the spectrum does not flatten, and "
+      "means over the sample interval hide part of both. It says nothing of errors that last longer than two "
       "minutes.";
   result.numbers = {{"floor_hpa", floor.value},
                     {"floor_stderr_hpa", floor.error},
@@ -269,8 +268,7 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
   bars.title = "Power by period";
   bars.caption =
       "Rms in octaves of the period. White noise has bars that fall by the square root of two from one "
-      "octave "
-      "to the next longer one; turbulence has bars that grow.";
+      "octave to the next longer one; turbulence has bars that grow.";
   bars.axis = "rms";
   bars.unit = "hPa";
   for (const Octave& octave : octaves) {

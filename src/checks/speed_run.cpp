@@ -97,13 +97,11 @@ std::vector<Estimated> errors_of(const std::vector<Run>& runs, Trend Run::*trend
 
 /// Height and wind are blind to different errors, so one that is inconsistent is enough; else the one that is
 /// known better decides.
-CheckVerdict verdict_of(const Estimated& height, const Estimated& wind) {
-  const CheckVerdict of_height = judge(height, size_that_matters);
-  const CheckVerdict of_wind = judge(wind, size_that_matters);
-  for (const CheckVerdict verdict : {of_height, of_wind}) {
-    if (verdict == CheckVerdict::inconsistent) return verdict;
+Estimated decisive(const Estimated& height, const Estimated& wind) {
+  for (const Estimated& each : {height, wind}) {
+    if (judge(each, size_that_matters) == CheckVerdict::inconsistent) return each;
   }
-  return !(height.error <= wind.error) && std::isfinite(wind.error) ? of_wind : of_height;
+  return !(height.error <= wind.error) && std::isfinite(wind.error) ? wind : height;
 }
 
 ReportTable table_of_heights(const std::vector<Run>& runs) {
@@ -205,7 +203,9 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
   const Estimated wind = combined(errors_of(runs, &Run::wind));
   const bool has_height = std::isfinite(height.value);
   const bool has_wind = std::isfinite(wind.value);
-  result.verdict = verdict_of(height, wind);
+  const Estimated across = decisive(height, wind);
+  result.verdict = judge(across, size_that_matters);
+  result.key = {across.value, across.error, size_that_matters, "hPa", "from slow to fast"};
   const auto average = [&](Trend Run::*trend, double Trend::*number) {
     std::vector<double> values;
     for (const Run& run : runs) values.push_back(run.*trend.*number);
@@ -215,8 +215,7 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
   if (has_height) {
     result.finding += fmt::format(
         " DVALUE scatters by {:.1f} m and goes with the airspeed as if delta-p were off by {} from the slow "
-        "to "
-        "the fast end",
+        "to the fast end",
         average(&Run::height, &Trend::scatter), with_error(height, "hPa"));
   } else {
     result.notes.push_back("DVALUE takes no part: " + trouble_with_height(runs.front().flown.flight->air));
@@ -224,8 +223,7 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
   if (has_wind) {
     result.finding += fmt::format(
         "{} the tail wind scatters by {:.2f} m/s, over a range of {:.1f} m/s, and goes with the airspeed as "
-        "if "
-        "it were {}",
+        "if it were {}",
         has_height ? ";" : "", average(&Run::wind, &Trend::scatter), average(&Run::wind, &Trend::range),
         with_error(wind, "hPa"));
   } else {
@@ -234,8 +232,7 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
   result.finding += ".";
   result.cannot_see =
       "Errors that are the same at all speeds, such as an offset of a transducer; and what goes with the "
-      "speed "
-      "in these runs alone: angle of attack, thrust and dynamic pressure change together.";
+      "speed in these runs alone: angle of attack, thrust and dynamic pressure change together.";
   result.numbers = {{"runs", static_cast<double>(runs.size())},
                     {"d_value_sd_m", average(&Run::height, &Trend::scatter)},
                     {"d_value_range_m", average(&Run::height, &Trend::range)},

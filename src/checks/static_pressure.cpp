@@ -49,10 +49,10 @@ CheckResult check_static_pressure(const CheckedFlights& flights) {
   CheckResult result;
   result.name = "static-pressure";
   result.ran = true;
+  result.key = {fit.difference.value, fit.difference.error, size_that_matters, "hPa", "between the systems"};
   result.finding = fmt::format(
       "The static pressure of {} less that of the model is {} in the mean, with slope {:.6f} +- {:.6f} and "
-      "rms "
-      "{:.3f} hPa about the orthogonal line.",
+      "rms {:.3f} hPa about the orthogonal line.",
       first->second_name, with_error(fit.difference, "hPa", 3), fit.orthogonal.slope,
       fit.orthogonal.slope_error, fit.orthogonal.rms);
   if (first->second_corrected) {

@@ -74,11 +74,11 @@ CheckResult check_total_pressure(const CheckedFlights& flights) {
   result.name = "total-pressure";
   result.ran = true;
   result.verdict = together(judge(fit.difference, size_that_matters), judge(fit.across, size_that_matters));
+  result.key = {fit.difference.value, fit.difference.error, size_that_matters, "hPa", "between the systems"};
   result.finding = fmt::format(
       "The total pressure of {} less that of {} is {} in the mean, with slope {:.6f} +- {:.6f} and rms "
-      "{:.3f} "
-      "hPa about the line, while the static pressures alone differ by {:+.2f} hPa with a scatter of {:.2f} "
-      "hPa.",
+      "{:.3f} hPa about the line, while the static pressures alone differ by {:+.2f} hPa with a scatter of "
+      "{:.2f} hPa.",
       two, one, with_error(fit.difference, "hPa", 3), fit.ordinary.slope, fit.ordinary.slope_error,
       fit.ordinary.rms, statics.difference.value, statics.scatter);
   result.cannot_see =
@@ -113,8 +113,8 @@ CheckResult check_total_pressure(const CheckedFlights& flights) {
   PairPanel panel;
   panel.title = "Total pressures of the two systems";
   panel.caption =
-      "Static defects cancel in the total pressure, so what is left is of the transducers, the "
-      "pitots and the lines.";
+      "Static defects cancel in the total pressure, so what is left is of the transducers, the pitots and "
+      "the lines.";
   panel.x = "total-pressure one";
   panel.y = "total-pressure two";
   panel.lines = {{1.0, 0.0, "equal"}, {fit.orthogonal.slope, fit.orthogonal.offset, "fitted line"}};

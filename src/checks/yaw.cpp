@@ -14,8 +14,7 @@ CheckResult check_yaw(const CheckedFlights& flights) {
   check.variables = "SSLIP or SSRD; [variables] sideslip names another";
   check.cannot_see =
       "An error of the azimuth of the laser's beam, which looks like a slope; an offset of the sideslip, "
-      "which "
-      "shares it out between the slope and the square; and what both static systems have alike.";
+      "which shares it out between the slope and the square; and what both static systems have alike.";
   return run_angle_check(flights, check);
 }
 

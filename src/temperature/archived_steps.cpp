@@ -54,7 +54,14 @@ std::vector<double> archived_steps(const Flight& flight, FlightAir& air) {
   for (const RecordBlock block : blocks_of(flight.records())) {
     values.resize(block.count * rate);
     flight.read(variable, block, conversion, values.data());
-    for (std::size_t i = 0; i < values.size(); ++i) steps[block.first + i / rate] += values[i];
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      // From the mean over a record to that over the next: a step within a record is in its later samples
+      // only, and the rest of it comes with the next record.
+      const std::size_t record = block.first + i / rate;
+      const double later = static_cast<double>(i % rate) / static_cast<double>(rate);
+      steps[record] += values[i] * (1.0 - later);
+      if (later > 0.0 && record + 1 < steps.size()) steps[record + 1] += values[i] * later;
+    }
   }
   const Coefficients calibration = calibration_in(flight);
   for (double& temperature : air.temperature) temperature = uncorrected(temperature, calibration);

@@ -116,7 +116,8 @@ void filter(const HeightRecord& record, const HeightNoise& noise, const HeightPr
   }
 }
 
-/// Parameters of the noise as the search sees them: logarithms, within bounds.
+/// Parameters of the noise as the search sees them: logarithms, within bounds. Noise below the least does not
+/// matter: over a flight it moves heights by centimetres.
 struct Searched {
   double HeightNoise::*value;
   double least;
@@ -127,8 +128,8 @@ constexpr std::array<Searched, 5> searched{{
     {&HeightNoise::white, 1e-2, 100.0},
     {&HeightNoise::wander, 1e-3, 30.0},
     {&HeightNoise::wander_time, 15.0, 1200.0},
-    {&HeightNoise::walk, 1e-5, 3.0},
-    {&HeightNoise::slope_change, 1e-10, 1e-5},
+    {&HeightNoise::walk, 1e-4, 3.0},
+    {&HeightNoise::slope_change, 1e-9, 1e-5},
 }};
 
 std::vector<double> as_logarithms(const HeightNoise& noise) {
@@ -218,17 +219,18 @@ std::vector<double> height_innovations(const HeightRecord& record, const HeightN
 HeightEquations height_equations(const std::vector<HeightRecord>& records, const HeightNoise& noise,
                                  const HeightPrior& prior, std::size_t threads) {
   const std::size_t parts = std::max<std::size_t>(1, std::min(threads, records.size()));
-  const auto sum_of = [&](std::size_t part) {
-    HeightEquations sum;
+  std::vector<HeightEquations> each(records.size());
+  const auto fill = [&](std::size_t part) {
     for (std::size_t i = part; i < records.size(); i += parts)
-      sum += height_equations(records[i], noise, prior);
-    return sum;
+      each[i] = height_equations(records[i], noise, prior);
   };
-  std::vector<std::future<HeightEquations>> others;
+  std::vector<std::future<void>> others;
   for (std::size_t part = 1; part < parts; ++part)
-    others.push_back(std::async(std::launch::async, sum_of, part));
-  HeightEquations sum = sum_of(0);
-  for (std::future<HeightEquations>& other : others) sum += other.get();
+    others.push_back(std::async(std::launch::async, fill, part));
+  fill(0);
+  for (std::future<void>& other : others) other.get();
+  HeightEquations sum;
+  for (const HeightEquations& one : each) sum += one;
   return sum;
 }
 
@@ -275,9 +277,11 @@ MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::
     search.set_lower_bounds(lower);
     search.set_upper_bounds(upper);
     search.set_min_objective(objective, &deviance);
-    search.set_initial_step(round == 0 && held == nullptr ? 1.0 : 0.3);
-    search.set_ftol_abs(1e-3);
-    search.set_maxeval(200);
+    search.set_initial_step(held == nullptr ? 1.0 : 0.3);
+    // Where the slope of isobars and the walk can hardly be told apart the valley is flat: a small gain of
+    // one trial is no sign of its floor, but trials that are close together are.
+    search.set_xtol_abs(1e-3);
+    search.set_maxeval(1000);
     double least = 0.0;
     try {
       search.optimize(x, least);

@@ -65,13 +65,11 @@ HeightEquations height_equations(const HeightRecord& record, const HeightNoise& 
 std::vector<double> height_innovations(const HeightRecord& record, const HeightNoise& noise,
                                        const HeightPrior& prior, const Eigen::Vector3d& coefficients);
 
-/// The sum over flights, several at a time.
+/// The sum over flights, several at a time: the same to the last bit for any number of threads.
 HeightEquations height_equations(const std::vector<HeightRecord>& records, const HeightNoise& noise,
                                  const HeightPrior& prior, std::size_t threads);
 
-/// The noise that makes the heights likeliest, with the coefficients of the first `terms` powers at their
-/// best.
-/// @param held if not empty, coefficient `held_term` keeps the value `held_value`
+/// What `maximise_likelihood` found.
 struct MostLikely {
   HeightNoise noise;
   HeightEquations equations;

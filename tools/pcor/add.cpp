@@ -146,8 +146,8 @@ std::function<void()> add_add(CLI::App& program) {
       command
           ->add_option(
               "--formula", options->formula,
-              "the formula of an effect of your own, with a coefficient k and variables by netCDF name "
-              "or by role: 'k * ENGTRQ / 100'")
+              "the formula of an effect of your own, with a coefficient k and variables by netCDF name or by "
+              "role: 'k * ENGTRQ / 100'")
           ->type_name("FORMULA");
   command->add_option("--where", options->where, "where the formula acts")
       ->check(is_place())

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "comparison.hpp"
 #include "pcor/offline/model_file.hpp"
@@ -34,6 +34,12 @@ nlohmann::ordered_json as_json(const CheckResult& result) {
   nlohmann::ordered_json entry{{"name", result.name}, {"ran", result.ran}, {"reason", result.reason}};
   entry["verdict"] =
       result.ran ? nlohmann::ordered_json(std::string(name_of(result.verdict))) : nlohmann::ordered_json();
+  entry["key"] = result.ran ? nlohmann::ordered_json{{"value", result.key.value},
+                                                     {"stderr", result.key.standard_error},
+                                                     {"matters", result.key.matters},
+                                                     {"unit", result.key.unit},
+                                                     {"what", result.key.what}}
+                            : nlohmann::ordered_json();
   entry["numbers"] = std::move(numbers);
   entry["finding"] = result.finding;
   entry["cannot_see"] = result.cannot_see;
@@ -50,36 +56,33 @@ nlohmann::ordered_json as_json(const Checks& checks) {
   return result;
 }
 
-/// The number of a check that stands for it in the short table, with its error.
+/// "-0.154 +- 0.024 hPa between the systems; 0.3 matters".
 std::string key_number(const CheckResult& result) {
-  struct Key {
-    const char* check;
-    const char* number;
-    const char* error;
-    const char* unit;
-  };
-  constexpr Key keys[]{
-      {"total-pressure", "mean_difference_hpa", "mean_difference_stderr_hpa", "hPa between the systems"},
-      {"static-pressure", "mean_difference_hpa", "mean_difference_stderr_hpa", "hPa between the systems"},
-      {"reverse-heading", "airspeed_error_m_s", "airspeed_error_stderr_m_s", "m/s of airspeed"},
-      {"circles", "airspeed_error_m_s", "airspeed_error_stderr_m_s", "m/s of airspeed"},
-      {"speed-run", "delta_p_across_hpa", "delta_p_across_stderr_hpa", "hPa from slow to fast"},
-      {"pitch", "across_hpa", "across_stderr_hpa", "hPa across the swing"},
-      {"yaw", "across_hpa", "across_stderr_hpa", "hPa across the swing"},
-      {"layers", "offset_k", "offset_stderr_k", "K of the thermometer"},
-      {"lams-temperature", "offset_k", "offset_stderr_k", "K between laser and thermometer"},
-      {"spectrum", "floor_hpa", "floor_stderr_hpa", "hPa of white noise"},
-  };
-  const auto number = [&](const std::string& name) {
-    const auto found = std::find_if(result.numbers.begin(), result.numbers.end(),
-                                    [&](const auto& each) { return each.first == name; });
-    return found == result.numbers.end() ? std::nan("") : found->second;
-  };
-  for (const Key& key : keys) {
-    if (result.name == key.check && std::isfinite(number(key.number)))
-      return fmt::format("{:+.3f} +- {:.3f} {}", number(key.number), number(key.error), key.unit);
+  const KeyNumber& key = result.key;
+  return fmt::format("{:+.3f} +- {:.3f} {} {}; {:g} matters", key.value, key.standard_error, key.unit,
+                     key.what, key.matters);
+}
+
+/// The first rows of a table in columns, the first to the left and the others to the right.
+void print(const ReportTable& table) {
+  constexpr std::size_t most_rows = 20;
+  const std::size_t rows = std::min(table.rows.size(), most_rows);
+  std::vector<std::size_t> widths;
+  for (std::size_t column = 0; column < table.headers.size(); ++column) {
+    std::size_t width = table.headers[column].size();
+    for (std::size_t row = 0; row < rows; ++row) width = std::max(width, table.rows[row][column].size());
+    widths.push_back(width);
   }
-  return "";
+  const auto print_row = [&widths](const std::vector<std::string>& cells) {
+    fmt::print("    {:<{}}", cells[0], widths[0]);
+    for (std::size_t column = 1; column < cells.size(); ++column)
+      fmt::print("  {:>{}}", cells[column], widths[column]);
+    fmt::print("\n");
+  };
+  print_row(table.headers);
+  for (std::size_t row = 0; row < rows; ++row) print_row(table.rows[row]);
+  if (rows < table.rows.size())
+    fmt::print("    and {} more, which --json and --report have\n", table.rows.size() - rows);
 }
 
 /// As the options stand on a command line, for the commands that are advised.
@@ -119,9 +122,13 @@ void print(const Checks& checks, const Options& options, bool has_laser) {
     fmt::print("{:<18} {:<14} {}\n", result.name, result.ran ? name_of(result.verdict) : "not run",
                result.ran ? key_number(result) : "");
   }
+  fmt::print(
+      "inconsistent: beyond what matters and beyond three standard errors; consistent: within what matters, "
+      "and known as well as that\n");
   for (const CheckResult& result : checks.results) {
     fmt::print("\n{}: {}\n", result.name, result.ran ? result.finding : "not run: " + result.reason + ".");
     if (result.ran) fmt::print("  cannot see: {}\n", result.cannot_see);
+    if (!result.tables.empty()) print(result.tables.front());
     for (const std::string& note : result.notes) {
       // The reason of a check that did not run says its first note already.
       if (result.ran || result.reason.find(note) == std::string::npos) fmt::print("  note: {}.\n", note);

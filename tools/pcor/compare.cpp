@@ -138,10 +138,8 @@ void print(const Comparison& comparison, const Options& options) {
   if (comparison.total_pressure) {
     const LineFit& total = *comparison.total_pressure;
     fmt::print(
-        "\ntotal pressure of the reference against that of the model: slope {:.5f}, offset {:+.3f} "
-        "hPa, rms "
-        "{:.3f} "
-        "hPa\n",
+        "\ntotal pressure of the reference against that of the model: slope {:.5f}, offset {:+.3f} hPa, rms "
+        "{:.3f} hPa\n",
         total.slope, total.offset, total.rms);
   }
   for (const std::string& note : comparison.notes) fmt::print("\nNote: {}.\n", note);
@@ -154,8 +152,7 @@ void print(const Comparison& comparison, const Options& options) {
   const std::string flights = command_line(options.comparison);
   if (best->all.rms_over_noise() < 1.15) {
     fmt::print(
-        "The residual of {} is little more than noise. To apply it: pcor process {} -m {} -o "
-        "corrected.nc\n",
+        "The residual of {} is little more than noise. To apply it: pcor process {} -m {} -o corrected.nc\n",
         best->name, quoted(options.comparison.flights.front()), quoted(model));
     return;
   }

@@ -161,8 +161,7 @@ std::string next_command(const Diagnosis& diagnosis, const Options& options) {
     if (variable.formula.empty()) continue;
     return fmt::format(
         "To see whether a formula of {} helps where it was not fitted: pcor improve {} -m {} "
-        "--trace-variables -o "
-        "best.toml",
+        "--trace-variables -o best.toml",
         variable.name, flights, model);
   }
   return fmt::format("To see where it lies: pcor compare {} -m {}", flights, model);

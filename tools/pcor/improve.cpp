@@ -139,8 +139,8 @@ std::function<void()> add_improve(CLI::App& program) {
   add_candidate_options(*command, options->candidates);
   command->add_flag(
       "--trace-variables", options->trace_variables,
-      "where no effect of the catalogue explains what is left, add a formula of the variable that "
-      "goes with it, at the static ports");
+      "where no effect of the catalogue explains what is left, add a formula of the variable that goes with "
+      "it, at the static ports");
   command->add_option("--loss", options->loss, "how outliers count in the fits")
       ->check(CLI::IsMember({"tukey", "huber", "soft-l1", "cauchy", "none"}))
       ->capture_default_str();

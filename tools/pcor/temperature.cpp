@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -168,6 +169,13 @@ void print(const CalibrationInTurn& result) {
                                         : "they still move: use the result with care");
 }
 
+/// The first flight that took part, as it was named.
+const std::string& first_used(const TemperatureResult& result, const Options& options) {
+  const auto used = std::find_if(result.flights.begin(), result.flights.end(),
+                                 [](const FlightHeights& flight) { return flight.left_out.empty(); });
+  return options.comparison.flights.at(static_cast<std::size_t>(used - result.flights.begin()));
+}
+
 void run(const Options& options) {
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.emplace_back(options.model);
@@ -208,7 +216,7 @@ void run(const Options& options) {
   if (options.iterate) print(in_turn);
   print(result);
   fmt::print("\nwrote {}\nTo apply it: pcor process {} -m {} -o OUT.nc\n", options.output,
-             quoted(options.comparison.flights.front()), quoted(options.output));
+             quoted(first_used(result, options)), quoted(options.output));
 }
 
 }  // namespace
