@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -14,16 +15,32 @@
 namespace pcor {
 namespace {
 
-/// With a capital letter and a full stop.
+/// "+-", which a terminal can show, as a page does: "±".
+std::string typeset(std::string text) {
+  for (std::size_t at = text.find("+-"); at != std::string::npos; at = text.find("+-", at))
+    text.replace(at, 2, "±");
+  return text;
+}
+
+/// With a full stop, and a capital letter unless it begins with the name of a file.
 std::string sentence(std::string text) {
   if (text.empty()) return text;
-  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  const std::string first_word = text.substr(0, text.find(' '));
+  if (first_word.find('.') == std::string::npos)
+    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
   if (text.back() != '.') text += '.';
-  return text;
+  return typeset(std::move(text));
+}
+
+ReportTable typeset(ReportTable table) {
+  for (std::vector<std::string>& row : table.rows)
+    std::transform(row.begin(), row.end(), row.begin(), [](std::string& cell) { return typeset(cell); });
+  return table;
 }
 
 /// "total-pressure" as a heading: "Total pressure".
 std::string heading(std::string name) {
+  if (name == "lams-temperature") return "LAMS temperature";
   std::replace(name.begin(), name.end(), '-', ' ');
   name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
   return name;
@@ -166,7 +183,7 @@ Report check_report(const Checks& checks) {
       if (std::visit(shows, picture)) report.items.push_back(picture);
     }
     for (const ReportTable& table : result.tables) {
-      if (!table.rows.empty()) report.items.emplace_back(table);
+      if (!table.rows.empty()) report.items.emplace_back(typeset(table));
     }
     if (ReportTable numbers = numbers_of(result); !numbers.rows.empty())
       report.items.emplace_back(std::move(numbers));

@@ -312,10 +312,11 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
   const auto [lowest, highest] = range_of(all.altitude);
   for (double from = std::floor(lowest / altitude_band) * altitude_band; from < highest;
        from += altitude_band) {
-    parts.push_back(part_of(
-        all, fmt::format("{:.0f} to {:.0f} m, out of cloud", from, from + altitude_band), [&](std::size_t i) {
-          return all.altitude[i] >= from && all.altitude[i] < from + altitude_band && clear(i);
-        }));
+    parts.push_back(
+        part_of(all, fmt::format("from {:.0f} to {:.0f} m, out of cloud", from, from + altitude_band),
+                [&](std::size_t i) {
+                  return all.altitude[i] >= from && all.altitude[i] < from + altitude_band && clear(i);
+                }));
   }
   result.tables.push_back(part_table(parts));
   result.tables.push_back(std::move(periods));

@@ -22,6 +22,9 @@ function fillTable(table, {headers, rows}) {
 
 const exportSizes = {time: [760, 300], other: [560, 400]};
 
+// Every bar has a row of its own, as long as the picture can hold them.
+const heightOfBars = ({bars}) => 70 + 30 * Math.min(Math.max(bars.length, 2), 40);
+
 class Panel {
   constructor(item, section, report) {
     Object.assign(this, {item, section, report});
@@ -48,6 +51,7 @@ class Panel {
   }
 
   get height() {
+    if (this.item.kind === 'bars') return heightOfBars(this.item);
     const {screen, print} = this.item.kind === 'time' ? {screen: 280, print: 200} : {screen: 380, print: 300};
     return this.report.printing ? print : screen;
   }
@@ -67,7 +71,10 @@ class Panel {
     fillTable(this.numbers, table);
   }
 
-  get exportSize() { return exportSizes[this.item.kind] ?? exportSizes.other; }
+  get exportSize() {
+    const [width, height] = exportSizes[this.item.kind] ?? exportSizes.other;
+    return [width, this.item.kind === 'bars' ? heightOfBars(this.item) : height];
+  }
 
   // The picture on white, for a paper.
   svg() {
