@@ -59,13 +59,9 @@ ReportTable error_table(const std::vector<FlightLayers>& flights) {
   table.caption =
       "Standard errors of T_p, K. Noise counts at the two ends of a layer alone, because the steps between "
       "them cancel, and does not fall with the number of samples.";
-  table.headers = {"flight",
-                   "begin (UTC)",
-                   "GPS height",
-                   "pressure noise",
-                   "constant error of delta-p",
-                   "changing error of delta-p",
-                   "slope of the isobars"};
+  table.headers = {"flight",         "begin (UTC)",       "GPS height",
+                   "pressure noise", "delta-p, constant", "delta-p, changing",
+                   "isobars"};
   const auto kelvin = [](double error) { return fmt::format("{:.2f}", error); };
   for (const FlightLayers& flight : flights) {
     for (const Layer& layer : flight.layers) {
