@@ -258,7 +258,7 @@ class TemperatureCalibration {
       result_.per_hpa.push_back(per_hpa[k]);
       std::vector<double>& row = result_.covariance.emplace_back();
       for (Eigen::Index j = 0; j < n; ++j) row.push_back(covariance(k, j));
-      result_.profile.push_back({profile_limit(k, -1.0), profile_limit(k, 1.0)});
+      result_.profile.push_back(profile_interval(k));
     }
     result_.gps_noise = noise.white;
     result_.gps_wander = noise.wander;
@@ -268,8 +268,9 @@ class TemperatureCalibration {
     find_corrections();
   }
 
-  /// Where -2 ln L, with the noise and the other coefficients at their best, is 1 above its least.
-  double profile_limit(Eigen::Index term, double side) const {
+  /// Where -2 ln L, with the noise and the other coefficients at their best, is 1 above its least, below and
+  /// above.
+  std::array<double, 2> profile_interval(Eigen::Index term) const {
     const auto k = static_cast<std::size_t>(term);
     const double best = result_.likelihood.coefficients[k];
     const double error = result_.likelihood.standard_errors[k];
@@ -280,14 +281,17 @@ class TemperatureCalibration {
           .deviance;
     };
     const double least = deviance_at(best);
-    double reach = error;
-    for (int step = 0; step < 3; ++step) {
-      const double rise = deviance_at(best + side * reach) - least;
-      if (!(rise > 0.05) || !std::isfinite(rise)) return nan;
-      reach /= std::sqrt(rise);
-      if (std::abs(rise - 1.0) < 0.02) break;
-    }
-    return best + side * reach;
+    const auto limit = [&](double side) {
+      double reach = error;
+      for (int step = 0; step < 3; ++step) {
+        const double rise = deviance_at(best + side * reach) - least;
+        if (!(rise > 0.05) || !std::isfinite(rise)) return nan;
+        reach /= std::sqrt(rise);
+        if (std::abs(rise - 1.0) < 0.02) break;
+      }
+      return best + side * reach;
+    };
+    return {limit(-1.0), limit(1.0)};
   }
 
   void find_corrections() {

@@ -42,7 +42,7 @@ ReportTable coefficient_table(const TemperatureResult& result) {
   for (std::size_t k = 0; k < result.likelihood.coefficients.size(); ++k) {
     table.rows.push_back({fmt::format("a{}", k), fmt::format("{:+.5g}", result.likelihood.coefficients[k]),
                           fmt::format("{:.2g}", result.likelihood.standard_errors[k]),
-                          fmt::format("{:+.5g} to {:+.5g}", result.profile[k][0], result.profile[k][1]),
+                          profile_text(result.profile[k]),
                           fmt::format("{:+.5g}", result.least_squares.coefficients[k]),
                           fmt::format("{:.2g}", result.least_squares.standard_errors[k]),
                           fmt::format("{:+.3g}", result.per_hpa[k]), coefficient_units.at(k)});
@@ -98,6 +98,13 @@ BarPanel correction_bars(const TemperatureResult& result) {
 }
 
 }  // namespace
+
+std::string profile_text(const std::array<double, 2>& ends) {
+  const auto end = [](double value) {
+    return std::isnan(value) ? std::string("open") : fmt::format("{:+.4g}", value);
+  };
+  return fmt::format("{} to {}", end(ends[0]), end(ends[1]));
+}
 
 Report temperature_report(const TemperatureResult& result) {
   Report report;

@@ -242,7 +242,6 @@ MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::
   std::function<double(const std::vector<double>&)> deviance = [&](const std::vector<double>& x) {
     const HeightNoise noise = as_noise(x);
     const HeightEquations equations = height_equations(records, noise, prior, threads);
-    ++best.evaluations;
     double value = 0.0;
     if (held == nullptr) {
       value = equations.deviance(terms) + equations.log_information(terms);

@@ -74,7 +74,6 @@ struct MostLikely {
   HeightNoise noise;
   HeightEquations equations;
   double deviance = 0.0;  ///< -2 ln of the restricted likelihood
-  int evaluations = 0;
 };
 
 /// A coefficient that does not follow the others.

@@ -129,8 +129,7 @@ void print(const TemperatureResult& result) {
              "likelihood interval", "least squares on height", "unit");
   for (std::size_t k = 0; k < result.likelihood.coefficients.size(); ++k) {
     fmt::print("a{:<3} {:>+12.5g} {:>11.2g} {:>24} {:>27} {:>5}\n", k, result.likelihood.coefficients[k],
-               result.likelihood.standard_errors[k],
-               fmt::format("{:+.4g} to {:+.4g}", result.profile[k][0], result.profile[k][1]),
+               result.likelihood.standard_errors[k], profile_text(result.profile[k]),
                fmt::format("{:+.4g} +- {:.2g} (too small)", result.least_squares.coefficients[k],
                            result.least_squares.standard_errors[k]),
                units.at(k));

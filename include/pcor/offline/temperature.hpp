@@ -151,6 +151,9 @@ CalibrationInTurn calibrate_in_turn(const std::vector<std::filesystem::path>& fl
                                     const Reference& reference, const RefitOptions& refit_options,
                                     const TemperatureOptions& temperature_options);
 
+/// "-0.5377 to -0.5301"; an end that the likelihood does not give is "open".
+std::string profile_text(const std::array<double, 2>& ends);
+
 /// The report of a calibration of the temperature.
 Report temperature_report(const TemperatureResult& result);
 
