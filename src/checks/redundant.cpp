@@ -28,6 +28,18 @@ LineFit with_memory(LineFit line, const Redundant& both) {
   return line;
 }
 
+/// The records in the air at which the pressure does not change faster than `fastest_of_avionics`.
+std::vector<bool> steady(const CheckedFlight& flight, const std::vector<double>& pressure) {
+  const std::vector<double>& time = flight.air.time();
+  const auto reach = static_cast<std::size_t>(std::max(1.0, std::round(2.5 / flight.air.step())));
+  std::vector<bool> result(pressure.size(), false);
+  for (std::size_t i = reach; i + reach < pressure.size(); ++i) {
+    const double rate = (pressure[i + reach] - pressure[i - reach]) / (time[i + reach] - time[i - reach]);
+    result[i] = flight.air.flying[i] && std::abs(rate) <= fastest_of_avionics;
+  }
+  return result;
+}
+
 }  // namespace
 
 Redundant redundant(const CheckedFlights& flights, const SeriesOfFlight& first, const SeriesOfFlight& second,
@@ -65,15 +77,29 @@ RedundantFit fit_of(const Redundant& both) {
   return fit;
 }
 
-std::vector<bool> steady(const CheckedFlight& flight, const std::vector<double>& pressure, double fastest) {
-  const std::vector<double>& time = flight.air.time();
-  const auto reach = static_cast<std::size_t>(std::max(1.0, std::round(2.5 / flight.air.step())));
-  std::vector<bool> result(pressure.size(), false);
-  for (std::size_t i = reach; i + reach < pressure.size(); ++i) {
-    const double rate = (pressure[i + reach] - pressure[i - reach]) / (time[i + reach] - time[i - reach]);
-    result[i] = flight.air.flying[i] && std::abs(rate) <= fastest;
-  }
-  return result;
+bool with_avionics(const CheckedFlight& flight) {
+  return std::any_of(flight.measured.begin(), flight.measured.end(),
+                     [](const MeasuredPair& pair) { return pair.name.rfind("PS_A", 0) == 0; });
+}
+
+std::vector<bool> comparable(const CheckedFlight& flight) {
+  if (!with_avionics(flight)) return flight.air.flying;
+  const MeasuredPair& pair = flight.measured.front();
+  std::vector<double> total = pair.static_pressure;
+  for (std::size_t i = 0; i < total.size(); ++i) total[i] += pair.dynamic_pressure[i];
+  const std::vector<bool> one = steady(flight, total);
+  const std::vector<bool> two = steady(flight, pair.static_pressure);
+  std::vector<bool> both(one.size());
+  for (std::size_t i = 0; i < both.size(); ++i) both[i] = one[i] && two[i];
+  return both;
+}
+
+std::string note_on_avionics() {
+  return fmt::format(
+      "The avionics smooth their pressures, so samples in which the pressure changes by more than {} hPa/s "
+      "are "
+      "left out",
+      fastest_of_avionics);
 }
 
 void add_numbers(const RedundantFit& fit, CheckResult& result) {

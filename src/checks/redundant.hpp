@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -35,8 +36,19 @@ Redundant redundant(const CheckedFlights& flights, const SeriesOfFlight& first, 
 
 RedundantFit fit_of(const Redundant& both);
 
-/// The records in the air at which neither pressure changes by more than `fastest`, hPa/s, over five seconds.
-std::vector<bool> steady(const CheckedFlight& flight, const std::vector<double>& pressure, double fastest);
+/// Whether one of the two systems is that of the avionics, PS_A/QC_A.
+bool with_avionics(const CheckedFlight& flight);
+
+/// The avionics delay and smooth their pressures by some half a second, which is 0.05 hPa at this rate,
+/// hPa/s.
+inline constexpr double fastest_of_avionics = 0.1;
+
+/// The records in the air at which both systems measure the same air: with avionics those at which neither
+/// static nor total pressure changes faster than `fastest_of_avionics` over five seconds (R7).
+std::vector<bool> comparable(const CheckedFlight& flight);
+
+/// What is to be said where the avionics took part.
+std::string note_on_avionics();
 
 /// The numbers of a fit for scripts, those of the interface first.
 void add_numbers(const RedundantFit& fit, CheckResult& result);

@@ -241,6 +241,13 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
     result.finding += fmt::format(" (that of {:.2f} m/s of airspeed)", floor.value / per_speed);
   result.finding += fmt::format("; over the last two octaves power goes as frequency to the {}, {}.",
                                 with_error(fall, ""), in_words(fall));
+  const auto other_steps = std::count_if(flights.begin(), flights.end(), [&](const CheckedFlight& flight) {
+    return flight.air.step() != spectrum.step;
+  });
+  if (other_steps > 0) {
+    result.notes.push_back(fmt::format("{} of {} flights take no part: their records are not {:g} s apart",
+                                       other_steps, flights.size(), spectrum.step));
+  }
   const double resolution = resolution_of(flights);
   if (std::isfinite(resolution)) {
     result.notes.push_back(

@@ -22,11 +22,10 @@ std::vector<double> other(const CheckedFlight& flight) {
   return has_second(flight) ? flight.second->pressure : std::vector<double>{};
 }
 
-std::vector<bool> used(const CheckedFlight& flight) { return flight.air.flying; }
-
-std::vector<double> in_the_air(const CheckedFlight& flight, std::vector<double> values) {
+std::vector<double> where_comparable(const CheckedFlight& flight, std::vector<double> values) {
+  const std::vector<bool> in_use = comparable(flight);
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!flight.air.flying[i]) values[i] = std::nan("");
+    if (!in_use[i]) values[i] = std::nan("");
   }
   return values;
 }
@@ -40,7 +39,7 @@ CheckResult check_static_pressure(const CheckedFlights& flights) {
                    "no flight has a second static system (known are PSFD/QCF, PSFRD/QCFR, PSF/QCF and "
                    "PS_A/QC_A); --second OTHER.toml names one with its correction");
   }
-  const RedundantFit fit = fit_of(redundant(flights, own, other, used));
+  const RedundantFit fit = fit_of(redundant(flights, own, other, comparable));
   if (std::isnan(fit.ordinary.slope)) {
     return not_run(
         "static-pressure",
@@ -69,13 +68,14 @@ CheckResult check_static_pressure(const CheckedFlights& flights) {
       "Errors that both systems have: what both laws were fitted to (the scale of LAMS, the temperature), "
       "and all that acts on both ports alike.";
   add_numbers(fit, result);
+  if (std::any_of(flights.begin(), flights.end(), with_avionics)) result.notes.push_back(note_on_avionics());
   result.tables.push_back(
       table_of(fit, fmt::format("Static pressure of {} against the model's", first->second_name)));
   result.columns.push_back(column_of(flights, "static-pressure one", "static pressure of the model", "hPa",
-                                     [](const CheckedFlight& f) { return in_the_air(f, own(f)); }));
+                                     [](const CheckedFlight& f) { return where_comparable(f, own(f)); }));
   result.columns.push_back(column_of(flights, "static-pressure two",
                                      "static pressure of " + first->second_name, "hPa",
-                                     [](const CheckedFlight& f) { return in_the_air(f, other(f)); }));
+                                     [](const CheckedFlight& f) { return where_comparable(f, other(f)); }));
   PairPanel panel;
   panel.title = first->second_corrected ? "Corrected static pressures of the two systems"
                                         : "Static pressure of the model and of a second system as measured";

@@ -12,13 +12,7 @@ namespace {
 /// pairs are good for together (R5: 0.1 hPa of PSF, 0.05 hPa of QCF).
 constexpr double size_that_matters = 0.3;
 
-/// The avionics delay and smooth their pressures by some half a second, so transients are left out (R7): at
-/// this rate, hPa/s, half a second is 0.05 hPa.
-constexpr double fastest_of_avionics = 0.1;
-
 bool has_two(const CheckedFlight& flight) { return flight.measured.size() > 1; }
-
-bool is_avionics(const MeasuredPair& pair) { return pair.name.rfind("PS_A", 0) == 0; }
 
 std::vector<double> total_of(const CheckedFlight& flight, std::size_t number) {
   if (!has_two(flight)) return {};
@@ -26,19 +20,6 @@ std::vector<double> total_of(const CheckedFlight& flight, std::size_t number) {
   std::vector<double> total = pair.static_pressure;
   for (std::size_t i = 0; i < total.size(); ++i) total[i] += pair.dynamic_pressure[i];
   return total;
-}
-
-bool with_avionics(const CheckedFlight& flight) {
-  return has_two(flight) && (is_avionics(flight.measured[0]) || is_avionics(flight.measured[1]));
-}
-
-std::vector<bool> used(const CheckedFlight& flight) {
-  if (!with_avionics(flight)) return flight.air.flying;
-  const std::vector<bool> one = steady(flight, total_of(flight, 0), fastest_of_avionics);
-  const std::vector<bool> two = steady(flight, flight.measured[0].static_pressure, fastest_of_avionics);
-  std::vector<bool> both(one.size());
-  for (std::size_t i = 0; i < both.size(); ++i) both[i] = one[i] && two[i];
-  return both;
 }
 
 SeriesOfFlight static_of(std::size_t number) {
@@ -62,13 +43,13 @@ CheckResult check_total_pressure(const CheckedFlights& flights) {
   }
   const std::string& one = first->measured[0].name;
   const std::string& two = first->measured[1].name;
-  const Redundant totals = redundant(flights, total(0), total(1), used);
+  const Redundant totals = redundant(flights, total(0), total(1), comparable);
   const RedundantFit fit = fit_of(totals);
   if (std::isnan(fit.ordinary.slope)) {
     return not_run("total-pressure",
                    fmt::format("{} and {} have too few values at the same time in the air", one, two));
   }
-  const RedundantFit statics = fit_of(redundant(flights, static_of(0), static_of(1), used));
+  const RedundantFit statics = fit_of(redundant(flights, static_of(0), static_of(1), comparable));
 
   CheckResult result;
   result.name = "total-pressure";
@@ -89,16 +70,12 @@ CheckResult check_total_pressure(const CheckedFlights& flights) {
   result.numbers.emplace_back("static_mean_difference_stderr_hpa", statics.difference.error);
   result.numbers.emplace_back("static_scatter_hpa", statics.scatter);
   result.tables.push_back(table_of(fit, fmt::format("Total pressure of {} against {}", two, one)));
-  if (std::any_of(flights.begin(), flights.end(), with_avionics))
-    result.notes.push_back(
-        fmt::format("The avionics smooth their pressures, so samples in which the pressure "
-                    "changes by more than {} hPa/s are left out",
-                    fastest_of_avionics));
+  if (std::any_of(flights.begin(), flights.end(), with_avionics)) result.notes.push_back(note_on_avionics());
   const auto of_used = [](const SeriesOfFlight& series) {
     return [series](const CheckedFlight& flight) {
       std::vector<double> values = series(flight);
       if (values.empty()) return values;
-      const std::vector<bool> in_use = used(flight);
+      const std::vector<bool> in_use = comparable(flight);
       std::vector<std::size_t> places;
       for (std::size_t i = 0; i < in_use.size(); ++i) {
         if (in_use[i]) places.push_back(i);

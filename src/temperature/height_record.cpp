@@ -44,8 +44,9 @@ class Integration {
     const std::vector<RegimeSet> regimes = regimes_of_samples(air_.time(), air_.samples->intervals);
     std::vector<Point> points;
     for (std::size_t i = 0; i < air_.size(); ++i) {
+      // Without pressure it is not known to fly either: that is a gap, which `advance` may cross.
       const bool takes_part = air_.flying[i] && !regimes[i][static_cast<std::size_t>(Regime::take_off)];
-      if (!takes_part) {
+      if (!takes_part && is_known(i)) {
         going_ = false;
         continue;
       }
@@ -62,10 +63,13 @@ class Integration {
   }
 
  private:
+  bool is_known(std::size_t i) const {
+    return !std::isnan(air_.pressure[i]) && !std::isnan(air_.temperature[i]);
+  }
+
   /// Takes the integral to sample `i`; starts anew after a gap.
   void advance(std::size_t i) {
-    const bool known = !std::isnan(air_.pressure[i]) && !std::isnan(air_.temperature[i]);
-    if (!known) {
+    if (!is_known(i)) {
       if (going_ && air_.time()[i] - air_.time()[last_] > options_.longest_bridge) going_ = false;
       return;
     }
@@ -104,7 +108,7 @@ class Integration {
     if (!steps_.empty()) {
       double sum = 0.0;
       for (std::size_t i = before + 1; i <= here; ++i) sum += steps_[i];
-      return sum;
+      if (!std::isnan(sum)) return sum;  // else across samples without pressure
     }
     return hydrostatic_step(air_.pressure[before], air_.pressure[here],
                             0.5 * (air_.gas_constant[before] + air_.gas_constant[here]));
