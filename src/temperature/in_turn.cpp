@@ -4,6 +4,7 @@
 
 #include "../flight_air.hpp"
 #include "calibration.hpp"
+#include "pcor/offline/error.hpp"
 #include "pcor/offline/temperature.hpp"
 
 namespace pcor {
@@ -47,8 +48,14 @@ double correction_at(double temperature, const std::vector<double>& coefficients
 CalibrationInTurn calibrate_in_turn(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
                                     const Reference& reference, const RefitOptions& refit_options,
                                     const TemperatureOptions& temperature_options) {
+  if (temperature_options.archived) {
+    throw Error(
+        "archived flights have their pressures already; to fit pressure and temperature in turn give flights "
+        "as recorded");
+  }
   CalibrationInTurn result;
   TemperatureOptions options = temperature_options;
+  std::vector<DegreeChoice> degrees;
   ModelFile current = model;
   std::vector<double> coefficients;
   for (const ModelEffect& effect : model.model.effects) {
@@ -57,6 +64,7 @@ CalibrationInTurn calibrate_in_turn(const std::vector<std::filesystem::path>& fl
   while (!result.converged && result.rounds.size() < most_rounds) {
     result.pressure = refit(flights, current, reference, refit_options);
     result.temperature = fit_temperature(flights, result.pressure.model, options);
+    if (result.rounds.empty()) degrees = result.temperature.degrees;
     // The degree is chosen once, lest it goes to and fro.
     options.degree = static_cast<int>(result.temperature.likelihood.coefficients.size()) - 1;
 
@@ -74,6 +82,7 @@ CalibrationInTurn calibrate_in_turn(const std::vector<std::filesystem::path>& fl
     current = result.temperature.model;
     result.rounds.push_back(std::move(round));
   }
+  result.temperature.degrees = std::move(degrees);
   return result;
 }
 

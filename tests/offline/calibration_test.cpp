@@ -6,26 +6,23 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <memory>
 #include <optional>
 #include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "../../src/flight_air.hpp"
-#include "../../src/temperature/archived_steps.hpp"
-#include "pcor/offline/process.hpp"
 #include "pcor/offline/refit.hpp"
-#include "pcor/offline/simulate.hpp"
 #include "pcor/realtime/loop.hpp"
 #include "support/made_samples.hpp"
-#include "support/temporary_directory.hpp"
 
 namespace pcor {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
-using testing::IsEmpty;
 
 const std::filesystem::path published = PCOR_SOURCE_DIR "/data/models/c130-psfd-eq18.toml";
 
@@ -106,8 +103,8 @@ TEST(Calibration, LeavesAFormulaOfTheUsersOwnAlone) {
   own.parameters = {0.1};
   file.model.effects.push_back(own);
   EXPECT_EQ(without_calibration(with_curve(file)).model.effects.back().id, "own-thermometer");
-  // It is applied after the user's own, and to what the fit saw: the temperature with it.
-  EXPECT_NEAR(applied(with_curve(file), 0.0), 0.1 + 0.5 - 0.01 * 0.1 + 1e-4 * 0.01, 1e-12);
+  // Both see the temperature as recorded, and add up.
+  EXPECT_NEAR(applied(with_curve(file), -40.0), 0.1 + 1.06, 1e-12);
 }
 
 TEST(Calibration, IsWhatAFileReadsBack) {
@@ -146,7 +143,7 @@ TEST(Calibration, IsWhatAFileReadsBack) {
         EXPECT_EQ(read.covariance.matrix[0][2 + k], 0.0);
         EXPECT_EQ(read.covariance.matrix[2 + k][1], 0.0);
       }
-      EXPECT_THAT(read.covariance.matrix[0], testing::Contains(2e-9));
+      EXPECT_THAT(read.covariance.matrix[0], Contains(2e-9));
       EXPECT_EQ(read.covariance.matrix[1][1], 9e-8);
     }
   }
@@ -164,16 +161,26 @@ TEST(Calibration, AppliedIsThePolynomialInDegreesCelsius) {
   EXPECT_NEAR(applied(with_calibration(file, {-0.25}, {0.1}, {{0.01}}), -40.0), -0.25, 1e-12);
 }
 
-TEST(Calibration, IsHeldByARefit) {
+/// An hour in memory with a thermometer that no pressure enters.
+std::shared_ptr<const FlightSamples> flight_with_thermometer() {
   made::Plan plan;
   plan.defect = made::equation_18;
   FlightSamples samples = made::flight(plan);
   samples.model.roles.push_back(Quantity::ambient_temperature);
   samples.model.columns.emplace_back(Quantity::ambient_temperature,
                                      std::vector<double>(samples.time.size(), 263.15));
-  const auto flight = std::make_shared<const FlightSamples>(std::move(samples));
-  ModelFile bare = made::model({"static-constant", "static-alpha", "static-qp"});
-  bare.variables[Quantity::ambient_temperature] = "ATH1";
+  return std::make_shared<const FlightSamples>(std::move(samples));
+}
+
+ModelFile model_with_thermometer() {
+  ModelFile file = made::model({"static-constant", "static-alpha", "static-qp"});
+  file.variables[Quantity::ambient_temperature] = "ATH1";
+  return file;
+}
+
+TEST(Calibration, IsHeldByARefit) {
+  const auto flight = flight_with_thermometer();
+  const ModelFile bare = model_with_thermometer();
   const RefitResult without = refit({flight}, bare, made::pressure_reference());
   const RefitResult with = refit({flight}, with_curve(bare), made::pressure_reference());
 
@@ -192,16 +199,9 @@ TEST(Calibration, IsHeldByARefit) {
 }
 
 TEST(Calibration, KeepsItsCovarianceInARefit) {
-  made::Plan plan;
-  plan.defect = made::equation_18;
-  FlightSamples samples = made::flight(plan);
-  samples.model.roles.push_back(Quantity::ambient_temperature);
-  samples.model.columns.emplace_back(Quantity::ambient_temperature,
-                                     std::vector<double>(samples.time.size(), 263.15));
-  const auto flight = std::make_shared<const FlightSamples>(std::move(samples));
-  ModelFile file = with_curve(made::model({"static-constant", "static-alpha", "static-qp"}));
-  file.variables[Quantity::ambient_temperature] = "ATH1";
-  const Covariance after = refit({flight}, file, made::pressure_reference()).model.covariance;
+  const Covariance after =
+      refit({flight_with_thermometer()}, with_curve(model_with_thermometer()), made::pressure_reference())
+          .model.covariance;
   ASSERT_EQ(after.parameters.size(), 6U);
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_EQ(after.parameters[3 + k], "temp-calibration.a" + std::to_string(k));

@@ -138,7 +138,7 @@ struct CalibrationRound {
 
 struct CalibrationInTurn {
   RefitResult pressure;           ///< of the last round
-  TemperatureResult temperature;  ///< of the last round; its model has both
+  TemperatureResult temperature;  ///< of the last round, degrees of the first; its model has both
   std::vector<CalibrationRound> rounds{};
   bool converged = false;
 };
@@ -146,7 +146,7 @@ struct CalibrationInTurn {
 /// The memo's iteration: delta-p from LAMS depends on the temperature, and the temperature on the pressure.
 /// Fits them in turn until neither moves: delta-p by less than 0.001 hPa and the temperature by less than
 /// 0.001 K.
-/// @throws Error as `refit` and `fit_temperature`.
+/// @throws Error as `refit` and `fit_temperature`, and for archived flights, whose pressures are as they are.
 CalibrationInTurn calibrate_in_turn(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
                                     const Reference& reference, const RefitOptions& refit_options,
                                     const TemperatureOptions& temperature_options);
