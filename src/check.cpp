@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "checks/checks.hpp"
 #include "checks/flown.hpp"
@@ -111,6 +112,16 @@ CheckedFlight checked(const Flight& flight, const ModelFile& model, const CheckO
   return result;
 }
 
+/// Says where a number is too small to matter and no chance either.
+void add_note_on_small(CheckResult& result) {
+  constexpr double significant = 3.0;  // standard errors
+  const double deviations = std::abs(result.key.value) / result.key.standard_error;
+  const bool is_small = result.ran && std::abs(result.key.value) <= result.key.matters;
+  if (!is_small || !(deviations > significant) || result.name == "spectrum") return;
+  result.notes.push_back(
+      fmt::format("the number is {:.0f} standard errors from zero: small, but no chance", deviations));
+}
+
 /// The samples and intervals that all pictures share.
 Report pictures_of(const CheckedFlights& flights) {
   Report report;
@@ -165,6 +176,14 @@ Checks check(const std::vector<std::filesystem::path>& flights, const std::optio
       checks.flights.push_back(read.back().air.samples->name);
       if (checks.model.empty()) checks.model = its_model->model.name;
       for (const std::string& note : read.back().air.notes) checks.notes.push_back(note);
+      if (!model && its_model->variables.count(Quantity::recovery_temperature) > 0) {
+        checks.notes.push_back(
+            fmt::format("{}: without a model the recovery factor of {} is taken as {:g}, that of the C-130's "
+                        "TTRR; a model (-m) "
+                        "gives its own",
+                        checks.flights.back(), its_model->variables.at(Quantity::recovery_temperature),
+                        its_model->model.recovery.coefficients[0]));
+      }
     }
     if (options.progress) options.progress(aircraft.size(), flights.size());
   }
@@ -173,6 +192,7 @@ Checks check(const std::vector<std::filesystem::path>& flights, const std::optio
     checks.results.push_back(read.empty() ? not_run(each.name, fmt::format("{}", fmt::join(unusable, "; ")))
                                           : each.run(read));
   }
+  for (CheckResult& result : checks.results) add_note_on_small(result);
   checks.pictures = pictures_of(read);
   return checks;
 }

@@ -99,7 +99,7 @@ ReportTable verdicts(const Checks& checks) {
   table.title = "Verdicts";
   table.caption =
       "Inconsistent: beyond what matters and beyond three standard errors. Consistent: within what matters, "
-      "and known as well as that. In between it cannot be told.";
+      "by two standard errors. In between it cannot be told.";
   table.headers = {"check", "verdict", "number", "matters", "what was found"};
   for (const CheckResult& result : checks.results) {
     if (!result.ran) {

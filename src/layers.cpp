@@ -8,6 +8,7 @@
 #include <map>
 #include <tuple>
 
+#include "checks/statistics.hpp"
 #include "pcor/offline/error.hpp"
 #include "pcor/offline/noise.hpp"
 #include "pcor/physics/hydrostatic.hpp"
@@ -26,6 +27,8 @@ constexpr double least_step = 2.0;            // m between the GPS height and th
 constexpr double largest_level_rate = 0.5;    // m/s
 constexpr double piece_time = 300.0;          // s: the time of a layer, about
 constexpr double band = 500.0;                // m: delta-p may err otherwise in the next
+constexpr double least_swing = 2.0;           // m/s of the climb rate, to tell a lag
+constexpr double lag_that_matters = 0.5;      // s: 2.5 m in a climb of 5 m/s
 constexpr double least_range = 5.0;           // K of temperature for a line
 
 /// The samples where pressure, height, temperature and humidity are known, in flight.
@@ -107,16 +110,18 @@ double speed_at(const std::vector<double>& speed, std::size_t i) {
 
 /// How the GPS height departs from that which pressure and temperature ask for, within five minutes.
 struct Piece {
-  double squares = 0.0;   ///< of what a line in time and one in height leave, m2
-  double freedom = 0.0;   ///< samples less what was fitted
-  double gradient = 0.0;  ///< the line in time, m per 100 km of way
+  double squares = 0.0;     ///< of what a line in time and one in height leave, m2
+  double freedom = 0.0;     ///< samples less what was fitted
+  double gradient = 0.0;    ///< the line in time, m per 100 km of way
+  Estimated lag{nan, nan};  ///< of the pressure behind the height, s; NaN where the climb rate hardly changes
 };
 
-/// The line in time is the slope of the pressure surfaces, the one in height an error of the thermometer. The
-/// rest is the error of height and pressure, and what the air does itself within five minutes.
-Piece look_at_piece(const FlightAir& air, const std::vector<double>& heights, std::size_t first,
-                    std::size_t samples) {
-  Eigen::MatrixXd columns(samples, 3);
+/// The line in time is the slope of the pressure surfaces, the one in height an error of the thermometer, and
+/// what goes with the climb rate a lag. The rest is the error of height and pressure, and what the air does
+/// itself within five minutes.
+Piece look_at_piece(const FlightAir& air, const std::vector<double>& heights,
+                    const std::vector<double>& climb_rate, std::size_t first, std::size_t samples) {
+  Eigen::MatrixXd columns(samples, 4);
   Eigen::VectorXd departures(samples);
   double way = 0.0;
   double predicted = 0.0;
@@ -126,28 +131,48 @@ Piece look_at_piece(const FlightAir& air, const std::vector<double>& heights, st
     columns(row, 0) = 1.0;
     columns(row, 1) = (air.time()[first + k] - air.time()[first]) / piece_time - 0.5;
     columns(row, 2) = predicted;
+    columns(row, 3) = climb_rate[first + k];
     departures(row) = heights[first + k] - heights[first] - predicted;
     way += air.airspeed[first + k] * air.step();
   }
-  columns.col(2).array() -= columns.col(2).mean();
+  for (const Eigen::Index column : {2, 3}) columns.col(column).array() -= columns.col(column).mean();
   const Eigen::VectorXd fit = columns.colPivHouseholderQr().solve(departures);
   Piece piece;
   piece.squares = (departures - columns * fit).squaredNorm();
-  piece.freedom = static_cast<double>(samples) - 3.0;
+  piece.freedom = static_cast<double>(samples) - 4.0;
   piece.gradient = fit(1) / way / metres_per_gradient;
+  const double swing = columns.col(3).maxCoeff() - columns.col(3).minCoeff();
+  if (swing < least_swing) return piece;
+  const double variance = piece.squares / piece.freedom * (columns.transpose() * columns).inverse()(3, 3);
+  piece.lag = {fit(3), std::sqrt(variance)};
   return piece;
 }
 
 std::vector<Piece> look_at_pieces(const FlightAir& air, const std::vector<double>& heights,
+                                  const std::vector<double>& climb_rate,
                                   const std::vector<Stretch>& stretches) {
   std::vector<Piece> pieces;
   const auto samples = static_cast<std::size_t>(piece_time / air.step());
   for (const Stretch& stretch : stretches) {
     for (std::size_t first = stretch.first; first + samples <= stretch.first + stretch.count;
          first += samples)
-      pieces.push_back(look_at_piece(air, heights, first, samples));
+      pieces.push_back(look_at_piece(air, heights, climb_rate, first, samples));
   }
   return pieces;
+}
+
+/// Says where the pressure lags behind the height: layers in which a climb begins or ends are then wrong by
+/// some kelvins, with opposite signs.
+void note_lag(const std::vector<Piece>& pieces, std::vector<std::string>& notes) {
+  constexpr double significant = 4.0;  // standard errors
+  std::vector<Estimated> lags;
+  for (const Piece& piece : pieces) lags.push_back(piece.lag);
+  const Estimated lag = combined(lags);
+  if (!(std::abs(lag.value) > std::max(lag_that_matters, significant * lag.error))) return;
+  notes.push_back(fmt::format(
+      "the static pressure is {:.1f} +- {:.1f} s {} the GPS height, where the climb rate changes: a lag of "
+      "the static line or a clock, which makes layers wrong where a climb begins or ends",
+      std::abs(lag.value), lag.error, lag.value > 0.0 ? "behind" : "ahead of"));
 }
 
 /// @param all pieces of the flight; @param level those in level flight
@@ -177,6 +202,7 @@ LayerUncertainty uncertainty_of(const LayerOptions& options, const std::vector<P
                     "the pressure (rms) within {} stretches of {:.0f} s",
                     uncertainty.height_noise, all.size(), piece_time));
   }
+  note_lag(all, notes);
   uncertainty.gradient = options.gradient.value_or(usual_gradient);
   if (options.gradient || level.empty()) return uncertainty;
   double slopes = 0.0;
@@ -327,8 +353,8 @@ FlightLayers find_layers(const FlightAir& air, const LayerOptions& options) {
   const std::vector<double> climb_rate = climb_rates(air, heights, stretches);
   const std::vector<Stretch> level =
       parts_where(stretches, [&](std::size_t i) { return std::abs(climb_rate[i]) < largest_level_rate; });
-  found.uncertainty = uncertainty_of(options, look_at_pieces(air, heights, stretches),
-                                     look_at_pieces(air, heights, level), found.notes);
+  found.uncertainty = uncertainty_of(options, look_at_pieces(air, heights, climb_rate, stretches),
+                                     look_at_pieces(air, heights, climb_rate, level), found.notes);
   std::vector<Stretch> climbs;
   for (const double sign : {1.0, -1.0}) {
     const std::vector<Stretch> parts = parts_where(
@@ -372,7 +398,8 @@ FlightLayers find_layers(const FlightAir& air, const LayerOptions& options) {
 LayerFit fit_layers(const std::vector<FlightLayers>& flights) {
   LayerFit fit;
   for (const FlightLayers& flight : flights) fit.layers += flight.layers.size();
-  fit.offset = fit.offset_error = fit.centre = fit.c0 = fit.c0_error = fit.c1 = fit.c1_error = nan;
+  fit.offset = fit.offset_error = fit.mean_temperature = fit.centre = fit.c0 = fit.c0_error = fit.c1 =
+      fit.c1_error = nan;
   if (fit.layers == 0) return fit;
   const auto count = static_cast<Eigen::Index>(fit.layers);
   Eigen::VectorXd differences(count);
@@ -385,10 +412,6 @@ LayerFit fit_layers(const std::vector<FlightLayers>& flights) {
     }
   }
   const Eigen::MatrixXd covariance = covariance_of(flights, fit.layers);
-  const Eigen::VectorXd weights =
-      covariance.diagonal().cwiseInverse() / covariance.diagonal().cwiseInverse().sum();
-  fit.offset = weights.dot(differences);
-  fit.offset_error = std::sqrt(weights.dot(covariance * weights));
   // Whitened by the covariance, the line is ordinary least squares.
   const Eigen::LLT<Eigen::MatrixXd> root(covariance);
   const auto whitened = [&](const Eigen::VectorXd& column) -> Eigen::VectorXd {
@@ -399,6 +422,9 @@ LayerFit fit_layers(const std::vector<FlightLayers>& flights) {
   const double weight = ones.squaredNorm();
   const double mean = ones.dot(y) / weight;
   Eigen::VectorXd rest = y - mean * ones;
+  fit.mean_temperature = temperatures.mean();
+  fit.offset = mean;
+  fit.offset_error = 1.0 / std::sqrt(weight);
   fit.degrees_of_freedom = fit.layers - 1;
   if (fit.layers >= 3 && temperatures.maxCoeff() - temperatures.minCoeff() >= least_range) {
     fit.centre = ones.dot(whitened(temperatures)) / weight;
@@ -407,6 +433,8 @@ LayerFit fit_layers(const std::vector<FlightLayers>& flights) {
     fit.c0_error = 1.0 / std::sqrt(weight);
     fit.c1 = tilted.dot(y) / tilted.squaredNorm();
     fit.c1_error = 1.0 / tilted.norm();
+    fit.offset = fit.correction_at(fit.mean_temperature);
+    fit.offset_error = fit.correction_error_at(fit.mean_temperature);
     rest -= fit.c1 * tilted;
     fit.degrees_of_freedom = fit.layers - 2;
   }

@@ -94,18 +94,20 @@ struct FlightLayers {
 /// standard deviation is negative or, for the height, zero.
 FlightLayers find_layers(const FlightAir& air, const LayerOptions& options = {});
 
-/// The correction that layers ask of a thermometer: the mean of T_p - T_m, weighted with what each layer is
-/// worth alone, and the line that makes
+/// The correction that layers ask of a thermometer: the line that makes
 ///
 ///     chi2 = sum (T_m + c0 + c1 (T_m - centre) - T_p)^2 / sigma^2
 ///
-/// least, with the full covariance in the place of sigma^2: layers of one climb share an end, and layers of
-/// one flight the slope of the pressure surfaces. Four fifths of its variance are taken as that of the
-/// flight, the rest as that of each climb, so climbs and descents on one heading cancel most of it (R79 iii).
-/// An error of delta-p that differs between heights is the same for all flights at one height.
+/// least, or a constant where there are too few layers for a line, with the full covariance in the place of
+/// sigma^2: layers of one climb share an end, and layers of one flight the slope of the pressure surfaces.
+/// Four fifths of its variance are taken as that of the flight, the rest as that of each climb, so climbs and
+/// descents on one heading cancel most of it (R79 iii). An error of delta-p that differs between heights is
+/// the same for all flights at one height.
 struct LayerFit {
   std::size_t layers = 0;
-  double offset = 0.0;        ///< mean of T_p - T_m, K: to be added to the thermometer's
+  double mean_temperature = 0.0;  ///< of the layers, K
+  /// What has to be added to the thermometer's at the mean temperature, K, by the line or the constant.
+  double offset = 0.0;
   double offset_error = 0.0;  ///< standard error, K
   double centre = 0.0;        ///< K: where the errors of c0 and c1 are independent; may be outside the layers
   double c0 = 0.0;        ///< at the centre, K; NaN like all of the line with fewer than three layers or 5 K

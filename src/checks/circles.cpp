@@ -18,9 +18,9 @@ constexpr double size_that_matters = 0.3;
 constexpr double least_turn = 300.0;  // deg
 
 /// Noise of one circle that its samples cannot show, m/s: the wind drifts while the heading goes round once.
-/// In simulated air (0.3 m/s rms of mesoscale drift with a memory of 300 s) errors of circles are right with
-/// it.
-constexpr double drift_of_wind = 0.1;
+/// A quarter of the change between the legs of a reverse heading: so much less it is in simulated air, for
+/// all its drifts.
+constexpr double drift_of_wind = 0.25 * change_of_wind;
 
 struct Circle {
   Flown flown;

@@ -35,6 +35,11 @@ std::pair<double, double> range_of(const std::vector<double>& values);
 double mean_value(const std::vector<double>& values);
 double standard_deviation(const std::vector<double>& values);
 
+/// How much the tail winds of the two legs of a reverse heading differ although nothing is wrong, m/s rms:
+/// the wind changes, and legs of minutes cannot show it. The memo's 18 pairs reach +-0.2 m/s (R64): 0.2
+/// sqrt(18).
+inline constexpr double change_of_wind = 0.85;
+
 /// What the flights lack for the wind along the aircraft's axis, in words that follow "no flight"; empty
 /// where one of them has it.
 std::string missing_for_tail_wind(const CheckedFlights& flights);

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// The smallest difference that matters, K: what 0.1 to 0.2 hPa of delta-p or 0.1 % of the laser make.
-constexpr double size_that_matters = 0.5;
+/// The smallest difference that matters, K: the typical error of the thermometer (memo, after eq. 22).
+constexpr double size_that_matters = 0.3;
 constexpr double boundary_layer = 1000.0;    // m above the field
 constexpr double altitude_band = 1000.0;     // m
 constexpr std::size_t fewest_in_cloud = 30;  // samples: fewer do not tell their own scatter
@@ -247,13 +247,15 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
                                      [](const CheckedFlight& f) { return f.air.laser.has_value(); });
   if (!has_laser) {
     return not_run(name,
-                   "no flight records a laser airspeed that the model names ([variables] lams_airspeed, with "
+                   "no flight has a laser airspeed that a model names (-m; [variables] lams_airspeed, with "
                    "attack and sideslip)");
   }
   const bool has_thermometer = std::any_of(flights.begin(), flights.end(), [](const CheckedFlight& f) {
     return f.air.laser && !f.air.temperature.empty();
   });
-  if (!has_thermometer) return not_run(name, "the model names no thermometer to hold the laser against");
+  if (!has_thermometer)
+    return not_run(
+        name, "no thermometer is known to hold the laser against; a model names it as recovery_temperature");
   const Differences all = all_differences(flights);
   const auto clear = [&](std::size_t i) { return !all.in_cloud[i]; };
   const Part outside = part_of(all, "out of cloud", clear);

@@ -22,7 +22,8 @@ constexpr double largest_useful_error = 1.0;
 
 /// Why a flight has no layers; empty where it has.
 std::string trouble_with(const FlightAir& air, const FlightLayers& found) {
-  if (air.temperature.empty()) return "the model names no thermometer, so there is no temperature to check";
+  if (air.temperature.empty())
+    return "no thermometer is known; a model names it as recovery_temperature or ambient_temperature (-m)";
   if (const std::string trouble = trouble_with_height(air); !trouble.empty()) return trouble;
   if (!found.layers.empty()) return "";
   const LayerOptions options;
@@ -206,8 +207,9 @@ CheckResult check_layers(const CheckedFlights& flights) {
   }
   result.cannot_see =
       "Which of thermometer, pressure and height is wrong: an error of delta-p that grows with height, and "
-      "isobars that slope along the track, look like a warmer or colder layer; a constant error of delta-p "
-      "is all but cancelled between the ends, so it is not seen at all. An offset of the thermometer, a "
+      "isobars that slope along the track, look like a warmer or colder layer; of a constant error of "
+      "delta-p "
+      "the ends of a layer leave little, some tenths of a kelvin for 1 hPa. An offset of the thermometer, a "
       "wrong recovery factor, heat of de-icing and neglected humidity look alike. A thermometer or a static "
       "line that lags errs up and down with opposite signs.";
   result.numbers = {{"offset_k", fit.offset},

@@ -16,16 +16,15 @@ namespace {
 /// The smallest error of the airspeed that matters, m/s: that of the memo's GV (R64), some 0.3 hPa.
 constexpr double size_that_matters = 0.3;
 
-/// How much the wind of the scale of a leg changes from one leg to the other, m/s: noise of the sum of a pair
-/// that the legs themselves cannot show. Two legs of 0.3 m/s each.
-constexpr double change_of_wind = 0.42;
-
 /// Pilots aim at headings that are opposite to five degrees.
 constexpr double aimed_heading = 5.0;  // deg
 /// Legs that are further from opposite are no reverse heading.
 constexpr double most_heading = 30.0;  // deg
 
-/// The pairs of which their own scatter tells their error.
+/// How many pairs the assumed change of the wind is worth beside the scatter of those that were flown.
+constexpr double pairs_of_assumption = 2.0;
+
+/// With fewer pairs the error is mostly that of the assumption, and a note says so.
 constexpr std::size_t fewest_for_scatter = 3;
 
 struct Pair {
@@ -99,12 +98,14 @@ std::vector<std::pair<Flown, Flown>> pairs_of(const CheckedFlights& flights,
   return pairs;
 }
 
-/// The error of the airspeed over all pairs: with the wind between the legs of each, or as they scatter,
-/// whichever is more.
+/// The error of the airspeed over all pairs. Its variance is that of the assumed change of the wind, in which
+/// the scatter of the pairs takes over the more of them there are:
+///
+///     s^2 = (n0 assumed^2 + sum (value - mean)^2)/(n0 + n - 1),  error = s/sqrt(n)
 struct Mean {
   Estimated airspeed{};
-  double from_within = 0.0;
-  double from_between = 0.0;  ///< NaN for fewer than three pairs
+  double from_assumption = 0.0;  ///< the error if the assumed change of the wind were all
+  double from_scatter = 0.0;     ///< if the scatter were; NaN for fewer than three pairs
 };
 
 Mean mean_over(const std::vector<Pair>& pairs) {
@@ -119,10 +120,13 @@ Mean mean_over(const std::vector<Pair>& pairs) {
   }
   const auto count = static_cast<double>(pairs.size());
   mean.airspeed.value = mean_value(values);
-  mean.from_within = std::sqrt(squares) / count;
-  mean.from_between =
-      pairs.size() < fewest_for_scatter ? std::nan("") : standard_deviation(values) / std::sqrt(count - 1.0);
-  mean.airspeed.error = std::fmax(mean.from_within, mean.from_between);
+  mean.from_assumption = std::sqrt(squares) / count;
+  const double deviation = pairs.size() > 1 ? standard_deviation(values) : 0.0;
+  const double scatter = deviation * deviation * count;
+  mean.from_scatter = pairs.size() < fewest_for_scatter ? std::nan("") : deviation / std::sqrt(count - 1.0);
+  const double variance =
+      (pairs_of_assumption * squares / count + scatter) / (pairs_of_assumption + count - 1.0);
+  mean.airspeed.error = std::sqrt(variance / count);
   return mean;
 }
 
@@ -270,8 +274,8 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
   result.numbers = {{"pairs", static_cast<double>(pairs.size())},
                     {"sum_m_s", -2.0 * error.value},
                     {"sum_stderr_m_s", 2.0 * error.error},
-                    {"sum_stderr_within_m_s", 2.0 * mean.from_within},
-                    {"sum_stderr_between_m_s", 2.0 * mean.from_between},
+                    {"sum_stderr_assumed_m_s", 2.0 * mean.from_assumption},
+                    {"sum_stderr_scatter_m_s", 2.0 * mean.from_scatter},
                     {"airspeed_error_m_s", error.value},
                     {"airspeed_error_stderr_m_s", error.error},
                     {"delta_p_error_hpa", hpa.value},

@@ -191,19 +191,6 @@ double pressure_per_speed(const CheckedFlights& flights) {
   return mean_value(sensitivities);
 }
 
-/// The smallest step between recorded static pressures, hPa; NaN where nothing changes.
-double resolution_of(const CheckedFlights& flights) {
-  double least = nan;
-  for (const CheckedFlight& flight : flights) {
-    const std::vector<double>& pressure = flight.air.measured_static;
-    for (std::size_t i = 1; i < pressure.size(); ++i) {
-      const double step = std::abs(pressure[i] - pressure[i - 1]);
-      if (step > 0.0 && !(step >= least)) least = step;
-    }
-  }
-  return least;
-}
-
 }  // namespace
 
 CheckResult check_spectrum(const CheckedFlights& flights) {
@@ -247,13 +234,6 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
   if (other_steps > 0) {
     result.notes.push_back(fmt::format("{} of {} flights take no part: their records are not {:g} s apart",
                                        other_steps, flights.size(), spectrum.step));
-  }
-  const double resolution = resolution_of(flights);
-  if (std::isfinite(resolution)) {
-    result.notes.push_back(
-        fmt::format("the static pressure is recorded in steps of {:.2g} hPa at the least, which makes white "
-                    "noise of {:.2g} hPa",
-                    resolution, resolution / std::sqrt(12.0)));
   }
   result.cannot_see =
       "Which sensor the noise is of: pressures, thermometer, laser and the air between laser and pitot tube "

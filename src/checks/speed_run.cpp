@@ -16,11 +16,13 @@ namespace {
 constexpr double size_that_matters = 0.3;
 
 /// What changes between the slow and the fast end of a run and is too slow for its samples to show as noise:
-/// the wind of the scale of a run, m/s, and the error of a GPS height, m. In simulated air (0.3 m/s rms of
-/// mesoscale drift with a memory of 300 s, 0.15 m of GPS with one of 60 s) errors of runs are right with
-/// them.
-constexpr double change_of_wind = 0.2;
-constexpr double change_of_height = 0.15;
+/// the wind of the scale of a run, m/s, half the change between the legs of a reverse heading; and the error
+/// of a GPS
+/// /// height, m, at least that of differential GPS. Both are not below half the scatter that the line
+/// leaves. So much they are in simulated air, for all its drifts.
+constexpr double drift_of_wind = 0.5 * change_of_wind;
+constexpr double least_drift_of_height = 0.15;
+constexpr double drift_in_scatter = 0.5;
 
 /// How a series goes with the airspeed in a run.
 struct Trend {
@@ -45,26 +47,27 @@ std::vector<double> less_mean(std::vector<double> values) {
 }
 
 /// A straight line against `x` with a drift in time beside it.
-Estimated slope_of(const std::vector<double>& y, const std::vector<double>& x, const Flown& flown) {
+LeastSquares line_against(const std::vector<double>& x, const std::vector<double>& y, const Flown& flown) {
   const std::vector<double> time = flown.time();
   return least_squares({std::vector<double>(y.size(), 1.0), less_mean(time), less_mean(x)}, y, time,
-                       flown.step())
-      .coefficients[2];
+                       flown.step());
 }
 
 /// @param per_unit what delta-p is off by for one unit of the series, hPa
-/// @param change that the series makes of itself from end to end
+/// @param least_drift of the series from end to end that its samples do not show as noise
 Trend trend_of(const std::vector<double>& series, const Flown& flown, double airspeed_range, double per_unit,
-               double change) {
+               double least_drift) {
   const std::vector<double> values = flown.of(series);
   Trend trend;
   trend.scatter = standard_deviation(values);
   const auto [least, greatest] = range_of(values);
   trend.range = greatest - least;
-  trend.slope = slope_of(values, flown.of(flown.flight->air.airspeed), flown);
+  const LeastSquares line = line_against(flown.of(flown.flight->air.airspeed), values, flown);
+  trend.slope = line.coefficients[2];
   const double across = airspeed_range * per_unit;
+  const double drift = std::max(least_drift, drift_in_scatter * line.rms);
   trend.pressure_error = {across * trend.slope.value,
-                          std::hypot(across * trend.slope.error, per_unit * change)};
+                          std::hypot(across * trend.slope.error, per_unit * drift)};
   return trend;
 }
 
@@ -78,12 +81,12 @@ Run run_of(const Flown& flown) {
   const double weight = pressure / (flown.mean(air.gas_constant) * flown.mean(air.temperature)) *
                         constants::standard_gravity;  // rho g: hPa per m
   const std::vector<double> d_value = trouble_with_height(air).empty() ? air.d_value : std::vector<double>{};
-  run.height = trend_of(d_value, flown, run.airspeed_range, weight, change_of_height);
-  run.dynamic_slope = slope_of(flown.of(d_value), flown.of(air.dynamic), flown);
+  run.height = trend_of(d_value, flown, run.airspeed_range, weight, least_drift_of_height);
+  run.dynamic_slope = line_against(flown.of(air.dynamic), flown.of(d_value), flown).coefficients[2];
   // The tail wind is too low where the airspeed is too high.
   run.wind = trend_of(air.tail_wind, flown, run.airspeed_range,
                       -pressure_per_airspeed(pressure, flown.mean(air.mach), flown.mean(air.airspeed)),
-                      change_of_wind);
+                      drift_of_wind);
   return run;
 }
 

@@ -110,9 +110,10 @@ Estimated combined(const std::vector<Estimated>& estimates) {
 
 CheckVerdict judge(const Estimated& number, double size) {
   constexpr double significant = 3.0;  // standard errors
+  constexpr double likely = 2.0;
   const double magnitude = std::abs(number.value);
   if (magnitude > size && magnitude > significant * number.error) return CheckVerdict::inconsistent;
-  if (magnitude <= size && number.error <= size) return CheckVerdict::consistent;
+  if (magnitude + likely * number.error <= size) return CheckVerdict::consistent;
   return CheckVerdict::cannot_tell;
 }
 

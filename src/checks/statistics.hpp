@@ -40,8 +40,8 @@ Estimated combined(const std::vector<Estimated>& estimates);
 
 /// The verdict on a number that would be zero if all were well. `size` is the smallest one that matters.
 ///
-/// Inconsistent: beyond `size` and beyond three standard errors. Consistent: not beyond `size`, with a
-/// standard error not beyond it either. In between, and for what is no number, it cannot be told.
+/// Inconsistent: beyond `size` and beyond three standard errors. Consistent: not beyond `size`, nor within
+/// two standard errors of being so. In between, and for what is no number, it cannot be told.
 CheckVerdict judge(const Estimated& number, double size);
 
 /// The verdict on two together: inconsistent if one is, else what cannot be told if one cannot.

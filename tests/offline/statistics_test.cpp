@@ -82,7 +82,8 @@ TEST(Statistics, CombinesByErrors) {
 }
 
 TEST(Statistics, Judge) {
-  EXPECT_EQ(judge({0.1, 0.1}, 0.3), CheckVerdict::consistent);
+  EXPECT_EQ(judge({0.05, 0.1}, 0.3), CheckVerdict::consistent);
+  EXPECT_EQ(judge({0.2, 0.1}, 0.3), CheckVerdict::cannot_tell);     // what matters is one error away
   EXPECT_EQ(judge({-0.29, 0.001}, 0.3), CheckVerdict::consistent);  // certain, but too small to matter
   EXPECT_EQ(judge({-0.5, 0.1}, 0.3), CheckVerdict::inconsistent);
   EXPECT_EQ(judge({0.5, 0.2}, 0.3), CheckVerdict::cannot_tell);  // large, but not three errors

@@ -92,27 +92,51 @@ std::string command_line(const Options& options) {
   return line;
 }
 
-/// The command that a user may run next.
+std::size_t count_of(const Checks& checks, CheckVerdict verdict) {
+  return static_cast<std::size_t>(std::count_if(
+      checks.results.begin(), checks.results.end(),
+      [verdict](const CheckResult& result) { return result.ran && result.verdict == verdict; }));
+}
+
+/// What a user may do next: about a fault that no refit mends first, then the temperature, then the law.
 std::string next_step(const Checks& checks, const Options& options, bool has_laser) {
-  const auto any = [&](CheckVerdict verdict) {
-    return std::any_of(checks.results.begin(), checks.results.end(), [verdict](const CheckResult& result) {
-      return result.ran && result.verdict == verdict;
+  const auto fails = [&](const std::string& name) {
+    return std::any_of(checks.results.begin(), checks.results.end(), [&](const CheckResult& result) {
+      return result.name == name && result.ran && result.verdict == CheckVerdict::inconsistent;
     });
   };
-  const bool none_ran = std::none_of(checks.results.begin(), checks.results.end(),
-                                     [](const CheckResult& result) { return result.ran; });
-  if (any(CheckVerdict::inconsistent) && has_laser)
-    return fmt::format("To learn which effect is missing: pcor diagnose {}", command_line(options));
-  if (any(CheckVerdict::inconsistent) && !options.model.empty() && !options.second.empty())
-    return fmt::format("To learn which effect is missing: pcor diagnose {} --reference {}",
-                       command_line(options), quoted("static:" + options.second));
-  if (!any(CheckVerdict::inconsistent) && !none_ran && !options.model.empty())
-    return fmt::format(
-        "Nothing here speaks against the model. To apply it: pcor process {} -m {} -o corrected.nc",
-        quoted(options.flights.flights.front()), quoted(options.model));
   const std::string second = options.second.empty() ? "" : " --second " + quoted(options.second);
-  return fmt::format("To see the pictures: pcor check {}{} --report check.html", command_line(options),
-                     second);
+  const std::string pictures =
+      fmt::format("To see the pictures: pcor check {}{} --report check.html", command_line(options), second);
+  if (fails("total-pressure")) {
+    return "A transducer, a pitot or a line of one system is wrong: static defects cancel in the total "
+           "pressure, so "
+           "no law for them mends it.\n" +
+           pictures;
+  }
+  const std::size_t inconsistent = count_of(checks, CheckVerdict::inconsistent);
+  const std::size_t open = count_of(checks, CheckVerdict::cannot_tell);
+  const bool has_model = !options.model.empty();
+  if (has_model && (fails("layers") || fails("lams-temperature"))) {
+    return fmt::format(
+        "To find the thermometer's error by the height: pcor temperature {} -o calibrated.toml",
+        command_line(options));
+  }
+  if (inconsistent > 0 && has_laser)
+    return fmt::format("To refit the law and learn which effect it lacks: pcor improve {} -o improved.toml",
+                       command_line(options));
+  if (inconsistent > 0 && has_model && !options.second.empty()) {
+    return fmt::format(
+        "To refit the law and learn which effect it lacks: pcor improve {} --reference {} -o improved.toml",
+        command_line(options), quoted("static:" + options.second));
+  }
+  if (inconsistent == 0 && has_model && count_of(checks, CheckVerdict::consistent) > 0) {
+    return fmt::format(
+        "Nothing here speaks against the model{}. To apply it: pcor process {} -m {} -o corrected.nc",
+        open > 0 ? fmt::format("; {} check{} cannot tell", open, open == 1 ? "" : "s") : "",
+        quoted(options.flights.flights.front()), quoted(options.model));
+  }
+  return pictures;
 }
 
 void print(const Checks& checks, const Options& options, bool has_laser) {
@@ -124,7 +148,8 @@ void print(const Checks& checks, const Options& options, bool has_laser) {
   }
   fmt::print(
       "inconsistent: beyond what matters and beyond three standard errors; consistent: within what matters, "
-      "and known as well as that\n");
+      "by "
+      "two standard errors\n");
   for (const CheckResult& result : checks.results) {
     fmt::print("\n{}: {}\n", result.name, result.ran ? result.finding : "not run: " + result.reason + ".");
     if (result.ran) fmt::print("  cannot see: {}\n", result.cannot_see);
