@@ -31,12 +31,6 @@ std::vector<double> difference(std::vector<double> a, const std::vector<double>&
   return a;
 }
 
-std::vector<double> less_mean(std::vector<double> values) {
-  const double mean = mean_value(values);
-  for (double& value : values) value -= mean;
-  return values;
-}
-
 std::vector<double> from_height(const Flown& flown) {
   const FlightAir& air = flown.flight->air;
   const std::vector<double> pressure = flown.of(air.pressure);

@@ -85,6 +85,12 @@ double standard_deviation(const std::vector<double>& values) {
   return std::sqrt(mean_value(squares));
 }
 
+std::vector<double> less_mean(std::vector<double> values) {
+  const double mean = mean_value(values);
+  for (double& value : values) value -= mean;
+  return values;
+}
+
 std::string missing_for_tail_wind(const CheckedFlights& flights) {
   const auto lacking = [&](const auto& series) {
     return std::none_of(flights.begin(), flights.end(),

@@ -34,6 +34,8 @@ std::vector<Flown> all_flown(const CheckedFlights& flights, Regime regime);
 std::pair<double, double> range_of(const std::vector<double>& values);
 double mean_value(const std::vector<double>& values);
 double standard_deviation(const std::vector<double>& values);
+/// The values less their mean.
+std::vector<double> less_mean(std::vector<double> values);
 
 /// How much the tail winds of the two legs of a reverse heading differ although nothing is wrong, m/s rms:
 /// the wind changes, and legs of minutes cannot show it. The memo's 18 pairs reach +-0.2 m/s (R64): 0.2

@@ -40,12 +40,6 @@ struct Run {
   Trend wind;                   ///< UXW, m/s
 };
 
-std::vector<double> less_mean(std::vector<double> values) {
-  const double mean = mean_value(values);
-  for (double& value : values) value -= mean;
-  return values;
-}
-
 /// A straight line against `x` with a drift in time beside it.
 LeastSquares line_against(const std::vector<double>& x, const std::vector<double>& y, const Flown& flown) {
   const std::vector<double> time = flown.time();
