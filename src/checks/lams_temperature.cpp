@@ -289,7 +289,7 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
     const Estimated change{in_cloud_offset.value - offset.value,
                            std::hypot(in_cloud_offset.error, offset.error)};
     if (judge(change, size_that_matters) == CheckVerdict::inconsistent) {
-      result.notes.push_back(
+      result.notes.emplace_back(
           "in cloud the difference is another one: the thermometer gets wet (it reads low), or the laser's "
           "window ices or its light is scattered by drops");
     }

@@ -24,7 +24,7 @@ constexpr double largest_useful_error = 1.0;
 std::string trouble_with(const FlightAir& air, const FlightLayers& found) {
   if (air.temperature.empty())
     return "no thermometer is known; a model names it as recovery_temperature or ambient_temperature (-m)";
-  if (const std::string trouble = trouble_with_height(air); !trouble.empty()) return trouble;
+  if (std::string trouble = trouble_with_height(air); !trouble.empty()) return trouble;
   if (!found.layers.empty()) return "";
   const LayerOptions options;
   return fmt::format(

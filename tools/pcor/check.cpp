@@ -106,7 +106,7 @@ std::string next_step(const Checks& checks, const Options& options, bool has_las
     });
   };
   const std::string second = options.second.empty() ? "" : " --second " + quoted(options.second);
-  const std::string pictures =
+  std::string pictures =
       fmt::format("To see the pictures: pcor check {}{} --report check.html", command_line(options), second);
   if (fails("total-pressure")) {
     return "A transducer, a pitot or a line of one system is wrong: static defects cancel in the total "
