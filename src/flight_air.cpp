@@ -23,30 +23,52 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 struct Series {
   std::string variable{};
   std::vector<double> values{};
+  std::string without_unit{};  ///< the first that was passed over because the file gives it no unit
+};
+
+/// The unit that the model states for a variable: it goes before the file's own.
+struct StatedUnit {
+  std::string variable{};
+  std::string unit{};
 };
 
 /// The first of the variables that is there, has values and a unit that fits.
-Series read_first(const Flight& flight, const std::vector<std::string>& names, const std::string& unit) {
+Series read_first(const Flight& flight, const std::vector<std::string>& names, const std::string& unit,
+                  const StatedUnit& stated = {}) {
+  Series series;
   for (const std::string& name : names) {
     if (!flight.has(name) || !flight.variable(name).is_series) continue;
     try {
-      const UnitConversion conversion = flight.conversion(name, unit);
+      const bool is_stated = name == stated.variable && !stated.unit.empty();
+      const std::string& own = is_stated ? stated.unit : flight.variable(name).units;
+      if (own.empty() && series.without_unit.empty()) series.without_unit = name;
+      const UnitConversion conversion =
+          UnitConversion::between(own, unit, {name, flight.path().string(), ""});
       std::vector<double> values(flight.records());
       for (const RecordBlock block : blocks_of(flight.records()))
         flight.read_at_rate(1, name, block, conversion, values.data() + block.first);
-      if (std::any_of(values.begin(), values.end(), [](double x) { return !std::isnan(x); }))
-        return {name, std::move(values)};
+      if (std::any_of(values.begin(), values.end(), [](double x) { return !std::isnan(x); })) {
+        series.variable = name;
+        series.values = std::move(values);
+        return series;
+      }
     } catch (const Error&) {
       continue;  // a variable of that name with another unit is not the one that is meant
     }
   }
-  return {};
+  return series;
 }
 
-std::vector<std::string> names_for(const ModelFile& model, Quantity role, std::vector<std::string> usual) {
-  if (const auto given = model.variables.find(role); given != model.variables.end())
+/// The series of a role: the model's variable in the unit that the model states, else the usual ones.
+Series read_role(const Flight& flight, const ModelFile& model, Quantity role,
+                 std::vector<std::string> usual) {
+  StatedUnit stated;
+  if (const auto given = model.variables.find(role); given != model.variables.end()) {
     usual.insert(usual.begin(), given->second);
-  return usual;
+    stated.variable = given->second;
+  }
+  if (const auto unit = model.units.find(role); unit != model.units.end()) stated.unit = unit->second;
+  return read_first(flight, usual, std::string(facts_of(role).unit), stated);
 }
 
 std::vector<bool> find_flying(const FlightSamples& samples, const MaskOptions& options) {
@@ -113,12 +135,10 @@ void run_chain(const FlightSamples& samples, const Model& model, FlightAir& air)
 }
 
 void find_heights(const Flight& flight, const ModelFile& model, FlightAir& air) {
-  Series height = read_first(flight, names_for(model, Quantity::altitude, {"GGALT", "GGALTC", "ALTV"}), "m");
-  air.height_variable = height.variable;
+  Series height = read_role(flight, model, Quantity::altitude, {"GGALT", "GGALTC", "ALTV"});
+  air.height_variable = height.values.empty() ? height.without_unit : height.variable;
   air.height = std::move(height.values);
-  air.latitude =
-      read_first(flight, names_for(model, Quantity::latitude, usual_variables(Quantity::latitude)), "deg")
-          .values;
+  air.latitude = read_role(flight, model, Quantity::latitude, usual_variables(Quantity::latitude)).values;
   air.pressure_altitude.resize(air.size());
   for (std::size_t i = 0; i < air.size(); ++i) air.pressure_altitude[i] = pressure_altitude(air.pressure[i]);
   if (air.height.empty() || air.latitude.empty()) return;
@@ -184,6 +204,14 @@ FlightAir read_flight_air(const Flight& flight, const ModelFile& model, const Ma
 }
 
 std::string trouble_with_height(const FlightAir& air) {
+  // A height that the model names and gives a unit to.
+  const auto told = [&air](const char* unit) {
+    return fmt::format("[variables] altitude = \"{}\" and [units] altitude = \"{}\" in the model",
+                       air.height_variable, unit);
+  };
+  if (air.height.empty() && !air.height_variable.empty())
+    return fmt::format("{} has no unit in the file; say it with {}, or give the file a units attribute",
+                       air.height_variable, told("m"));
   if (air.height.empty())
     return "the flight records no GPS height (GGALT; [variables] altitude names another)";
   if (air.latitude.empty())
@@ -205,9 +233,9 @@ std::string trouble_with_height(const FlightAir& air) {
   if (!(highest - lowest > least_range)) return "";
   if (line.slope > 2.9 && line.slope < 3.7) {
     return fmt::format(
-        "{} rises {:.2f} times as fast as the pressure altitude: it is in feet, whatever the file says; "
-        "correct its unit in the file",
-        air.height_variable, line.slope);
+        "{} rises {:.2f} times as fast as the pressure altitude: it is in feet, whatever its unit says; {} "
+        "mend it, or correct its unit in the file",
+        air.height_variable, line.slope, told("ft"));
   }
   // Real air is within 20 % of the standard atmosphere.
   if (!(line.slope > 0.75 && line.slope < 1.25)) {

@@ -37,7 +37,8 @@ struct FlightAir {
   std::vector<double> sideslip_ratio;
   std::optional<LaserAir> laser;
 
-  std::string height_variable;              ///< which height it is; empty where there is none
+  /// Which height it is; without a `height`, one that has no unit. Empty where there is none.
+  std::string height_variable;
   std::vector<double> height;               ///< GPS height, m
   std::vector<double> latitude;             ///< deg
   std::vector<double> geopotential_height;  ///< of the GPS height, m

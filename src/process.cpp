@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "archived_model.hpp"
 #include "height_step.hpp"
 #include "model_inputs.hpp"
 #include "pcor/offline/error.hpp"
@@ -270,9 +271,10 @@ void Processing::choose_outputs() {
                "Aircraft State", join({beam, {name_of("PSXC")}, temperature, humidity}));
   }
   if (options_.hydrostatic) {
-    add_output("HYDSTEP", height_step_, "m/K", "Hydrostatic height step per kelvin, R_a dp/(g p)", "",
+    add_output("HYDSTEP", height_step_, "m/K", "Hydrostatic height step per kelvin, -R_a dp/(g p)", "",
                "Atmos. State", join({{name_of("PSXC")}, humidity}));
-    outputs_.back().variable.attributes = {{"temperature_calibration", temperature_calibration()}};
+    outputs_.back().variable.attributes = {{"temperature_calibration", temperature_calibration()},
+                                           {"model", archived_model(file_, options_.correct_with)}};
   }
 }
 
@@ -330,10 +332,7 @@ void Processing::copy_inputs(FlightWriter& writer, const FileDescription& descri
     copy(name);
   for (const Input& input : inputs_) copy(input.variable);
   if (!options_.hydrostatic) return;
-  // What a fit of temperature needs besides: the height, the way, and how it was flown.
-  for (const Quantity role :
-       {Quantity::altitude, Quantity::latitude, Quantity::ground_speed, Quantity::ground_track,
-        Quantity::heading, Quantity::roll, Quantity::vertical_speed, Quantity::flaps}) {
+  for (const Quantity role : flown_quantities) {
     std::vector<std::string> names = usual_variables(role);
     if (const std::string given = variable_of(role); !given.empty()) names.insert(names.begin(), given);
     const auto found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {

@@ -87,18 +87,22 @@ ModelSamples read_model_samples(const Flight& flight, const ModelFile& file, boo
   return samples;
 }
 
-/// A series of the flight for regimes and masks: the variable of the model's role, else the first that is
-/// there of those which NCAR's files have. Empty where there is none.
+/// A series of the flight for regimes and masks: the variable of the model's role, in the unit that the model
+/// states, else the first that is there of those which NCAR's files have. Empty where there is none.
 std::vector<double> read_motion_column(const Flight& flight, const ModelFile& file, Quantity role,
                                        std::initializer_list<const char*> usual) {
   std::vector<std::string> names;
-  if (const auto given = file.variables.find(role); given != file.variables.end())
-    names.push_back(given->second);
+  const auto given = file.variables.find(role);
+  const auto stated = file.units.find(role);
+  if (given != file.variables.end()) names.push_back(given->second);
   names.insert(names.end(), usual.begin(), usual.end());
   for (const std::string& name : names) {
     if (!flight.has(name) || !flight.variable(name).is_series) continue;
     try {
-      const UnitConversion conversion = flight.conversion(name, std::string(facts_of(role).unit));
+      const bool is_stated = stated != file.units.end() && name == given->second;
+      const std::string& unit = is_stated ? stated->second : flight.variable(name).units;
+      const UnitConversion conversion =
+          UnitConversion::between(unit, std::string(facts_of(role).unit), {name, flight.path().string(), ""});
       std::vector<double> values = read_column(flight, name, conversion);
       if (std::any_of(values.begin(), values.end(), [](double x) { return !std::isnan(x); })) return values;
     } catch (const Error&) {

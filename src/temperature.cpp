@@ -7,9 +7,11 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <thread>
 #include <utility>
 
+#include "archived_model.hpp"
 #include "checks/recorded_model.hpp"
 #include "flight_air.hpp"
 #include "pcor/effects/temp_calibration.hpp"
@@ -28,6 +30,11 @@ constexpr std::size_t fewest_for_choice = 3;  // flights, for errors from their 
 // How much -2 ln L falls for a coefficient that is worth having where no flight can be held out: 3
 // deviations.
 constexpr double worthwhile = 9.0;
+// Of flights held out: standard errors of the gain in -2 ln L, and the gain itself. 4 are two deviations.
+constexpr double sure = 2.0;
+constexpr double worthwhile_held_out = 4.0;
+constexpr double much_noise = 3.0;  // m, of the GPS height
+constexpr double much_drift = 1.0;  // m in a minute; a usual slope of isobars, 10 m in 100 km, makes 0.7
 
 constexpr std::array<std::pair<IsobarSlope, std::string_view>, 6> slope_names{{
     {IsobarSlope::fitted, "fitted"},
@@ -44,7 +51,7 @@ class TemperatureCalibration {
       : model_(model), bare_(without_calibration(model)), options_(options) {
     threads_ =
         options.threads > 0 ? options.threads : std::max<std::size_t>(1, std::thread::hardware_concurrency());
-    prior_.slope = options.slope == IsobarSlope::fitted ? options.slope_size : 0.0;
+    prior_.slope = options.slope == IsobarSlope::none ? 0.0 : options.slope_size;
     prior_.pressure = options.pressure_error;
   }
 
@@ -105,15 +112,19 @@ class TemperatureCalibration {
     FlightAir air;
     std::vector<double> steps;
     if (options_.archived) {
-      const std::optional<ModelFile> recorded = recorded_model(flight);
+      std::optional<ModelFile> recorded = recorded_model(flight);
       if (!recorded || recorded->variables.count(Quantity::ambient_temperature) == 0) {
         throw Error(
             fmt::format("{}: --archived needs PSXC, QCXC and ATX as pcor process writes them; leave it out "
                         "for raw flights",
                         flight.path().string()));
       }
+      for (const Quantity role : flown_quantities) {
+        if (model_.variables.count(role) > 0) recorded->variables[role] = model_.variables.at(role);
+        if (model_.units.count(role) > 0) recorded->units[role] = model_.units.at(role);
+      }
       air = read_flight_air(flight, *recorded, options_.mask);
-      steps = archived_steps(flight, air);
+      steps = archived_steps(flight, model_, air);
     } else {
       air = read_flight_air(flight, bare_, options_.mask);
     }
@@ -193,7 +204,7 @@ class TemperatureCalibration {
     }
     const auto count = static_cast<double>(records_.size());
     const double error = std::sqrt(std::max(0.0, (squares - sum * sum / count) * count / (count - 1.0)));
-    return sum > error;
+    return sum > sure * error && sum > worthwhile_held_out;
   }
 
   void choose_degree() {
@@ -232,7 +243,7 @@ class TemperatureCalibration {
   void fit() {
     maximise();
     while (!options_.degree && terms_ > 1 && !impossible().empty()) {
-      result_.notes.push_back(
+      result_.notes_on_degree.push_back(
           fmt::format("a correction of degree {} is given up, as it comes out as no thermometer needs ({}); "
                       "more climbs and descents through other temperatures would tell it",
                       terms_ - 1, impossible()));
@@ -248,8 +259,8 @@ class TemperatureCalibration {
     const auto n = static_cast<Eigen::Index>(terms_);
     const HeightEquations& equations = likeliest_.equations;
     const Eigen::VectorXd best = equations.best(n);
-    const Eigen::MatrixXd covariance = equations.covariance(n);
-    const Eigen::VectorXd per_hpa = covariance * equations.pressure_error.head(n);
+    const Eigen::MatrixXd covariance = covariance_over_noise(records_, n, prior_, likeliest_, threads_);
+    const Eigen::VectorXd per_hpa = equations.covariance(n) * equations.pressure_error.head(n);
     const HeightNoise& noise = likeliest_.noise;
     result_.likelihood.sigma = std::hypot(noise.white, noise.wander);
     for (Eigen::Index k = 0; k < n; ++k) {
@@ -264,6 +275,7 @@ class TemperatureCalibration {
     result_.gps_wander = noise.wander;
     result_.gps_wander_time = noise.wander_time;
     result_.drift = noise.walk * std::sqrt(60.0);
+    result_.pressure_error = prior_.pressure;
     result_.least_squares = fit_height_by_least_squares(levelled_, terms_);
     find_corrections();
   }
@@ -305,10 +317,9 @@ class TemperatureCalibration {
     for (int i = 0; i <= steps; ++i) {
       TemperatureCorrection at;
       at.temperature = coldest + (warmest - coldest) * i / steps;
+      at.correction = correction_at(at.temperature, result_.likelihood.coefficients);
       double variance = 0.0;
       for (std::size_t k = 0; k < terms_; ++k) {
-        at.correction +=
-            result_.likelihood.coefficients[k] * std::pow(at.temperature, static_cast<double>(k));
         for (std::size_t j = 0; j < terms_; ++j)
           variance += result_.covariance[k][j] * std::pow(at.temperature, static_cast<double>(k + j));
       }
@@ -363,39 +374,77 @@ class TemperatureCalibration {
     return std::sqrt(squares / static_cast<double>(values.size()));
   }
 
+  /// Looks whether the correction explains the heights better than none does.
+  void compare_with_none() {
+    const double gain = result_.degrees.front().deviance - result_.degrees[terms_].deviance;
+    double before = 0.0;
+    double after = 0.0;
+    for (const FlightHeights& flight : result_.flights) {
+      const auto count = static_cast<double>(flight.time.size());
+      before += count * flight.rms_before * flight.rms_before;
+      after += count * flight.rms_after * flight.rms_after;
+    }
+    const TemperatureCorrection& middle = result_.corrections[result_.corrections.size() / 2];
+    if (gain < worthwhile) {
+      result_.no_better =
+          fmt::format("these flights do not tell the correction from none: at {:.0f} C it is {} K",
+                      middle.temperature, with_error(middle.correction, middle.standard_error));
+    } else if (after > before) {
+      const auto count = static_cast<double>(std::accumulate(
+          result_.flights.begin(), result_.flights.end(), std::size_t{0},
+          [](std::size_t sum, const FlightHeights& flight) { return sum + flight.time.size(); }));
+      result_.no_better = fmt::format(
+          "heights keep less close to the integral with the correction than without (rms {:.2f} m and {:.2f} "
+          "m), though it is likelier",
+          std::sqrt(after / count), std::sqrt(before / count));
+    }
+  }
+
   void write_notes() {
     std::vector<std::string>& notes = result_.notes;
-    const TemperatureFit& fit = result_.likelihood;
-    const double constant_gain = result_.degrees[0].deviance - result_.degrees[1].deviance;
-    if (!options_.degree && terms_ == 1 && constant_gain < worthwhile) {
-      notes.push_back(fmt::format(
-          "these flights do not tell the correction from none: a0 is {:+.2f} +- {:.2f} K; more climbs and "
-          "descents, in both directions of the wind, would",
-          fit.coefficients[0], fit.standard_errors[0]));
-    }
+    compare_with_none();
+    if (!result_.no_better.empty()) notes.push_back(result_.no_better);
     if (!options_.degree && records_.size() < fewest_for_choice) {
-      notes.push_back(
+      result_.notes_on_degree.push_back(
           fmt::format("with {} flight{} none can be held out: the degree is chosen by what these flights "
                       "gain (more than {:.0f} in -2 ln L for a coefficient); --degree sets it",
                       records_.size(), records_.size() == 1 ? "" : "s", worthwhile));
     }
-    if (options_.slope == IsobarSlope::none) {
+    notes.insert(notes.end(), result_.notes_on_degree.begin(), result_.notes_on_degree.end());
+    if (std::max(result_.gps_noise, result_.gps_wander) > much_noise || result_.drift > much_drift) {
+      notes.push_back(
+          fmt::format("the noise that was found is large (GPS height {:.1f} m, drift of the integral {:.1f} "
+                      "m in a minute): a lag of the static line or the thermometer, or a law that is wrong "
+                      "in climbs, looks like it; the layers of pcor check tell climbs from descents",
+                      std::max(result_.gps_noise, result_.gps_wander), result_.drift));
+    }
+    if (options_.slope == IsobarSlope::none ||
+        (options_.slope == IsobarSlope::fitted && options_.slope_size == 0.0)) {
       notes.emplace_back(
           "isobars are taken for level: 10 m in 100 km along a climb of 5 m/s look like 1 K (--slope "
           "fitted)");
     }
-    const bool no_way = std::any_of(records_.begin(), records_.end(),
-                                    [](const HeightRecord& record) { return !record.has_position; });
-    if (no_way && options_.slope == IsobarSlope::fitted) {
+    if (options_.slope == IsobarSlope::geostrophic) {
       notes.emplace_back(
-          "some flights do not record their way over the ground (GGSPD and GGTRK, or GGVEW and GGVNS): there "
-          "the slope of isobars is taken for a random walk only");
+          "the slope of isobars is that of a wind in balance: friction, curved ways of the air and changes "
+          "of the wind put it out of balance, and the coefficients are as good as the balance is");
     }
     std::size_t steps = 0;
     std::size_t spikes = 0;
+    std::size_t missing = 0;
+    std::size_t unknown_ways = 0;
     for (const HeightRecord& record : records_) {
       steps += record.height_steps;
       spikes += record.height_spikes;
+      missing += record.missing_heights;
+      unknown_ways += record.unknown_ways;
+    }
+    if (missing > 0) notes.push_back(fmt::format("{} samples have no GPS height", missing));
+    if (unknown_ways > 0 && options_.slope != IsobarSlope::none) {
+      notes.push_back(fmt::format(
+          "{} samples have no velocity over the ground: there the way is that through the air, or "
+          "goes on as before",
+          unknown_ways));
     }
     if (steps + spikes > 0) {
       notes.push_back(
@@ -430,6 +479,7 @@ class TemperatureCalibration {
     temperature.emplace_back("flights", ProvenanceValue{std::move(flights)});
     temperature.emplace_back("samples", ProvenanceValue{static_cast<std::int64_t>(result_.samples)});
     temperature.emplace_back("sigma_m", ProvenanceValue{result_.likelihood.sigma});
+    temperature.emplace_back("pressure_error_hpa", ProvenanceValue{result_.pressure_error});
     Provenance& all = result_.model.provenance;
     all.erase(std::remove_if(all.begin(), all.end(),
                              [](const auto& entry) { return entry.first == "temperature"; }),

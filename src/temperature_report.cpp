@@ -9,13 +9,6 @@
 namespace pcor {
 namespace {
 
-constexpr std::array<const char*, 3> coefficient_units{"K", "1", "1/K"};
-
-std::string degree_text(int degree) {
-  constexpr std::array<const char*, 4> names{"none", "constant", "linear", "quadratic"};
-  return names.at(static_cast<std::size_t>(degree + 1));
-}
-
 std::vector<double> joined(const TemperatureResult& result, std::vector<double> FlightHeights::*series) {
   std::vector<double> values;
   for (const FlightHeights& flight : result.flights)
@@ -30,10 +23,11 @@ ReportTable coefficient_table(const TemperatureResult& result) {
       "T corrected = T + a0 + a1 t + a2 t², t in °C. The standard error comes from the curvature of the "
       "likelihood; the interval is where the likelihood has fallen by e^(-1/2), with the noise at its best "
       "for each value. Least squares on height, as the memo states it, takes heights for independent and "
-      "isobars for level or known: its errors are too small.";
+      "isobars for level or known: its errors are too small. " +
+      pressure_error_text(result) + ".";
   table.headers = {"",
                    "likelihood",
-                   "std. error",
+                   result.pressure_error > 0.0 ? "std. error" : "std. error, noise only",
                    "interval",
                    "least squares",
                    "its error",
@@ -45,7 +39,7 @@ ReportTable coefficient_table(const TemperatureResult& result) {
                           profile_text(result.profile[k]),
                           fmt::format("{:+.5g}", result.least_squares.coefficients[k]),
                           fmt::format("{:.2g}", result.least_squares.standard_errors[k]),
-                          fmt::format("{:+.3g}", result.per_hpa[k]), coefficient_units.at(k)});
+                          fmt::format("{:+.3g}", result.per_hpa[k]), coefficient_unit(k)});
   }
   return table;
 }
@@ -56,11 +50,11 @@ ReportTable degree_table(const TemperatureResult& result) {
   table.caption =
       "-2 ln L, less that without correction: of all flights, and of each flight with the coefficients of "
       "the others. A further coefficient is kept where flights that took no part are foretold better, by "
-      "more than its standard error.";
+      "more than 4 and two standard errors of the gain.";
   table.headers = {"correction", "all flights", "held-out flights", "std. error"};
   const auto number = [](double x) { return std::isnan(x) ? std::string("-") : fmt::format("{:.1f}", x); };
   for (const DegreeChoice& choice : result.degrees)
-    table.rows.push_back({degree_text(choice.degree), number(choice.deviance), number(choice.held_out),
+    table.rows.push_back({degree_name(choice.degree), number(choice.deviance), number(choice.held_out),
                           number(choice.held_out_error)});
   return table;
 }
@@ -99,6 +93,43 @@ BarPanel correction_bars(const TemperatureResult& result) {
 
 }  // namespace
 
+std::string degree_name(int degree) {
+  constexpr std::array<const char*, 4> names{"none", "constant", "linear", "quadratic"};
+  return names.at(static_cast<std::size_t>(degree + 1));
+}
+
+std::string coefficient_unit(std::size_t power) {
+  constexpr std::array<const char*, 3> units{"K", "1", "1/K"};
+  return units.at(power);
+}
+
+std::string with_error(double value, double error, std::string_view plus_minus) {
+  if (!(error > 0.0) || !std::isfinite(error))
+    return fmt::format("{:+.3g} {} {:g}", value, plus_minus, error);
+  // The first digit is that after rounding to two, so that 0.0996 is 0.10.
+  const double rounded = std::stod(fmt::format("{:.1e}", error));
+  const int decimals = std::max(0, 1 - static_cast<int>(std::floor(std::log10(rounded) + 1e-9)));
+  return fmt::format("{:+.{}f} {} {:.{}f}", value, decimals, plus_minus, error, decimals);
+}
+
+std::string pressure_error_text(const TemperatureResult& result) {
+  if (result.pressure_error > 0.0) {
+    return fmt::format("errors have in them one of the static pressure of {:g} hPa that lasts for a flight",
+                       result.pressure_error);
+  }
+  constexpr double usual = 0.3;  // hPa, the rms of the memo's fits (R47)
+  std::string moved;
+  for (std::size_t k = 0; k < result.per_hpa.size(); ++k) {
+    moved += fmt::format("{}a{} by {:.2g}{}", k == 0 ? "" : ", ", k, std::abs(usual * result.per_hpa[k]),
+                         k == 1 ? "" : " " + coefficient_unit(k));
+  }
+  return fmt::format(
+      "errors are those of the noise only: one of the static pressure of {:g} hPa in all flights, as the "
+      "fits of "
+      "laws have, would move {}; --pressure-error {:g} takes it into the errors",
+      usual, moved, usual);
+}
+
 std::string profile_text(const std::array<double, 2>& ends) {
   const auto end = [](double value) {
     return std::isnan(value) ? std::string("open") : fmt::format("{:+.4g}", value);
@@ -111,8 +142,9 @@ Report temperature_report(const TemperatureResult& result) {
   report.title = "Calibration of the temperature by the height";
   report.subtitle = result.model.model.name;
   const TemperatureCorrection& middle = result.corrections[result.corrections.size() / 2];
-  report.summary.push_back(fmt::format("At {:.0f} °C the temperature is corrected by {:+.3f} ± {:.3f} K.",
-                                       middle.temperature, middle.correction, middle.standard_error));
+  report.summary.push_back(fmt::format("At {:.0f} °C the temperature is corrected by {} K.",
+                                       middle.temperature,
+                                       with_error(middle.correction, middle.standard_error, "±")));
   for (const std::string& note : result.notes) report.summary.push_back("Note: " + note + ".");
   report.facts = {
       {"Samples", std::to_string(result.samples)},

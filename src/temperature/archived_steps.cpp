@@ -7,6 +7,7 @@
 #include <limits>
 #include <sstream>
 
+#include "../archived_model.hpp"
 #include "pcor/offline/error.hpp"
 #include "pcor/physics/constants.hpp"
 
@@ -14,19 +15,41 @@ namespace pcor {
 namespace {
 
 constexpr const char* variable = "HYDSTEP";
-constexpr const char* attribute = "temperature_calibration";
+constexpr const char* calibration_attribute = "temperature_calibration";
+constexpr const char* model_attribute = "model";
 
 using Coefficients = std::array<double, 3>;
 
-Coefficients calibration_in(const Flight& flight) {
+[[noreturn]] void refuse_without(const Flight& flight, const char* what, const char* attribute) {
+  throw Error(fmt::format(
+      "{}: {} does not say {} (attribute {}); write the file again with pcor process --hydrostatic",
+      flight.path().string(), variable, what, attribute));
+}
+
+std::string attribute_of(const Flight& flight, const std::string& wanted) {
   for (const auto& [name, text] : flight.variable(variable).attributes) {
-    Coefficients a{};
-    if (name == attribute && std::istringstream(text) >> a[0] >> a[1] >> a[2]) return a;
+    if (name == wanted) return text;
   }
-  throw Error(
-      fmt::format("{}: {} does not say which correction of the temperature is in ATX (attribute {}); write "
-                  "the file again with pcor process --hydrostatic",
-                  flight.path().string(), variable, attribute));
+  return "";
+}
+
+Coefficients calibration_in(const Flight& flight) {
+  Coefficients a{};
+  std::istringstream text(attribute_of(flight, calibration_attribute));
+  if (!(text >> a[0] >> a[1] >> a[2]))
+    refuse_without(flight, "which correction of the temperature is in ATX", calibration_attribute);
+  return a;
+}
+
+void require_same_model(const Flight& flight, const ModelFile& model) {
+  const std::string archived = attribute_of(flight, model_attribute);
+  if (archived.empty()) refuse_without(flight, "with which model it was made", model_attribute);
+  const std::string difference = archived_difference(archived, archived_model(model, CorrectWith::model));
+  if (difference.empty()) return;
+  throw Error(fmt::format(
+      "{}: its pressures are not those of the model '{}' ({}); process the flight again with this model and "
+      "--hydrostatic, give the model that it was processed with, or leave out --archived for raw flights",
+      flight.path().string(), model.model.name, difference));
 }
 
 /// The temperature, K, that the correction took to `corrected`, K: Newton's method from a step that is exact
@@ -41,12 +64,13 @@ double uncorrected(double corrected, const Coefficients& a) {
 
 }  // namespace
 
-std::vector<double> archived_steps(const Flight& flight, FlightAir& air) {
+std::vector<double> archived_steps(const Flight& flight, const ModelFile& model, FlightAir& air) {
   if (!flight.has(variable)) {
     throw Error(
         fmt::format("{}: there is no {}; write it with pcor process --hydrostatic, or leave out --archived",
                     flight.path().string(), variable));
   }
+  require_same_model(flight, model);
   const UnitConversion conversion = flight.conversion(variable, "m/K");
   const auto rate = static_cast<std::size_t>(flight.variable(variable).rate);
   std::vector<double> steps(air.size(), 0.0);

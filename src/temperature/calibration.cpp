@@ -30,6 +30,12 @@ Covariance without_correction(const Covariance& covariance) {
 
 }  // namespace
 
+double correction_at(double temperature, const std::vector<double>& coefficients) {
+  double sum = 0.0;
+  for (std::size_t k = coefficients.size(); k-- > 0;) sum = sum * temperature + coefficients[k];
+  return sum;
+}
+
 ModelFile without_calibration(ModelFile file) {
   std::vector<ModelEffect>& effects = file.model.effects;
   for (std::size_t i = effects.size(); i-- > 0;) {

@@ -9,6 +9,9 @@ namespace pcor {
 /// The id of the effect that corrects the ambient temperature.
 inline constexpr const char* calibration_id = "temp-calibration";
 
+/// The correction at a temperature, K: a0 + a1 t + ..., t in degC; 0 without coefficients.
+double correction_at(double temperature, const std::vector<double>& coefficients);
+
 /// The model without its correction of the ambient temperature.
 ModelFile without_calibration(ModelFile file);
 

@@ -8,6 +8,8 @@
 #include <limits>
 #include <nlopt.hpp>
 
+#include "../triangular_factor.hpp"
+
 namespace pcor {
 namespace {
 
@@ -52,9 +54,10 @@ void filter(const HeightRecord& record, const HeightNoise& noise, const HeightPr
   Covariance p = Covariance::Zero();
   Means x = Means::Zero();
   p(wander, wander) = noise.wander * noise.wander;
-  p(slope_east, slope_east) = p(slope_north, slope_north) = prior.slope * prior.slope;
+  const double slope = prior.slope * record.slope_left;
+  p(slope_east, slope_east) = p(slope_north, slope_north) = slope * slope;
   p(pressure_error, pressure_error) = prior.pressure * prior.pressure;
-  const bool has_slopes = prior.slope > 0.0 && record.has_position;
+  const bool has_slopes = slope > 0.0;
   const double walk = noise.walk * noise.walk;
   const HeightBlock* before = nullptr;
   for (const HeightBlock& block : record.blocks) {
@@ -144,6 +147,106 @@ HeightNoise as_noise(const std::vector<double>& x) {
   for (std::size_t i = 0; i < searched.size(); ++i) noise.*searched[i].value = std::exp(x[i]);
   return noise;
 }
+
+/// -2 ln of the restricted likelihood, the coefficients at their best.
+double restricted_deviance(const HeightEquations& equations, Eigen::Index terms) {
+  return equations.deviance(terms) + equations.log_information(terms);
+}
+
+/// The restricted likelihood around its greatest value, over the logarithms of the noise.
+class AroundLikeliest {
+ public:
+  using Logarithms = Eigen::Matrix<double, searched.size(), 1>;
+
+  struct Point {
+    Logarithms x;
+    HeightEquations equations;
+    double rise = 0.0;  // of -2 ln L, and of what is known beforehand
+  };
+
+  AroundLikeliest(const std::vector<HeightRecord>& records, Eigen::Index terms, const HeightPrior& prior,
+                  const MostLikely& likely, std::size_t threads)
+      : records_(records), terms_(terms), prior_(prior), likely_(likely), threads_(threads) {
+    const std::vector<double> x = as_logarithms(likely.noise);
+    for (std::size_t i = 0; i < searched.size(); ++i) {
+      const Eigen::Index row = as_index(i);
+      centre_[row] = x[i];
+      lower_[row] = std::log(searched[i].least);
+      upper_[row] = std::log(searched[i].greatest);
+    }
+  }
+
+  /// One standard deviation of the noise to both sides along each principal axis of -2 ln L.
+  std::array<std::array<Point, 2>, searched.size()> standard_deviations() const {
+    // Along one parameter each, towards the middle of its bounds, to a rise of about 1.
+    constexpr double first_step = 0.2;
+    std::array<Point, searched.size()> one;
+    Logarithms step;
+    for (std::size_t i = 0; i < searched.size(); ++i) {
+      const Eigen::Index row = as_index(i);
+      const double inwards = 2.0 * centre_[row] < lower_[row] + upper_[row] ? 1.0 : -1.0;
+      one[i] = rise_by_one(Logarithms::Unit(row) * inwards, first_step, 3);
+      step[row] = one[i].x[row] - centre_[row];
+    }
+    // The rise as a quadratic form of these steps, with no curvature that differences made too small.
+    constexpr double least_curvature = 0.05;
+    Eigen::Matrix<double, searched.size(), searched.size()> rises;
+    for (std::size_t i = 0; i < searched.size(); ++i) {
+      const Eigen::Index row = as_index(i);
+      rises(row, row) = one[i].rise;
+      for (std::size_t j = 0; j < i; ++j) {
+        const Eigen::Index column = as_index(j);
+        Logarithms both = centre_;
+        both[row] += step[row];
+        both[column] += step[column];
+        rises(row, column) = rises(column, row) = 0.5 * (at(both).rise - one[i].rise - one[j].rise);
+      }
+    }
+    const Eigen::SelfAdjointEigenSolver<decltype(rises)> axes(rises);
+    std::array<std::array<Point, 2>, searched.size()> result;
+    for (std::size_t i = 0; i < searched.size(); ++i) {
+      const Eigen::Index k = as_index(i);
+      const double curvature = std::max(axes.eigenvalues()[k], least_curvature);
+      const Logarithms axis = step.cwiseProduct(axes.eigenvectors().col(k)) / std::sqrt(curvature);
+      result[i] = {rise_by_one(axis, 1.0, 2), rise_by_one(-axis, 1.0, 2)};
+    }
+    return result;
+  }
+
+ private:
+  Point at(const Logarithms& x) const {
+    Point point;
+    point.x = x.cwiseMax(lower_).cwiseMin(upper_);
+    point.equations =
+        height_equations(records_, as_noise({point.x.begin(), point.x.end()}), prior_, threads_);
+    // Noise that does not matter has no least value: all is taken for known to a factor of 4.5.
+    constexpr double known_to = 1.5;
+    point.rise = restricted_deviance(point.equations, terms_) - likely_.deviance +
+                 (point.x - centre_).squaredNorm() / (known_to * known_to);
+    if (!std::isfinite(point.rise)) point.rise = std::numeric_limits<double>::max();
+    return point;
+  }
+
+  /// Along `direction`, where -2 ln L is 1 above its least, to a fifth in `trials`; or at a bound.
+  Point rise_by_one(const Logarithms& direction, double reach, int trials) const {
+    constexpr double least_rise = 1e-3;
+    Point point = at(centre_ + reach * direction);
+    for (int trial = 1; trial < trials && std::abs(point.rise - 1.0) > 0.2; ++trial) {
+      reach *= std::clamp(1.0 / std::sqrt(std::max(point.rise, least_rise)), 0.25, 4.0);
+      point = at(centre_ + reach * direction);
+    }
+    return point;
+  }
+
+  const std::vector<HeightRecord>& records_;
+  Eigen::Index terms_;
+  const HeightPrior& prior_;
+  const MostLikely& likely_;
+  std::size_t threads_;
+  Logarithms centre_;
+  Logarithms lower_;
+  Logarithms upper_;
+};
 
 double objective(const std::vector<double>& x, std::vector<double>&, void* function) {
   return (*static_cast<std::function<double(const std::vector<double>&)>*>(function))(x);
@@ -244,7 +347,7 @@ MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::
     const HeightEquations equations = height_equations(records, noise, prior, threads);
     double value = 0.0;
     if (held == nullptr) {
-      value = equations.deviance(terms) + equations.log_information(terms);
+      value = restricted_deviance(equations, terms);
     } else {
       // The other coefficients follow the held one.
       const Eigen::MatrixXd covariance = equations.covariance(terms);
@@ -291,6 +394,28 @@ MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::
     if (held != nullptr) break;
   }
   return best;
+}
+
+Eigen::MatrixXd covariance_over_noise(const std::vector<HeightRecord>& records, Eigen::Index terms,
+                                      const HeightPrior& prior, const MostLikely& likely,
+                                      std::size_t threads) {
+  const Eigen::MatrixXd covariance = likely.equations.covariance(terms);
+  Eigen::MatrixXd more = Eigen::MatrixXd::Zero(terms, terms);
+  for (const auto& [above, below] :
+       AroundLikeliest(records, terms, prior, likely, threads).standard_deviations()) {
+    more += 0.5 * (above.equations.covariance(terms) + below.equations.covariance(terms)) - covariance;
+    const Eigen::VectorXd moved = above.equations.best(terms) - below.equations.best(terms);
+    more += 0.25 * moved * moved.transpose();
+  }
+  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
+  if (factor.info() != Eigen::Success || !more.allFinite()) return covariance;
+  // In standard errors, without what would make any smaller.
+  const auto& root = factor.matrixL();
+  const Eigen::MatrixXd scaled = root.solve(root.solve(more).transpose());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(0.5 * (scaled + scaled.transpose()));
+  const Eigen::MatrixXd larger =
+      root * (axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal());
+  return covariance + larger * larger.transpose();
 }
 
 }  // namespace pcor

@@ -24,8 +24,9 @@ struct HeightNoise {
 
 /// What the fit is told of a flight and does not find.
 struct HeightPrior {
-  double slope =
-      1e-4;  ///< of the isobars at the start, each direction; 0: they are level, or taken off before
+  /// Usual slope of the isobars at the start, each direction; of it is in a flight what
+  /// `HeightRecord::slope_left` says. 0: they are level.
+  double slope = 1e-4;
   double pressure = 0.0;  ///< of a constant error of the static pressure in each flight, hPa
 };
 
@@ -87,5 +88,23 @@ struct HeldCoefficient {
 MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::Index terms,
                                const HeightPrior& prior, const HeightNoise& start, std::size_t threads,
                                const HeldCoefficient* held = nullptr);
+
+/// The covariance of the best coefficients of the first `terms` powers, with what is not known of the noise
+/// in it: the mean of their covariance C over noises that are likely, and the variance of their best values
+/// a,
+///
+///     C + sum_k { (C(+k) + C(-k))/2 - C + (a(+k) - a(-k)) (a(+k) - a(-k))'/4 }
+///
+/// where +-k are one standard deviation from the likeliest noise, along the principal axes of -2 ln L over
+/// the logarithms: there it is 1 higher. Each logarithm counts as known to 1.5 beforehand, a factor of 4.5.
+/// Never smaller than C; C itself where not all of it is finite. Where several hours tell the noise, errors
+/// are some 5 % larger than those of C, and as near as 5 % to an integral over all likely noises. After Rue,
+/// Martino & Chopin, J. R. Statist. Soc. B 71 (2009), with points on the axes alone; of the kind of Kenward &
+/// Roger, Biometrics 53 (1997). Some 40 passes over the flights.
+///
+/// @param likely what `maximise_likelihood` found for the same flights, terms and prior, with none held
+Eigen::MatrixXd covariance_over_noise(const std::vector<HeightRecord>& records, Eigen::Index terms,
+                                      const HeightPrior& prior, const MostLikely& likely,
+                                      std::size_t threads);
 
 }  // namespace pcor

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -157,11 +158,49 @@ void mark_steps(std::vector<Point>& points, HeightRecord& record) {
   points = std::move(kept);
 }
 
+WayKnown way_known(const FlightAir& air) {
+  if (!air.east_speed.empty()) return WayKnown::over_ground;
+  return air.samples->motion.heading.empty() ? WayKnown::length : WayKnown::through_air;
+}
+
+bool has_ground_velocity(const FlightAir& air, std::size_t i) {
+  return !air.east_speed.empty() && !std::isnan(air.east_speed[i] + air.north_speed[i]);
+}
+
+/// The velocity over the ground, to the east and north, m/s; where that is missing, through the air by
+/// airspeed and heading. Where there is no heading at all, and no way over the ground, the airspeed counts as
+/// one to the north.
+Eigen::Vector2d velocity(const FlightAir& air, std::size_t i) {
+  if (has_ground_velocity(air, i)) return {air.east_speed[i], air.north_speed[i]};
+  if (way_known(air) == WayKnown::length) return {0.0, air.airspeed[i]};
+  const std::vector<double>& headings = air.samples->motion.heading;
+  const double heading = headings.empty() ? nan : headings[i] * constants::radians_per_degree;
+  return {air.airspeed[i] * std::sin(heading), air.airspeed[i] * std::cos(heading)};
+}
+
+/// The way from the first sample, m, to the east and north. Where no velocity is known, the last one goes on.
+struct Way {
+  std::vector<double> east;
+  std::vector<double> north;
+
+  explicit Way(const FlightAir& air) : east(air.size()), north(air.size()) {
+    Eigen::Vector2d here = Eigen::Vector2d::Zero();
+    Eigen::Vector2d last = Eigen::Vector2d::Zero();
+    for (std::size_t i = 0; i < air.size(); ++i) {
+      Eigen::Vector2d now = velocity(air, i);
+      if (now.hasNaN()) now = last;
+      if (i > 0) here += 0.5 * (last + now) * (air.time()[i] - air.time()[i - 1]);
+      last = now;
+      east[i] = here[0];
+      north[i] = here[1];
+    }
+  }
+};
+
 /// Sums over a block.
 class BlockMeans {
  public:
-  BlockMeans(const FlightAir& air, const std::vector<double>& east, const std::vector<double>& north)
-      : air_(air), east_(east), north_(north) {}
+  BlockMeans(const FlightAir& air, const Way& way) : air_(air), way_(way) {}
 
   void add(const Point& point) {
     const std::size_t i = point.sample;
@@ -175,8 +214,8 @@ class BlockMeans {
     block_.excess += point.excess;
     for (std::size_t k = 0; k < calibration_terms; ++k) block_.columns[k] += point.columns[k];
     block_.pressure_error += point.pressure_error;
-    block_.east += east_.empty() ? nan : east_[i];
-    block_.north += north_.empty() ? nan : north_[i];
+    block_.east += way_.east[i];
+    block_.north += way_.north[i];
     block_.height += air_.geopotential_height[i];
     block_.pressure += air_.pressure[i];
     block_.temperature += air_.temperature[i] - constants::ice_point;
@@ -221,27 +260,11 @@ class BlockMeans {
   }
 
   const FlightAir& air_;
-  const std::vector<double>& east_;
-  const std::vector<double>& north_;
+  const Way& way_;
   HeightBlock block_;
   std::size_t first_ = 0;
   std::size_t last_ = 0;
 };
-
-/// The way over the ground, m, in one direction. Short gaps of the speed are crossed with the last one known.
-std::vector<double> way(const std::vector<double>& speed, const std::vector<double>& time) {
-  if (speed.empty()) return {};
-  std::vector<double> result(time.size());
-  double here = 0.0;
-  double last = 0.0;
-  for (std::size_t i = 0; i < time.size(); ++i) {
-    const double now = std::isnan(speed[i]) ? last : speed[i];
-    if (i > 0) here += 0.5 * (last + now) * (time[i] - time[i - 1]);
-    last = now;
-    result[i] = here;
-  }
-  return result;
-}
 
 /// Leaves out what climbs too slowly; what is left of a climb is a stretch.
 void keep_climbs(std::vector<HeightBlock>& blocks, double least_rate) {
@@ -257,7 +280,7 @@ void keep_climbs(std::vector<HeightBlock>& blocks, double least_rate) {
       direction = now;
       kept.push_back(block);
     }
-    left_out = !climbs || (block.starts_stretch && !climbs);
+    left_out = !climbs;
   }
   blocks = std::move(kept);
 }
@@ -292,18 +315,17 @@ HeightRecord height_record(const FlightAir& air, const std::vector<double>& step
   std::vector<Point> points = Integration(air, steps, options).run(record);
   mark_steps(points, record);
 
-  const std::vector<double> east = way(air.east_speed, air.time());
-  const std::vector<double> north = way(air.north_speed, air.time());
-  BlockMeans means(air, east, north);
+  record.way = way_known(air);
+  const Way way(air);
+  BlockMeans means(air, way);
   const auto finish = [&] {
-    if (means.samples() == 0) return;
-    record.blocks.push_back(means.take());
-    record.samples += record.blocks.back().samples;
+    if (means.samples() > 0) record.blocks.push_back(means.take());
   };
   for (const Point& point : points) {
     const bool full = means.samples() > 0 && air.time()[point.sample] - air.time()[means.first()] >=
                                                  options.block - 0.5 * air.step();
     if (point.starts_stretch || full) finish();
+    if (record.way == WayKnown::over_ground && !has_ground_velocity(air, point.sample)) ++record.unknown_ways;
     means.add(point);
   }
   finish();
@@ -314,9 +336,7 @@ HeightRecord height_record(const FlightAir& air, const std::vector<double>& step
   double highest = -lowest;
   record.least_temperature = lowest;
   record.greatest_temperature = highest;
-  record.has_position = !east.empty();
   record.has_wind = true;
-  record.samples = 0;
   for (std::size_t i = 0; i < record.blocks.size(); ++i) {
     HeightBlock& block = record.blocks[i];
     if (i == 0) block.starts_stretch = true;
@@ -336,7 +356,7 @@ HeightRecord height_record(const FlightAir& air, const std::vector<double>& step
         options.least_climb_rate > 0.0 ? fmt::format(" at {} m/s or more", options.least_climb_rate) : "",
         least_height_range));
   }
-  if (record.has_position) {
+  if (record.way == WayKnown::over_ground) {
     const HeightBlock& first = record.blocks.front();
     const HeightBlock& last = record.blocks.back();
     constexpr double near = 5e4;  // m

@@ -21,7 +21,7 @@ struct HeightBlock {
   double excess = 0.0;  ///< geopotential height by GPS less the integral with the uncorrected temperature, m
   /// What one unit of a0 (K), a1 (1), a2 (1/K) adds to the integral, m.
   std::array<double, calibration_terms> columns{};
-  double east = 0.0;            ///< way over the ground since the first block, m; NaN where it is not known
+  double east = 0.0;            ///< way flown, m (`WayKnown`)
   double north = 0.0;           ///< m
   double height = 0.0;          ///< geopotential height by GPS, m
   double pressure = 0.0;        ///< corrected static pressure, hPa
@@ -34,6 +34,13 @@ struct HeightBlock {
   std::size_t samples = 0;
 };
 
+/// What is known of the way that a flight went.
+enum class WayKnown {
+  over_ground,
+  through_air,  ///< by airspeed and heading
+  length        ///< without a heading: all of it counts as one direction
+};
+
 /// A flight as the fit of temperature sees it.
 struct HeightRecord {
   std::string name;
@@ -43,10 +50,12 @@ struct HeightRecord {
   std::size_t height_steps = 0;     ///< steps of the GPS height, at which the integral starts anew
   std::size_t height_spikes = 0;    ///< samples whose GPS height is left out
   std::size_t missing_heights = 0;  ///< samples in the air without GPS height
-  bool has_position = false;        ///< the way over the ground is known
+  std::size_t unknown_ways = 0;     ///< samples without velocity over the ground in a flight that has it
+  WayKnown way = WayKnown::over_ground;
   bool has_wind = false;
-  bool returns = false;               ///< it ends within 50 km of where it began
-  double least_temperature = 0.0;     ///< degC
+  double slope_left = 1.0;         ///< part of the usual slope of isobars that `excess` has in it yet, 0 to 1
+  bool returns = false;            ///< it is known to end within 50 km of where it began
+  double least_temperature = 0.0;  ///< degC
   double greatest_temperature = 0.0;  ///< degC
   std::vector<std::string> notes;
 };
@@ -60,7 +69,7 @@ struct HeightRecordOptions {
 /// Integrates the hydrostatic equation along a flight (memo eq. 24 in its exact form, geopotential height),
 /// after the take-off, with flaps in, anew after every gap and every step of the GPS height.
 ///
-/// @param steps if not empty, R_a dp/(g p) of every record as `pcor process --hydrostatic` wrote it, m/K;
+/// @param steps if not empty, -R_a dp/(g p) of every record as `pcor process --hydrostatic` wrote it, m/K;
 ///        else it is found from pressure and humidity
 /// @throws Error if the height is none that goes with the pressure (`trouble_with_height`), the flight has no
 /// temperature, or it neither climbs nor descends by 300 m.

@@ -33,16 +33,6 @@ double defect_change(const std::vector<std::filesystem::path>& flights, const Mo
   return std::sqrt(squares / count);
 }
 
-double correction_at(double temperature, const std::vector<double>& coefficients) {
-  double sum = 0.0;
-  double power = 1.0;
-  for (const double coefficient : coefficients) {
-    sum += coefficient * power;
-    power *= temperature;
-  }
-  return sum;
-}
-
 }  // namespace
 
 CalibrationInTurn calibrate_in_turn(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
@@ -56,6 +46,7 @@ CalibrationInTurn calibrate_in_turn(const std::vector<std::filesystem::path>& fl
   CalibrationInTurn result;
   TemperatureOptions options = temperature_options;
   std::vector<DegreeChoice> degrees;
+  std::vector<std::string> notes_on_degree;
   ModelFile current = model;
   std::vector<double> coefficients;
   for (const ModelEffect& effect : model.model.effects) {
@@ -64,7 +55,10 @@ CalibrationInTurn calibrate_in_turn(const std::vector<std::filesystem::path>& fl
   while (!result.converged && result.rounds.size() < most_rounds) {
     result.pressure = refit(flights, current, reference, refit_options);
     result.temperature = fit_temperature(flights, result.pressure.model, options);
-    if (result.rounds.empty()) degrees = result.temperature.degrees;
+    if (result.rounds.empty()) {
+      degrees = result.temperature.degrees;
+      notes_on_degree = result.temperature.notes_on_degree;
+    }
     // The degree is chosen once, lest it goes to and fro.
     options.degree = static_cast<int>(result.temperature.likelihood.coefficients.size()) - 1;
 
@@ -83,6 +77,12 @@ CalibrationInTurn calibrate_in_turn(const std::vector<std::filesystem::path>& fl
     result.rounds.push_back(std::move(round));
   }
   result.temperature.degrees = std::move(degrees);
+  if (result.rounds.size() > 1) {
+    std::vector<std::string>& notes = result.temperature.notes;
+    const bool has_graver = !result.temperature.no_better.empty();
+    notes.insert(notes.begin() + (has_graver ? 1 : 0), notes_on_degree.begin(), notes_on_degree.end());
+    result.temperature.notes_on_degree = std::move(notes_on_degree);
+  }
   return result;
 }
 

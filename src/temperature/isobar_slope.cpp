@@ -17,6 +17,10 @@ constexpr double bin_hpa = 10.0;        // of isobaric surfaces that are met mor
 constexpr double usual_slope = 1e-4;    // 10 m in 100 km (R78)
 constexpr double height_scatter = 2.0;  // m, of surfaces about a plane
 
+// Estimates draw on surfaces that are met again some tens of km away, with a scatter of metres: an error of
+// some 3 m in 100 km, a third of the usual slope. A wind is out of balance by some tenths, too.
+constexpr double slope_left_by_estimates = 1.0 / 3.0;
+
 /// A place at which the height of an isobaric surface is known, and which surface or leg it belongs to.
 struct Sighting {
   long group = 0;
@@ -83,18 +87,33 @@ IsobarSlopeEstimate estimate_isobar_slope(const HeightRecord& record, IsobarSlop
 }
 
 void take_off_isobar_slope(HeightRecord& record, IsobarSlope option) {
-  if (option == IsobarSlope::none || option == IsobarSlope::fitted) return;
-  if (!record.has_position) {
+  if (option == IsobarSlope::none) return;
+  if (record.way == WayKnown::through_air) {
     record.notes.emplace_back(
-        "the way over the ground is not recorded (GGSPD and GGTRK, or GGVEW and GGVNS): isobars are taken "
-        "for level");
+        "the way over the ground is not recorded (GGSPD and GGTRK, or GGVEW and GGVNS): that through the "
+        "air, by airspeed and heading, stands in for it");
+  }
+  if (record.way == WayKnown::length) {
+    record.notes.emplace_back(
+        "neither the way over the ground nor the heading is recorded (GGSPD and GGTRK, or GGVEW and GGVNS, "
+        "or THDG): isobars may slope along the way flown as if it were one direction, so turns make errors "
+        "that are not stated");
+  }
+  if (option == IsobarSlope::fitted) return;
+  if (option == IsobarSlope::geostrophic && !record.has_wind) {
+    record.notes.emplace_back(
+        "without heading, airspeed and the way over the ground there is no wind: the slope of isobars is "
+        "left to the likelihood, as with --slope fitted");
     return;
   }
+  if (option != IsobarSlope::geostrophic && record.way == WayKnown::length) {
+    record.notes.emplace_back(
+        "without directions no slope of isobars can be estimated: it is left to the likelihood, as with "
+        "--slope fitted");
+    return;
+  }
+  record.slope_left = slope_left_by_estimates;
   if (option == IsobarSlope::geostrophic) {
-    if (!record.has_wind) {
-      record.notes.emplace_back("without heading and airspeed there is no wind: isobars are taken for level");
-      return;
-    }
     double rise = 0.0;
     for (std::size_t i = 1; i < record.blocks.size(); ++i) {
       HeightBlock& here = record.blocks[i];

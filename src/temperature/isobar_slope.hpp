@@ -19,8 +19,9 @@ struct IsobarSlopeEstimate {
 IsobarSlopeEstimate estimate_isobar_slope(const HeightRecord& record, IsobarSlope option);
 
 /// Takes from the heights of a flight what they rise along the way because isobars are not level: by an
-/// estimate, or by the geostrophic wind at every place. Does nothing for `none` and `fitted`. Adds a note
-/// where the flight does not record what it takes.
+/// estimate, or by the geostrophic wind at every place. No estimate is without error: `slope_left` says what
+/// part of a usual slope it leaves for the likelihood. Takes nothing for `none` and `fitted`, and where the
+/// flight does not record what it takes, of which it adds a note.
 void take_off_isobar_slope(HeightRecord& record, IsobarSlope option);
 
 }  // namespace pcor

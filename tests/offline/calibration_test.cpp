@@ -36,6 +36,13 @@ ModelFile fitted_model() {
 }
 
 const std::vector<double> curve{0.5, -0.01, 1e-4};
+
+TEST(Calibration, CorrectionAtATemperature) {
+  EXPECT_EQ(correction_at(-40.0, {}), 0.0);
+  EXPECT_EQ(correction_at(-40.0, {0.5}), 0.5);
+  // 0.5 + 0.4 + 0.16 by hand.
+  EXPECT_NEAR(correction_at(-40.0, {0.5, -0.01, 1e-4}), 1.06, 1e-14);
+}
 const std::vector<double> its_errors{0.02, 1e-3, 2e-5};
 const std::vector<std::vector<double>> its_covariance{
     {4e-4, -1e-5, 1e-7}, {-1e-5, 1e-6, -5e-9}, {1e-7, -5e-9, 4e-10}};

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "pcor/offline/error.hpp"
 #include "support/made_air.hpp"
@@ -15,6 +16,7 @@ namespace {
 using pcor::height_record;
 using pcor::HeightBlock;
 using pcor::HeightRecord;
+using pcor::WayKnown;
 using testing::HasSubstr;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -145,11 +147,65 @@ TEST(HeightRecord, SlopeOfTheGeostrophicWindHasItsSign) {
   }
 }
 
+/// The same way, for rounding of sums over 200 km.
+void expect_same_way(const HeightRecord& one, const HeightRecord& other) {
+  ASSERT_EQ(one.blocks.size(), other.blocks.size());
+  for (std::size_t i = 0; i < one.blocks.size(); ++i) {
+    EXPECT_NEAR(one.blocks[i].east, other.blocks[i].east, 1e-6);
+    EXPECT_NEAR(one.blocks[i].north, other.blocks[i].north, 1e-6);
+  }
+}
+
+TEST(HeightRecord, WayThroughTheAirStandsInForThatOverTheGround) {
+  pcor::FlightAir air = made::air({});  // in calm air
+  const HeightRecord over_ground = record_of(air);
+  EXPECT_EQ(over_ground.way, WayKnown::over_ground);
+  air.east_speed.clear();
+  air.north_speed.clear();
+  const HeightRecord through_air = record_of(air);
+  EXPECT_EQ(through_air.way, WayKnown::through_air);
+  EXPECT_FALSE(through_air.has_wind);
+  expect_same_way(through_air, over_ground);
+}
+
+TEST(HeightRecord, WayThroughTheAirFillsGapsOfThatOverTheGround) {
+  pcor::FlightAir air = made::air({});
+  const HeightRecord whole = record_of(air);
+  EXPECT_EQ(whole.unknown_ways, 0U);
+  for (std::size_t i = 2000; i < 3000; ++i) air.east_speed[i] = nan;
+  const HeightRecord gap = record_of(air);
+  EXPECT_EQ(gap.unknown_ways, 1000U);
+  EXPECT_EQ(gap.way, WayKnown::over_ground);
+  expect_same_way(gap, whole);
+}
+
+TEST(HeightRecord, WithoutHeadingTheWayIsOneDirection) {
+  pcor::FlightAir air = made::air({});
+  air.east_speed.clear();
+  air.north_speed.clear();
+  auto samples = std::make_shared<pcor::FlightSamples>(*air.samples);
+  samples->motion.heading.clear();
+  air.samples = samples;
+  const HeightRecord record = record_of(air);
+  EXPECT_EQ(record.way, WayKnown::length);
+  EXPECT_FALSE(record.returns);
+  const double start = record.blocks.front().north;
+  for (const HeightBlock& block : record.blocks) {
+    EXPECT_EQ(block.east, 0.0);
+    // 120 m/s, as it is made.
+    EXPECT_NEAR(block.north - start, 120.0 * (block.time - record.blocks.front().time), 1e-3);
+  }
+}
+
 TEST(HeightRecord, KnowsWhetherTheFlightComesBack) {
   made::AirPlan plan;
   plan.seconds = 4500;  // three times round
   EXPECT_TRUE(record_of(made::air(plan)).returns);
-  plan.turning = 1e9;  // straight on
+  pcor::FlightAir through_air = made::air(plan);
+  through_air.east_speed.clear();
+  through_air.north_speed.clear();
+  EXPECT_FALSE(record_of(through_air).returns);  // the wind may have taken it anywhere
+  plan.turning = 1e9;                            // straight on
   EXPECT_FALSE(record_of(made::air(plan)).returns);
 }
 
@@ -157,6 +213,7 @@ TEST(HeightRecord, SaysWhatIsWrongWithTheHeight) {
   pcor::FlightAir feet = made::air({});
   for (double& height : feet.geopotential_height) height /= 0.3048;
   EXPECT_THAT(message_for(feet), HasSubstr("in feet"));
+  EXPECT_THAT(message_for(feet), HasSubstr("[units] altitude = \"ft\""));
 
   pcor::FlightAir rising = made::air({});
   std::reverse(rising.pressure_altitude.begin(), rising.pressure_altitude.end());
@@ -171,6 +228,8 @@ TEST(HeightRecord, SaysWhatIsWrongWithTheHeight) {
 
   pcor::FlightAir none = made::air({});
   none.height.clear();
+  EXPECT_THAT(message_for(none), HasSubstr("GGALT has no unit"));
+  none.height_variable.clear();
   EXPECT_THAT(message_for(none), HasSubstr("no GPS height"));
 
   pcor::FlightAir cold = made::air({});

@@ -1,9 +1,11 @@
 #include "../../src/temperature/isobar_slope.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "support/made_air.hpp"
 
@@ -12,6 +14,8 @@ namespace {
 using pcor::HeightBlock;
 using pcor::HeightRecord;
 using pcor::IsobarSlope;
+using testing::ElementsAre;
+using testing::HasSubstr;
 
 made::AirPlan sloping() {
   made::AirPlan plan;
@@ -89,6 +93,40 @@ TEST(IsobarSlope, GeostrophicWindOfTheSlopeTakesItOff) {
   take_off_isobar_slope(record, IsobarSlope::geostrophic);
   // Slopes are taken at the middles of steps along a curved way: a per cent.
   EXPECT_LT(range_of_excess(record), 0.02 * before);
+}
+
+TEST(IsobarSlope, EstimatesLeaveAPartForTheLikelihood) {
+  for (const IsobarSlope option : {IsobarSlope::level_legs, IsobarSlope::climb_descent,
+                                   IsobarSlope::whole_flight, IsobarSlope::geostrophic}) {
+    HeightRecord record = record_of(sloping());
+    take_off_isobar_slope(record, option);
+    EXPECT_GT(record.slope_left, 0.0);
+    EXPECT_LT(record.slope_left, 1.0);
+  }
+  HeightRecord record = record_of(sloping());
+  take_off_isobar_slope(record, IsobarSlope::fitted);
+  EXPECT_EQ(record.slope_left, 1.0);
+}
+
+TEST(IsobarSlope, WhatTheFlightDoesNotTellIsLeftToTheLikelihood) {
+  pcor::FlightAir air = made::air(sloping());
+  air.east_speed.clear();
+  air.north_speed.clear();
+  HeightRecord no_wind = pcor::height_record(air, {}, {});
+  const double before = range_of_excess(no_wind);
+  take_off_isobar_slope(no_wind, IsobarSlope::geostrophic);
+  EXPECT_EQ(no_wind.slope_left, 1.0);
+  EXPECT_EQ(range_of_excess(no_wind), before);
+  EXPECT_THAT(no_wind.notes, ElementsAre(HasSubstr("through the air"), HasSubstr("no wind")));
+
+  auto samples = std::make_shared<pcor::FlightSamples>(*air.samples);
+  samples->motion.heading.clear();
+  air.samples = samples;
+  HeightRecord no_directions = pcor::height_record(air, {}, {});
+  take_off_isobar_slope(no_directions, IsobarSlope::whole_flight);
+  EXPECT_EQ(no_directions.slope_left, 1.0);
+  EXPECT_EQ(range_of_excess(no_directions), before);
+  EXPECT_THAT(no_directions.notes, ElementsAre(HasSubstr("heading"), HasSubstr("without directions")));
 }
 
 TEST(IsobarSlope, AFlightAlongALineTakesTheOtherDirectionForLevel) {

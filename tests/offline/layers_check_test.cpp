@@ -83,6 +83,8 @@ TEST(LayersCheck, TellsWhyItCannotRun) {
   EXPECT_THAT(check_layers({rising}).reason, HasSubstr("no atmosphere"));
   CheckedFlight without = made(0.0);
   without.air.height.clear();
+  EXPECT_THAT(check_layers({without}).reason, HasSubstr("no unit"));
+  without.air.height_variable.clear();
   EXPECT_THAT(check_layers({without}).reason, HasSubstr("GPS height"));
   without = made(0.0);
   without.air.latitude.clear();

@@ -50,6 +50,12 @@ Scenario one_climb() {
   return scenario;
 }
 
+Scenario one_climb_without_slope() {
+  Scenario scenario = one_climb();
+  scenario.effects.at(0).parameters["slope"] = 0.0;
+  return scenario;
+}
+
 /// Ten minutes at 250 m above the ground.
 Scenario no_climb() {
   Scenario scenario = climbs();
@@ -211,8 +217,8 @@ TEST_F(TemperatureRecovery, OfOffsetAndSlopeOverIsobarsThatSlope) {
     }
     // Of 100 normal scores 95.4 +- 2.1 are within 2, and 95 or more only in two of three times: with true
     // errors fewer than 90 come once in 170 times. Within 3 are 99.7, and fewer than 97 once in 6000 times.
-    // 400 other seeds had 96 % of a0 and 93 % of a1 within 2, and a spread of 1.00 and 1.04 of the stated
-    // error.
+    // 700 other seeds had 96.6 % of a0 and 95.7 % of a1 within 2, all but 4 of each within 3, and a spread of
+    // 0.93 and 0.98 of the stated error. These 100 have 96 and 93: chance has 93 or fewer once in six times.
     EXPECT_GE(likelihood[k].within(2.0), seeds * 90 / 100) << name;
     EXPECT_GE(likelihood[k].within(3.0), seeds * 97 / 100) << name;
     if (seeds < 100) continue;
@@ -340,9 +346,10 @@ TEST_F(Temperature, TwiceTheDataHalveTheVariance) {
   const TemperatureResult all = fit_temperature(twice, model(), of_degree(1));
   EXPECT_EQ(all.samples, 2 * once.samples);
   // The same data twice have the same likeliest noise but for the restriction of the likelihood, in which the
-  // two coefficients count half as much: errors move by as much as the search stops.
+  // two coefficients count half as much: errors move by as much as the search stops. What is not known of the
+  // noise is in the errors too, a sixth of the variance here, of which twice the data leave a quarter: 4 %.
   for (std::size_t k = 0; k < 2; ++k) {
-    EXPECT_NEAR(once.likelihood.standard_errors[k] / all.likelihood.standard_errors[k], std::sqrt(2.0), 0.05);
+    EXPECT_NEAR(once.likelihood.standard_errors[k] / all.likelihood.standard_errors[k], std::sqrt(2.0), 0.1);
     EXPECT_NEAR(once.least_squares.coefficients[k], all.least_squares.coefficients[k],
                 1e-9 * std::abs(once.least_squares.coefficients[k]));
     EXPECT_NEAR(once.least_squares.standard_errors[k] / all.least_squares.standard_errors[k], std::sqrt(2.0),
@@ -382,11 +389,8 @@ TEST_F(Temperature, TheOrderOfFlightsDoesNotMatter) {
 }
 
 TEST_F(Temperature, HeldOutFlightsChooseTheDegree) {
-  Scenario constant = one_climb();
-  constant.effects.at(0).parameters["slope"] = 0.0;
-  // Four flights without a slope pass for some with one by chance in one set of twelve.
-  const std::vector<fs::path> offset = fly_several(constant, 11, 4);
-  const TemperatureResult without_slope = fit_temperature(offset, model());
+  const TemperatureResult without_slope =
+      fit_temperature(fly_several(one_climb_without_slope(), 11, 4), model());
   EXPECT_THAT(without_slope.likelihood.coefficients, SizeIs(1));
   const TemperatureResult with_slope = fit_temperature(fly_several(one_climb(), 21, 4), model());
   EXPECT_THAT(with_slope.likelihood.coefficients, SizeIs(2));
@@ -400,6 +404,36 @@ TEST_F(Temperature, HeldOutFlightsChooseTheDegree) {
       EXPECT_GE(result.degrees[i].held_out, result.degrees[i].deviance);
     }
   }
+}
+
+TEST_F(Temperature, ASmallGainIsNoReasonForACoefficient) {
+  // Three flights each in which one more coefficient gains by chance, over flights held out, more than its
+  // standard error: 0.1 of -2 ln L for a curve, 4.0 for a slope. Of 12 sets of three one each does so.
+  EXPECT_THAT(fit_temperature(fly_several(one_climb(), 921, 3), model()).likelihood.coefficients, SizeIs(2));
+  EXPECT_THAT(
+      fit_temperature(fly_several(one_climb_without_slope(), 900, 3), model()).likelihood.coefficients,
+      SizeIs(1));
+}
+
+// Slopes of isobars
+
+TEST_F(Temperature, StatedErrorsKnowWhatAnEstimateOfTheSlopeLeaves) {
+  // The wind of the scenario is not the one in balance with its isobars. 8 normal scores have an rms of more
+  // than 1.7 once in 300 times; without a slope in the errors it was 6.
+  double squares = 0.0;
+  constexpr std::uint64_t flights = 8;
+  for (std::uint64_t seed = 31; seed < 31 + flights; ++seed) {
+    const fs::path flight = fly(climbs(), seed);
+    TemperatureOptions options = of_degree(1);
+    options.slope = IsobarSlope::geostrophic;
+    const TemperatureResult result = fit_temperature({flight}, model(), options);
+    const double score =
+        (result.likelihood.coefficients[0] - truth(flight)[0]) / result.likelihood.standard_errors[0];
+    squares += score * score;
+    EXPECT_THAT(result.notes, testing::Contains(HasSubstr("wind in balance")));
+    fs::remove(flight);
+  }
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(flights)), 1.7);
 }
 
 // In turn with the pressure
@@ -438,6 +472,8 @@ TEST_F(Temperature, InTurnSaysHowTheDegreeWasChosen) {
   const CalibrationInTurn found = calibrate_in_turn(flights, model(), Reference{}, {}, {});
   EXPECT_TRUE(found.converged);
   EXPECT_THAT(found.temperature.degrees, SizeIs(4));  // none to quadratic
+  EXPECT_THAT(found.temperature.notes_on_degree, ElementsAre(HasSubstr("none can be held out")));
+  EXPECT_THAT(found.temperature.notes, testing::Contains(found.temperature.notes_on_degree.front()));
   for (const CalibrationRound& round : found.rounds)
     EXPECT_THAT(round.coefficients, SizeIs(found.rounds.front().coefficients.size()));
 }
@@ -465,6 +501,13 @@ TEST_F(Temperature, InTurnSaysHowFarThePressureMoved) {
 }
 
 // The report
+
+TEST(TemperatureText, ErrorsHaveTwoDigits) {
+  EXPECT_EQ(with_error(0.01, 0.0046), "+0.0100 +- 0.0046");
+  EXPECT_EQ(with_error(-0.53712, 0.0996), "-0.54 +- 0.10");
+  EXPECT_EQ(with_error(12.3, 34.0), "+12 +- 34");
+  EXPECT_EQ(with_error(-0.5, 0.012, "±"), "-0.500 ± 0.012");
+}
 
 template <class Item>
 const Item* item(const Report& report, const std::string& title) {

@@ -87,6 +87,7 @@ nlohmann::ordered_json as_json(const TemperatureResult& result) {
                                {"held_out", choice.held_out},
                                {"held_out_stderr", choice.held_out_error}});
   json["per_hpa"] = by_name(result.per_hpa);
+  json["pressure_error_hpa"] = result.pressure_error;
   json["noise"] = {{"gps_m", result.gps_noise},
                    {"gps_slow_m", result.gps_wander},
                    {"gps_memory_s", result.gps_wander_time},
@@ -123,31 +124,28 @@ void print_flights(const TemperatureResult& result) {
 
 void print(const TemperatureResult& result) {
   print_flights(result);
-  constexpr std::array<const char*, 3> units{"K", "1", "1/K"};
   fmt::print("\nT corrected = T + a0 + a1 t + ..., t in degC\n");
-  fmt::print("{:<4} {:>12} {:>11} {:>24} {:>27} {:>5}\n", "", "likelihood", "std. error",
-             "likelihood interval", "least squares on height", "unit");
+  fmt::print("{:<4} {:>12} {:>22} {:>24} {:>27} {:>5}\n", "", "likelihood",
+             result.pressure_error > 0.0 ? "std. error" : "std. error, noise only", "likelihood interval",
+             "least squares on height", "unit");
   for (std::size_t k = 0; k < result.likelihood.coefficients.size(); ++k) {
-    fmt::print("a{:<3} {:>+12.5g} {:>11.2g} {:>24} {:>27} {:>5}\n", k, result.likelihood.coefficients[k],
+    fmt::print("a{:<3} {:>+12.5g} {:>22.2g} {:>24} {:>27} {:>5}\n", k, result.likelihood.coefficients[k],
                result.likelihood.standard_errors[k], profile_text(result.profile[k]),
                fmt::format("{:+.4g} +- {:.2g} (too small)", result.least_squares.coefficients[k],
                            result.least_squares.standard_errors[k]),
-               units.at(k));
+               coefficient_unit(k));
   }
-  fmt::print("\n{:>12} {:>14} {:>12}\n", "temperature", "correction", "std. error");
+  fmt::print("{}\n", pressure_error_text(result));
+  fmt::print("\n{:>12} {:>22}\n", "temperature", "correction");
   for (const TemperatureCorrection& at : result.corrections)
-    fmt::print("{:>10.1f} C {:>+12.3f} K {:>10.3f} K\n", at.temperature, at.correction, at.standard_error);
+    fmt::print("{:>10.1f} C {:>20} K\n", at.temperature, with_error(at.correction, at.standard_error));
   fmt::print(
       "\nheight by GPS: {:.2f} m a sample, {:.2f} m with a memory of {:.0f} s; the integral drifts by {:.3f} "
       "m in a minute\n",
       result.gps_noise, result.gps_wander, result.gps_wander_time, result.drift);
-  fmt::print("an error of the static pressure of 0.1 hPa in all flights would change a0 by {:+.3f} K\n",
-             0.1 * result.per_hpa.front());
-  constexpr std::array<const char*, 4> degrees{"none", "constant", "linear", "quadratic"};
   fmt::print("\n{:<12} {:>16} {:>26}\n", "-2 ln L", "all flights", "held-out flights");
   for (const DegreeChoice& choice : result.degrees)
-    fmt::print("{:<12} {:>16.1f} {:>26}\n", degrees.at(static_cast<std::size_t>(choice.degree + 1)),
-               choice.deviance,
+    fmt::print("{:<12} {:>16.1f} {:>26}\n", degree_name(choice.degree), choice.deviance,
                std::isnan(choice.held_out)
                    ? "-"
                    : fmt::format("{:.1f} +- {:.1f}", choice.held_out, choice.held_out_error));
@@ -214,8 +212,15 @@ void run(const Options& options) {
   if (!wants_text(options.common)) return;
   if (options.iterate) print(in_turn);
   print(result);
-  fmt::print("\nwrote {}\nTo apply it: pcor process {} -m {} -o OUT.nc\n", options.output,
-             quoted(first_used(result, options)), quoted(options.output));
+  fmt::print("\nwrote {}\n", options.output);
+  if (result.no_better.empty()) {
+    fmt::print("To apply it: pcor process {} -m {} -o OUT.nc\n", quoted(first_used(result, options)),
+               quoted(options.output));
+  } else {
+    fmt::print(
+        "It is no better than none yet: add flights that climb and descend by 3 km and more, there and back "
+        "along the same way\n");
+  }
 }
 
 }  // namespace
@@ -239,12 +244,15 @@ std::function<void()> add_temperature(CLI::App& program) {
       ->capture_default_str();
   command
       ->add_option("--slope-size", options->slope_size,
-                   "usual slope of isobars, m in 100 km, from which --slope fitted starts")
+                   "usual slope of isobars, m in 100 km, from which --slope fitted starts; of it other "
+                   "slopes leave a third")
       ->check(is_amount())
       ->capture_default_str();
   command
-      ->add_option("--pressure-error", options->pressure_error,
-                   "usual error of the static pressure that lasts for a flight, hPa: makes the errors larger")
+      ->add_option(
+          "--pressure-error", options->pressure_error,
+          "usual error of the static pressure that lasts for a flight, hPa, to be in the errors; the "
+          "memo's fits have 0.3")
       ->check(is_amount())
       ->capture_default_str();
   command

@@ -61,7 +61,7 @@ struct ProcessSummary {
 /// temperature of two samples in K it is the step of geopotential height (standard gravity) between them. It
 /// has no value for the first sample, after a gap, and where either PSXC is missing. Its attribute
 /// `temperature_calibration` holds a0 (K), a1 and a2 (1/K) of the model's temp-calibration, which ATX has in
-/// it already.
+/// it already, and its attribute `model` what of the rest of the model the pressures depend on.
 ///
 /// The loop runs at the higher rate of the two pressures; other inputs are brought to it
 /// (`Flight::read_at_rate`). Missing or impossible input gives missing output and a quality bit. Memory does

@@ -22,7 +22,7 @@ enum class IsobarSlope {
   level_legs,     ///< from the height of the surfaces along level legs (memo ii)
   climb_descent,  ///< from surfaces that climbs and descents cross at different places (memo iii)
   whole_flight,   ///< from all surfaces that the flight meets more than once (memo iv)
-  geostrophic     ///< from the measured wind: f/g times the wind across the way
+  geostrophic     ///< from the measured wind: f/g times the wind across the way, as far as that is in balance
 };
 
 std::string_view name_of(IsobarSlope slope);
@@ -35,14 +35,17 @@ struct TemperatureOptions {
   /// The highest power of the temperature, 0 to 2. Absent: chosen by flights that take no part.
   std::optional<int> degree{};
   IsobarSlope slope = IsobarSlope::fitted;
-  double slope_size = 1e-4;  ///< usual slope of isobars, for `fitted`: 10 m in 100 km (R78), 1
+  /// Usual slope of isobars, 1: 10 m in 100 km (R78). The likelihood of `fitted` starts from it; what the
+  /// other options but `none` take off leaves a third of it.
+  double slope_size = 1e-4;
   /// Usual error of the static pressure that lasts for a flight, hPa: an unknown of each flight. It makes the
-  /// coefficients less sure; without it the result says how much such an error would move them.
+  /// coefficients less sure. At 0 errors are those of the noise only, and `pressure_error_text` says how much
+  /// such an error would move the coefficients.
   double pressure_error = 0.0;
   double least_climb_rate = 0.0;  ///< m/s: slower parts take no part (memo i)
   bool skip_returning = false;    ///< flights that end where they began take no part (memo v)
-  /// The flights were written by `pcor process --hydrostatic`: take R_a dp/(g p) and the temperature from
-  /// there.
+  /// The flights were written by `pcor process --hydrostatic` with the same model, but for its correction of
+  /// the temperature: take -R_a dp/(g p) and the temperature from there.
   bool archived = false;
   std::size_t threads = 0;                                              ///< 0: as many as processors
   std::function<void(std::size_t done, std::size_t total)> progress{};  ///< told after every flight
@@ -104,17 +107,21 @@ struct TemperatureResult {
   std::vector<std::array<double, 2>> profile{};
   std::vector<TemperatureCorrection> corrections{};  ///< over the range of temperatures of the flights
   std::vector<DegreeChoice> degrees{};
-  std::vector<double>
-      per_hpa{};            ///< what an error of the static pressure of 1 hPa would do to the coefficients
-  double gps_noise = 0.0;   ///< of a sample, without memory, m
-  double gps_wander = 0.0;  ///< with memory, m
+  /// What an error of the static pressure of 1 hPa in all flights would do to the coefficients.
+  std::vector<double> per_hpa{};
+  double pressure_error = 0.0;          ///< hPa, as in the options: it is in all errors
+  double gps_noise = 0.0;               ///< of a sample, without memory, m
+  double gps_wander = 0.0;              ///< with memory, m
   double gps_wander_time = 0.0;         ///< s
   double drift = 0.0;                   ///< random walk of the integral, m in a minute
   double innovation_variance = 0.0;     ///< of the innovations; 1 where the noise is as described
   double innovation_correlation = 0.0;  ///< from one 10 s to the next; 0 where the noise is as described
   std::size_t samples = 0;
   std::vector<FlightHeights> flights{};
+  /// Why the correction is no better than none; empty where it is better.
+  std::string no_better{};
   std::vector<std::string> notes{};  ///< what a user should know, a sentence each, the gravest first
+  std::vector<std::string> notes_on_degree{};  ///< those of the notes that say how the degree was chosen
 };
 
 /// Calibrates the temperature by the height: the hydrostatic equation is integrated along each flight with
@@ -151,8 +158,21 @@ CalibrationInTurn calibrate_in_turn(const std::vector<std::filesystem::path>& fl
                                     const Reference& reference, const RefitOptions& refit_options,
                                     const TemperatureOptions& temperature_options);
 
+/// "none", "constant", "linear" or "quadratic", for a degree of -1 to 2.
+std::string degree_name(int degree);
+
+/// The unit of coefficient a0, a1 or a2: "K", "1" or "1/K".
+std::string coefficient_unit(std::size_t power);
+
 /// "-0.5377 to -0.5301"; an end that the likelihood does not give is "open".
 std::string profile_text(const std::array<double, 2>& ends);
+
+/// "-0.537 +- 0.012": the error with two significant digits, the value with as many decimals.
+std::string with_error(double value, double error, std::string_view plus_minus = "+-");
+
+/// What an error of the static pressure that lasts does to the coefficients, and whether their errors know of
+/// it: a sentence or two.
+std::string pressure_error_text(const TemperatureResult& result);
 
 /// The report of a calibration of the temperature.
 Report temperature_report(const TemperatureResult& result);
