@@ -415,7 +415,8 @@ class TemperatureCalibration {
       notes.push_back(
           fmt::format("the noise that was found is large (GPS height {:.1f} m, drift of the integral {:.1f} "
                       "m in a minute): a lag of the static line or the thermometer, or a law that is wrong "
-                      "in climbs, looks like it; the layers of pcor check tell climbs from descents",
+                      "in climbs, looks like it; the layers of pcor check say whether the pressure lags "
+                      "behind the height",
                       std::max(result_.gps_noise, result_.gps_wander), result_.drift));
     }
     if (options_.slope == IsobarSlope::none ||
@@ -442,8 +443,8 @@ class TemperatureCalibration {
     if (missing > 0) notes.push_back(fmt::format("{} samples have no GPS height", missing));
     if (unknown_ways > 0 && options_.slope != IsobarSlope::none) {
       notes.push_back(fmt::format(
-          "{} samples have no velocity over the ground: there the way is that through the air, or "
-          "goes on as before",
+          "{} samples have no velocity over the ground: there the way is that through the air, or goes on as "
+          "before",
           unknown_ways));
     }
     if (steps + spikes > 0) {

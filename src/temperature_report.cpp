@@ -21,9 +21,9 @@ ReportTable coefficient_table(const TemperatureResult& result) {
   table.title = "Coefficients";
   table.caption =
       "T corrected = T + a0 + a1 t + a2 t², t in °C. The standard error comes from the curvature of the "
-      "likelihood; the interval is where the likelihood has fallen by e^(-1/2), with the noise at its best "
-      "for each value. Least squares on height, as the memo states it, takes heights for independent and "
-      "isobars for level or known: its errors are too small. " +
+      "likelihood, averaged over the noises that are likely; the interval is where the likelihood has fallen "
+      "by e^(-1/2), with the noise at its best for each value. Least squares on height, as the memo states "
+      "it, takes heights for independent and isobars for level or known: its errors are too small. " +
       pressure_error_text(result) + ".";
   table.headers = {"",
                    "likelihood",
@@ -114,7 +114,7 @@ std::string with_error(double value, double error, std::string_view plus_minus) 
 
 std::string pressure_error_text(const TemperatureResult& result) {
   if (result.pressure_error > 0.0) {
-    return fmt::format("errors have in them one of the static pressure of {:g} hPa that lasts for a flight",
+    return fmt::format("Errors have in them one of the static pressure of {:g} hPa that lasts for a flight",
                        result.pressure_error);
   }
   constexpr double usual = 0.3;  // hPa, the rms of the memo's fits (R47)
@@ -124,9 +124,8 @@ std::string pressure_error_text(const TemperatureResult& result) {
                          k == 1 ? "" : " " + coefficient_unit(k));
   }
   return fmt::format(
-      "errors are those of the noise only: one of the static pressure of {:g} hPa in all flights, as the "
-      "fits of "
-      "laws have, would move {}; --pressure-error {:g} takes it into the errors",
+      "Errors are those of the noise only: one of the static pressure of {:g} hPa in all flights, as the "
+      "fits of laws have, would move {}; --pressure-error {:g} takes one of each flight into the errors",
       usual, moved, usual);
 }
 

@@ -243,7 +243,7 @@ class Fit(TemperatureTest):
         self.assertRegex(text, f"0.3 hPa .* a0 by {0.3 * abs(per_hpa):.2g} K.* --pressure-error 0.3 ")
         with_it = self.text_of("--pressure-error", "0.3")
         self.assertNotIn("noise only", with_it)
-        self.assertIn("errors have in them one of the static pressure of 0.3 hPa", with_it)
+        self.assertIn("Errors have in them one of the static pressure of 0.3 hPa", with_it)
         for arguments, value in (((), 0.0), (("--pressure-error", "0.3"), 0.3)):
             self.assertEqual(self.temperature(*arguments)["pressure_error_hpa"], value)
             provenance = tomllib.loads((self.path / "out.toml").read_text())["provenance"]["temperature"]

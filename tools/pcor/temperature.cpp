@@ -135,7 +135,7 @@ void print(const TemperatureResult& result) {
                            result.least_squares.standard_errors[k]),
                coefficient_unit(k));
   }
-  fmt::print("{}\n", pressure_error_text(result));
+  fmt::print("{}.\n", pressure_error_text(result));
   fmt::print("\n{:>12} {:>22}\n", "temperature", "correction");
   for (const TemperatureCorrection& at : result.corrections)
     fmt::print("{:>10.1f} C {:>20} K\n", at.temperature, with_error(at.correction, at.standard_error));
