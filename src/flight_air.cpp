@@ -161,8 +161,9 @@ void find_ground_velocity(const Flight& flight, FlightAir& air) {
       air.north_speed[i] = motion.ground_speed[i] * std::cos(track);
     }
   } else {
-    air.east_speed = read_first(flight, {"GGVEW", "VEWC", "VEW"}, "m/s").values;
-    air.north_speed = read_first(flight, {"GGVNS", "VNSC", "VNS"}, "m/s").values;
+    const GroundVelocityVariables usual;
+    air.east_speed = read_first(flight, usual.east, "m/s").values;
+    air.north_speed = read_first(flight, usual.north, "m/s").values;
     if (air.north_speed.empty()) air.east_speed.clear();
     if (air.east_speed.empty()) air.north_speed.clear();
   }

@@ -332,14 +332,20 @@ void Processing::copy_inputs(FlightWriter& writer, const FileDescription& descri
     copy(name);
   for (const Input& input : inputs_) copy(input.variable);
   if (!options_.hydrostatic) return;
-  for (const Quantity role : flown_quantities) {
-    std::vector<std::string> names = usual_variables(role);
-    if (const std::string given = variable_of(role); !given.empty()) names.insert(names.begin(), given);
+  const auto copy_first = [&](const std::vector<std::string>& names) {
     const auto found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
       return flight_.has(name) && flight_.variable(name).is_series;
     });
     if (found != names.end()) copy(*found);
+  };
+  for (const Quantity role : flown_quantities) {
+    std::vector<std::string> names = usual_variables(role);
+    if (const std::string given = variable_of(role); !given.empty()) names.insert(names.begin(), given);
+    copy_first(names);
   }
+  const GroundVelocityVariables velocity;
+  copy_first(velocity.east);
+  copy_first(velocity.north);
 }
 
 void Processing::define(FlightWriter& writer) {

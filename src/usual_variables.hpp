@@ -12,4 +12,11 @@ namespace pcor {
 /// pressures, temperatures, humidity, the laser, the Mach number.
 std::vector<std::string> usual_variables(Quantity role);
 
+/// The usual variables of the ground velocity to the east and to the north, m/s, for files without its size
+/// and direction, the likeliest first. They have no role.
+struct GroundVelocityVariables {
+  std::vector<std::string> east{"GGVEW", "VEWC", "VEW"};
+  std::vector<std::string> north{"GGVNS", "VNSC", "VNS"};
+};
+
 }  // namespace pcor

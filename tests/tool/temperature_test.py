@@ -440,6 +440,25 @@ class Archived(TemperatureTest):
         raw = self.temperature(flights=(ONE, TWO, THREE))
         self.assert_agree(raw, self.temperature("--archived", flights=flights), share=0.1)
 
+    def test_ground_velocity_in_components(self):
+        """Where the file has no speed and track, its archive has what the way over the ground comes from."""
+        speed, track = series(ONE, "GGSPD"), numpy.radians(series(ONE, "GGTRK"))
+
+        def components(file):
+            for name, values in (("GGVEW", speed * numpy.sin(track)), ("GGVNS", speed * numpy.cos(track))):
+                file.createVariable(name, "f4", ("Time",), fill_value=-32767.0)[:] = numpy.ma.masked_invalid(values)
+                file[name].units = "m/s"
+            for name in ("GGSPD", "GGTRK"):
+                file.renameVariable(name, "NOT_" + name)
+
+        flight = self.edited(components)
+        raw = self.temperature(flights=(flight,))
+        self.assert_agree(self.temperature(), raw, share=0.1)
+        archive = self.process(flight, PUBLISHED, "--hydrostatic")
+        archived = self.temperature("--archived", flights=(archive,))
+        self.assert_agree(raw, archived, share=0.1)
+        self.assertNotIn("over the ground", " ".join(archived["notes"]))
+
     def test_slopes(self):
         for slope in SLOPES:
             with self.subTest(slope):
