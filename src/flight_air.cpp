@@ -207,7 +207,7 @@ FlightAir read_flight_air(const Flight& flight, const ModelFile& model, const Ma
 std::string trouble_with_height(const FlightAir& air) {
   // A height that the model names and gives a unit to.
   const auto told = [&air](const char* unit) {
-    return fmt::format("[variables] altitude = \"{}\" and [units] altitude = \"{}\" in the model",
+    return fmt::format(R"([variables] altitude = "{}" and [units] altitude = "{}" in the model)",
                        air.height_variable, unit);
   };
   if (air.height.empty() && !air.height_variable.empty())

@@ -95,7 +95,7 @@ BarPanel correction_bars(const TemperatureResult& result) {
 
 std::string degree_name(int degree) {
   constexpr std::array<const char*, 4> names{"none", "constant", "linear", "quadratic"};
-  return names.at(static_cast<std::size_t>(degree + 1));
+  return names.at(static_cast<std::size_t>(degree) + 1);
 }
 
 std::string coefficient_unit(std::size_t power) {

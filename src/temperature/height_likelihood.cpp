@@ -265,7 +265,7 @@ HeightEquations& HeightEquations::operator+=(const HeightEquations& other) {
 }
 
 Eigen::MatrixXd HeightEquations::covariance(Eigen::Index terms) const {
-  if (terms == 0) return Eigen::MatrixXd(0, 0);
+  if (terms == 0) return {};
   const Eigen::VectorXd scale = information.diagonal()
                                     .head(terms)
                                     .cwiseMax(std::numeric_limits<double>::min())
@@ -399,7 +399,7 @@ MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::
 Eigen::MatrixXd covariance_over_noise(const std::vector<HeightRecord>& records, Eigen::Index terms,
                                       const HeightPrior& prior, const MostLikely& likely,
                                       std::size_t threads) {
-  const Eigen::MatrixXd covariance = likely.equations.covariance(terms);
+  Eigen::MatrixXd covariance = likely.equations.covariance(terms);
   Eigen::MatrixXd more = Eigen::MatrixXd::Zero(terms, terms);
   for (const auto& [above, below] :
        AroundLikeliest(records, terms, prior, likely, threads).standard_deviations()) {

@@ -535,7 +535,7 @@ class Formula::Parser {
     const auto is_constant = [](const Instruction& i) { return i.operation == Operation::constant; };
     if (!std::all_of(at, at + operands, is_constant)) return;
     const double* const none = nullptr;
-    const double result = run<double>(at, at + operands + 1, none, none);
+    const auto result = run<double>(at, at + operands + 1, none, none);
     code.resize(begin);
     code.push_back({Operation::constant, 0, result});
   }
