@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "bounded_least_squares.hpp"
+#include "covariance_blocks.hpp"
 #include "fit_covariance.hpp"
 #include "fit_flights.hpp"
 #include "global_search.hpp"
@@ -36,21 +37,6 @@ constexpr double collinear_condition = 300.0;
 // A standard error above this share of an effect's typical size is worth a word.
 constexpr double weak_share = 0.25;
 constexpr int most_omission_steps = 8;
-
-/// Adds what was known of the parameters `held`, which nothing ties to those that were fitted.
-void keep_covariance(Covariance& covariance, const Covariance& before, const std::vector<std::string>& held) {
-  const std::size_t fitted = covariance.parameters.size();
-  std::vector<std::size_t> kept;
-  for (std::size_t i = 0; i < before.parameters.size(); ++i) {
-    if (std::find(held.begin(), held.end(), before.parameters[i]) != held.end()) kept.push_back(i);
-  }
-  for (std::vector<double>& row : covariance.matrix) row.resize(fitted + kept.size(), 0.0);
-  for (const std::size_t i : kept) {
-    covariance.parameters.push_back(before.parameters[i]);
-    std::vector<double>& row = covariance.matrix.emplace_back(fitted, 0.0);
-    for (const std::size_t j : kept) row.push_back(before.matrix[i][j]);
-  }
-}
 constexpr int passes_expected = 40;
 
 /// What a fit knows of one parameter beside its value.
@@ -792,7 +778,10 @@ void Refit::write_models(const Eigen::MatrixXd& covariance, const std::vector<st
       for (const std::size_t b : inside) row.push_back(covariance(as_index(a), as_index(b)));
       file.covariance.matrix.push_back(std::move(row));
     }
-    keep_covariance(file.covariance, before, held);
+    // What was known of the parameters that were held stays, and nothing ties it to those that were fitted.
+    add_independent(file.covariance, part_of(before, [&held](const std::string& name) {
+                      return std::find(held.begin(), held.end(), name) != held.end();
+                    }));
     Provenance provenance;
     provenance.emplace_back("program", ProvenanceValue{std::string("pcor " PCOR_VERSION)});
     provenance.emplace_back(

@@ -124,20 +124,21 @@ ReportColumn column_of(const CheckedFlights& flights, std::string name, std::str
   return column;
 }
 
-std::vector<double> only_at(const std::vector<double>& series, const std::vector<std::size_t>& places) {
-  std::vector<double> values(series.size(), nan);
-  if (series.empty()) return values;
-  for (const std::size_t place : places) values[place] = series[place];
-  return values;
+std::vector<double> only_where(std::vector<double> series, const std::vector<bool>& used) {
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    if (!used[i]) series[i] = nan;
+  }
+  return series;
 }
 
 std::vector<double> only_in(const CheckedFlight& flight, const std::vector<Flown>& all,
                             const std::vector<double>& series) {
-  std::vector<std::size_t> places;
+  std::vector<bool> used(series.size(), false);
   for (const Flown& flown : all) {
-    if (flown.flight == &flight) places.insert(places.end(), flown.places.begin(), flown.places.end());
+    if (flown.flight != &flight || series.empty()) continue;
+    for (const std::size_t place : flown.places) used[place] = true;
   }
-  return only_at(series, places);
+  return only_where(series, used);
 }
 
 const std::vector<double>& attack_of(const FlightAir& air) {

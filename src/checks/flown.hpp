@@ -54,8 +54,8 @@ std::string not_flown(Regime regime);
 ReportColumn column_of(const CheckedFlights& flights, std::string name, std::string title, std::string unit,
                        const std::function<std::vector<double>(const CheckedFlight&)>& series);
 
-/// A series of a flight with values at some records only: the others are NaN.
-std::vector<double> only_at(const std::vector<double>& series, const std::vector<std::size_t>& places);
+/// A series of a flight where it is `used`, NaN elsewhere. One without values stays so.
+std::vector<double> only_where(std::vector<double> series, const std::vector<bool>& used);
 
 /// The series in the stretches of this flight, NaN elsewhere.
 std::vector<double> only_in(const CheckedFlight& flight, const std::vector<Flown>& all,

@@ -111,14 +111,9 @@ void add_pictures(const CheckedFlights& flights, const std::vector<FlightLayers>
   column("layers hydrostatic", "T_p, hydrostatic", &Layer::hydrostatic_temperature, constants::ice_point,
          "degC");
   column("layers measured", "T_m, thermometer", &Layer::measured_temperature, constants::ice_point, "degC");
-  result.columns.push_back(
-      column_of(flights, "layers d-value", "D-value", "m", [](const CheckedFlight& flight) {
-        std::vector<double> values = flight.air.d_value;
-        for (std::size_t i = 0; i < values.size(); ++i) {
-          if (!flight.air.flying[i]) values[i] = nan;
-        }
-        return values;
-      }));
+  result.columns.push_back(column_of(
+      flights, "layers d-value", "D-value", "m",
+      [](const CheckedFlight& flight) { return only_where(flight.air.d_value, flight.air.flying); }));
   TimePanel temperatures;
   temperatures.title = "Temperature of the layers";
   temperatures.caption = "One line over each layer.";

@@ -30,23 +30,16 @@ struct Source {
   std::vector<double> (*series)(const CheckedFlight& flight);
 };
 
-std::vector<double> in_flight(std::vector<double> values, const FlightAir& air) {
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!air.flying[i]) values[i] = nan;
-  }
-  return values;
-}
-
 std::vector<double> laser_defect(const CheckedFlight& flight) {
   if (!flight.air.laser) return {};
-  return in_flight(flight.air.laser->static_defect, flight.air);
+  return only_where(flight.air.laser->static_defect, flight.air.flying);
 }
 
 std::vector<double> second_system(const CheckedFlight& flight) {
   if (!flight.second || flight.second->pressure.size() != flight.air.size()) return {};
   std::vector<double> difference = flight.second->pressure;
   for (std::size_t i = 0; i < difference.size(); ++i) difference[i] -= flight.air.pressure[i];
-  return in_flight(std::move(difference), flight.air);
+  return only_where(std::move(difference), flight.air.flying);
 }
 
 /// What D-value is as a pressure: rho g for each metre.
@@ -57,7 +50,7 @@ std::vector<double> d_value_as_pressure(const CheckedFlight& flight) {
   for (std::size_t i = 0; i < air.size(); ++i)
     values[i] = air.d_value[i] * constants::standard_gravity * air.pressure[i] /
                 (air.gas_constant[i] * air.temperature[i]);
-  return in_flight(std::move(values), air);
+  return only_where(std::move(values), air.flying);
 }
 
 /// Power spectral densities, one for each segment.

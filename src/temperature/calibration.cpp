@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "../covariance_blocks.hpp"
+
 namespace pcor {
 namespace {
 
@@ -12,20 +14,9 @@ std::string name_of_coefficient(std::size_t number) {
   return std::string(calibration_id) + ".a" + std::to_string(number);
 }
 
-/// Leaves the rows and columns of the correction out of a covariance.
-Covariance without_correction(const Covariance& covariance) {
-  std::vector<std::size_t> kept;
+bool is_of_correction(const std::string& parameter) {
   const std::string prefix = std::string(calibration_id) + ".";
-  for (std::size_t i = 0; i < covariance.parameters.size(); ++i) {
-    if (covariance.parameters[i].compare(0, prefix.size(), prefix) != 0) kept.push_back(i);
-  }
-  Covariance result;
-  for (const std::size_t i : kept) {
-    result.parameters.push_back(covariance.parameters[i]);
-    std::vector<double>& row = result.matrix.emplace_back();
-    for (const std::size_t j : kept) row.push_back(covariance.matrix[i][j]);
-  }
-  return result;
+  return parameter.compare(0, prefix.size(), prefix) == 0;
 }
 
 }  // namespace
@@ -43,7 +34,7 @@ ModelFile without_calibration(ModelFile file) {
     effects.erase(effects.begin() + static_cast<std::ptrdiff_t>(i));
     if (i < file.fits.size()) file.fits.erase(file.fits.begin() + static_cast<std::ptrdiff_t>(i));
   }
-  file.covariance = without_correction(file.covariance);
+  file.covariance = part_of(file.covariance, [](const std::string& name) { return !is_of_correction(name); });
   return file;
 }
 
@@ -64,14 +55,11 @@ ModelFile with_calibration(ModelFile file, const std::vector<double>& coefficien
   file.fits.push_back(std::move(fit));
 
   // Pressure and temperature are fitted apart: their errors are not known to go together.
-  Covariance& all = file.covariance;
-  const std::size_t before = all.parameters.size();
-  for (std::vector<double>& row : all.matrix) row.resize(before + coefficients.size(), 0.0);
-  for (std::size_t i = 0; i < coefficients.size(); ++i) {
-    all.parameters.push_back(name_of_coefficient(i));
-    std::vector<double>& row = all.matrix.emplace_back(before, 0.0);
-    row.insert(row.end(), covariance[i].begin(), covariance[i].end());
-  }
+  Covariance correction;
+  correction.matrix = covariance;
+  for (std::size_t i = 0; i < coefficients.size(); ++i)
+    correction.parameters.push_back(name_of_coefficient(i));
+  add_independent(file.covariance, correction);
   return file;
 }
 
