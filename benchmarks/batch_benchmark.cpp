@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include <pcor/batch/batch.hpp>
 #include "flight.hpp"
-#include "pcor/offline/batch.hpp"
 
 namespace pcor::benchmarks {
 namespace {

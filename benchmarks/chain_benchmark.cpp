@@ -2,9 +2,9 @@
 
 #include <string>
 
+#include <pcor/realtime/loop.hpp>
 #include "flight.hpp"
 #include "nimbus_model.hpp"
-#include "pcor/realtime/loop.hpp"
 
 namespace pcor::benchmarks {
 namespace {

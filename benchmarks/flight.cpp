@@ -4,9 +4,9 @@
 #include <cmath>
 #include <random>
 
-#include "pcor/physics/air_data.hpp"
-#include "pcor/physics/humidity.hpp"
-#include "pcor/physics/recovery_factor.hpp"
+#include <pcor/physics/air_data.hpp>
+#include <pcor/physics/humidity.hpp>
+#include <pcor/physics/recovery_factor.hpp>
 
 namespace pcor::benchmarks {
 

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "pcor/offline/batch.hpp"
-#include "pcor/realtime/model.hpp"
+#include <pcor/batch/batch.hpp>
+#include <pcor/model/model.hpp>
 
 namespace pcor::benchmarks {
 

@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
+#include <pcor/realtime/chain.hpp>
 #include "flight.hpp"
-#include "pcor/realtime/chain.hpp"
 
 namespace pcor::benchmarks {
 namespace {

@@ -1,7 +1,7 @@
 #include <benchmark/benchmark.h>
 
+#include <pcor/physics/lams.hpp>
 #include "flight.hpp"
-#include "pcor/physics/lams.hpp"
 
 namespace pcor::benchmarks {
 namespace {

@@ -1,26 +1,40 @@
-# What `cmake --install` puts in place. Two export sets, so that a program on the aircraft, which needs
+# What `cmake --install` puts in place. Three export sets, so that a program on the aircraft, which needs
 # pcor::realtime and the standard library alone, never has to have netCDF to find the package.
 include(CMakePackageConfigHelpers)
 set(pcor_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/pcor)
 
 install(TARGETS pcor_realtime EXPORT pcor-realtime)
 install(EXPORT pcor-realtime NAMESPACE pcor:: DESTINATION ${pcor_config_dir})
-set(pcor_headers physics effects realtime)
+
+if(PCOR_MODEL)
+  install(TARGETS pcor_model EXPORT pcor-model ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT pcor-model NAMESPACE pcor:: DESTINATION ${pcor_config_dir})
+  install(FILES ${PROJECT_SOURCE_DIR}/cmake/model_dependencies.cmake DESTINATION ${pcor_config_dir})
+endif()
 
 if(PCOR_OFFLINE)
   install(TARGETS pcor_offline EXPORT pcor-offline ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(EXPORT pcor-offline NAMESPACE pcor:: DESTINATION ${pcor_config_dir})
   install(FILES ${PROJECT_SOURCE_DIR}/cmake/offline_dependencies.cmake DESTINATION ${pcor_config_dir})
-  list(APPEND pcor_headers offline)
 endif()
 
 if(TARGET pcor_tool)
   install(TARGETS pcor_tool RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
 
-foreach(folder IN LISTS pcor_headers)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/pcor/${folder}
-          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pcor FILES_MATCHING PATTERN "*.hpp")
+# Headers of what is not built would promise what cannot be linked.
+set(pcor_headers ${pcor_realtime_rooms})
+if(PCOR_MODEL)
+  list(APPEND pcor_headers ${pcor_model_rooms})
+endif()
+if(PCOR_OFFLINE)
+  list(APPEND pcor_headers ${pcor_offline_rooms})
+endif()
+foreach(room IN LISTS pcor_headers)
+  if(IS_DIRECTORY ${PROJECT_SOURCE_DIR}/include/pcor/${room})
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/pcor/${room}
+            DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pcor FILES_MATCHING PATTERN "*.hpp")
+  endif()
 endforeach()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/models DESTINATION ${CMAKE_INSTALL_DATADIR}/pcor)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -1,11 +1,11 @@
-# What the offline library stands on. Read by the build and by an installed package alike.
+# What the offline library stands on beside model_dependencies.cmake. Read by the build and by an installed package
+# alike.
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(netcdf_cxx4 REQUIRED IMPORTED_TARGET netcdf-cxx4)
 pkg_check_modules(netcdf REQUIRED IMPORTED_TARGET netcdf)
-pkg_check_modules(udunits REQUIRED IMPORTED_TARGET udunits)
-find_package(tomlplusplus REQUIRED)
 find_package(nlohmann_json REQUIRED)
-find_package(fmt REQUIRED)
+find_package(Boost REQUIRED) # headers: the distributions of Boost.Math, the random numbers of Boost.Random
+find_package(Eigen3 REQUIRED)
 find_package(Ceres REQUIRED)
 pkg_check_modules(nlopt REQUIRED IMPORTED_TARGET nlopt)
 find_package(Threads REQUIRED)

@@ -19,8 +19,8 @@
 #include <utility>
 #include <vector>
 
-#include "pcor/offline/refit.hpp"
-#include "pcor/physics/air_data.hpp"
+#include <pcor/fit/refit.hpp>
+#include <pcor/physics/air_data.hpp>
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "angle_sensitivity.hpp"
+#include "checks/angle_sensitivity.hpp"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <limits>
 #include <optional>
 
-#include "pcor/offline/utc.hpp"
-#include "pcor/physics/constants.hpp"
-#include "pcor/physics/geodesy.hpp"
+#include <pcor/physics/constants.hpp>
+#include <pcor/physics/geodesy.hpp>
+#include <pcor/words/utc.hpp>
 
 namespace pcor {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "flown.hpp"
+#include "checks/flown.hpp"
 
 namespace pcor {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "../flight_air.hpp"
-#include "pcor/offline/check.hpp"
+#include <pcor/checks/check.hpp>
+#include "residuals/flight_air.hpp"
 
 namespace pcor {
 

@@ -1,9 +1,9 @@
-#include "circle_fit.hpp"
+#include "checks/circle_fit.hpp"
 
 #include <cmath>
 #include <limits>
 
-#include "pcor/physics/constants.hpp"
+#include <pcor/physics/constants.hpp>
 
 namespace pcor {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "statistics.hpp"
+#include "checks/statistics.hpp"
 
 namespace pcor {
 

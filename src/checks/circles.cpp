@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "circle_fit.hpp"
-#include "flown.hpp"
-#include "leg_pair.hpp"
-#include "pcor/offline/utc.hpp"
+#include <pcor/words/utc.hpp>
+#include "checks/circle_fit.hpp"
+#include "checks/flown.hpp"
+#include "checks/leg_pair.hpp"
 
 namespace pcor {
 namespace {

@@ -1,4 +1,4 @@
-#include "flown.hpp"
+#include "checks/flown.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pcor/offline/utc.hpp"
+#include <pcor/words/utc.hpp>
 
 namespace pcor {
 namespace {

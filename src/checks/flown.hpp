@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "checks.hpp"
-#include "statistics.hpp"
+#include "checks/checks.hpp"
+#include "checks/statistics.hpp"
 
 namespace pcor {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "flown.hpp"
-#include "pcor/offline/noise.hpp"
-#include "pcor/offline/utc.hpp"
+#include <pcor/numerics/noise.hpp>
+#include <pcor/words/utc.hpp>
+#include "checks/flown.hpp"
 
 namespace pcor {
 namespace {

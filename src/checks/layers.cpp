@@ -1,4 +1,4 @@
-#include "../layers.hpp"
+#include "checks/climb_layers.hpp"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "flown.hpp"
-#include "pcor/offline/utc.hpp"
+#include <pcor/words/utc.hpp>
+#include "checks/flown.hpp"
 
 namespace pcor {
 namespace {

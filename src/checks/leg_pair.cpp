@@ -1,8 +1,8 @@
-#include "leg_pair.hpp"
+#include "checks/leg_pair.hpp"
 
 #include <cmath>
 
-#include "pcor/physics/constants.hpp"
+#include <pcor/physics/constants.hpp>
 
 namespace pcor {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "statistics.hpp"
+#include "checks/statistics.hpp"
 
 namespace pcor {
 

@@ -1,4 +1,4 @@
-#include "angle_sensitivity.hpp"
+#include "checks/angle_sensitivity.hpp"
 
 namespace pcor {
 

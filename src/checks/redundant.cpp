@@ -1,4 +1,4 @@
-#include "redundant.hpp"
+#include "checks/redundant.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pcor/offline/noise.hpp"
+#include <pcor/numerics/noise.hpp>
 
 namespace pcor {
 namespace {

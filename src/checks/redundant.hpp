@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "flown.hpp"
-#include "pcor/offline/line_fit.hpp"
+#include <pcor/numerics/line_fit.hpp>
+#include "checks/flown.hpp"
 
 namespace pcor {
 

@@ -5,10 +5,10 @@
 #include <map>
 #include <utility>
 
-#include "flown.hpp"
-#include "leg_pair.hpp"
-#include "pcor/offline/utc.hpp"
-#include "pcor/physics/constants.hpp"
+#include <pcor/physics/constants.hpp>
+#include <pcor/words/utc.hpp>
+#include "checks/flown.hpp"
+#include "checks/leg_pair.hpp"
 
 namespace pcor {
 namespace {

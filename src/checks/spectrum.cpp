@@ -6,10 +6,10 @@
 #include <limits>
 #include <unsupported/Eigen/FFT>
 
-#include "flown.hpp"
-#include "pcor/offline/line_fit.hpp"
-#include "pcor/offline/noise.hpp"
-#include "pcor/physics/geodesy.hpp"
+#include <pcor/numerics/line_fit.hpp>
+#include <pcor/numerics/noise.hpp>
+#include <pcor/physics/geodesy.hpp>
+#include "checks/flown.hpp"
 
 namespace pcor {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "redundant.hpp"
+#include "checks/redundant.hpp"
 
 namespace pcor {
 namespace {

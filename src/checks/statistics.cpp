@@ -1,4 +1,4 @@
-#include "statistics.hpp"
+#include "checks/statistics.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pcor/offline/noise.hpp"
+#include <pcor/numerics/noise.hpp>
 
 namespace pcor {
 namespace {

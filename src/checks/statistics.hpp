@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pcor/offline/check.hpp"
+#include <pcor/checks/check.hpp>
 
 namespace pcor {
 

@@ -1,4 +1,4 @@
-#include "advice.hpp"
+#include "diagnose/advice.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "../triangular_factor.hpp"
-#include "manoeuvres.hpp"
-#include "pcor/effects/catalogue.hpp"
+#include <pcor/effects/catalogue.hpp>
+#include "diagnose/manoeuvres.hpp"
+#include "numerics/triangular_factor.hpp"
 
 namespace pcor {
 namespace {

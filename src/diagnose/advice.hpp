@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "analysis.hpp"
-#include "candidates.hpp"
-#include "pcor/offline/diagnose.hpp"
+#include <pcor/diagnose/diagnose.hpp>
+#include "diagnose/analysis.hpp"
+#include "diagnose/candidates.hpp"
 
 namespace pcor {
 

@@ -1,11 +1,11 @@
-#include "analysis.hpp"
+#include "diagnose/analysis.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "../triangular_factor.hpp"
-#include "outliers.hpp"
+#include "diagnose/outliers.hpp"
+#include "numerics/triangular_factor.hpp"
 
 namespace pcor {
 namespace {

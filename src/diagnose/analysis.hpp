@@ -5,10 +5,10 @@
 #include <memory>
 #include <vector>
 
-#include "columns.hpp"
-#include "noise_model.hpp"
-#include "scores.hpp"
-#include "search.hpp"
+#include "diagnose/columns.hpp"
+#include "diagnose/noise_model.hpp"
+#include "diagnose/scores.hpp"
+#include "diagnose/search.hpp"
 
 namespace pcor {
 

@@ -1,4 +1,4 @@
-#include "binning.hpp"
+#include "diagnose/binning.hpp"
 
 #include <algorithm>
 #include <cmath>

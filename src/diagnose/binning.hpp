@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "pcor/offline/noise.hpp"
+#include <pcor/numerics/noise.hpp>
 
 namespace pcor {
 

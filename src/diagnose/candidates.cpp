@@ -1,4 +1,4 @@
-#include "candidates.hpp"
+#include "diagnose/candidates.hpp"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 #include <array>
 #include <optional>
 
-#include "../usual_variables.hpp"
-#include "pcor/effects/catalogue.hpp"
-#include "pcor/offline/error.hpp"
-#include "pcor/realtime/chain.hpp"
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/realtime/chain.hpp>
+#include <pcor/words/error.hpp>
+#include "roles/usual_variables.hpp"
 
 namespace pcor {
 namespace {

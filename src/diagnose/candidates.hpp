@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "pcor/offline/diagnose.hpp"
-#include "pcor/offline/flight.hpp"
-#include "pcor/offline/model_file.hpp"
+#include <pcor/diagnose/diagnose.hpp>
+#include <pcor/flight/flight.hpp>
+#include <pcor/laws/model_file.hpp>
 
 namespace pcor {
 

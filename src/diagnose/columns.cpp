@@ -1,4 +1,4 @@
-#include "columns.hpp"
+#include "diagnose/columns.hpp"
 
 #include <ceres/jet.h>
 #include <fmt/format.h>
@@ -10,10 +10,10 @@
 #include <numeric>
 #include <optional>
 
-#include "../triangular_factor.hpp"
-#include "pcor/effects/catalogue.hpp"
-#include "pcor/offline/error.hpp"
-#include "pcor/realtime/chain.hpp"
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/realtime/chain.hpp>
+#include <pcor/words/error.hpp>
+#include "numerics/triangular_factor.hpp"
 
 namespace pcor {
 namespace {

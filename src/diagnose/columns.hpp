@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "binning.hpp"
-#include "candidates.hpp"
-#include "pcor/offline/residuals.hpp"
+#include <pcor/residuals/residuals.hpp>
+#include "diagnose/binning.hpp"
+#include "diagnose/candidates.hpp"
 
 namespace pcor {
 

@@ -1,4 +1,4 @@
-#include "pcor/offline/diagnose.hpp"
+#include <pcor/diagnose/diagnose.hpp>
 
 #include <fmt/format.h>
 
@@ -7,15 +7,15 @@
 #include <cmath>
 #include <limits>
 
-#include "../triangular_factor.hpp"
-#include "advice.hpp"
-#include "analysis.hpp"
-#include "candidates.hpp"
-#include "columns.hpp"
-#include "findings.hpp"
-#include "pcor/offline/compare.hpp"
-#include "pcor/offline/error.hpp"
-#include "unexplained.hpp"
+#include <pcor/flight/same_aircraft.hpp>
+#include <pcor/words/error.hpp>
+#include "diagnose/advice.hpp"
+#include "diagnose/analysis.hpp"
+#include "diagnose/candidates.hpp"
+#include "diagnose/columns.hpp"
+#include "diagnose/findings.hpp"
+#include "diagnose/unexplained.hpp"
+#include "numerics/triangular_factor.hpp"
 
 namespace pcor {
 namespace {

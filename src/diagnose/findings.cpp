@@ -1,4 +1,4 @@
-#include "findings.hpp"
+#include "diagnose/findings.hpp"
 
 #include <fmt/ranges.h>
 
@@ -7,8 +7,8 @@
 #include <limits>
 #include <set>
 
-#include "../triangular_factor.hpp"
-#include "pcor/effects/catalogue.hpp"
+#include <pcor/effects/catalogue.hpp>
+#include "numerics/triangular_factor.hpp"
 
 namespace pcor {
 namespace {

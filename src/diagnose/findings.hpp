@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "analysis.hpp"
-#include "candidates.hpp"
-#include "pcor/offline/diagnose.hpp"
+#include <pcor/diagnose/diagnose.hpp>
+#include "diagnose/analysis.hpp"
+#include "diagnose/candidates.hpp"
 
 namespace pcor {
 

@@ -1,4 +1,4 @@
-#include "manoeuvres.hpp"
+#include "diagnose/manoeuvres.hpp"
 
 #include <fmt/format.h>
 
@@ -7,12 +7,12 @@
 #include <iterator>
 #include <utility>
 
-#include "manoeuvres/aircraft.hpp"
-#include "manoeuvres/atmosphere.hpp"
-#include "manoeuvres/path.hpp"
-#include "manoeuvres/recording.hpp"
-#include "pcor/physics/air_data.hpp"
-#include "pcor/physics/moist_air.hpp"
+#include <pcor/physics/air_data.hpp>
+#include <pcor/physics/moist_air.hpp>
+#include "diagnose/manoeuvres/aircraft.hpp"
+#include "diagnose/manoeuvres/atmosphere.hpp"
+#include "diagnose/manoeuvres/path.hpp"
+#include "diagnose/manoeuvres/recording.hpp"
 
 namespace pcor {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pcor/offline/residuals.hpp"
+#include <pcor/residuals/residuals.hpp>
 
 namespace pcor {
 

@@ -1,9 +1,9 @@
-#include "noise_model.hpp"
+#include "diagnose/noise_model.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "../triangular_factor.hpp"
+#include "numerics/triangular_factor.hpp"
 
 namespace pcor {
 namespace {

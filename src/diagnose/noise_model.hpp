@@ -3,7 +3,7 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "binning.hpp"
+#include "diagnose/binning.hpp"
 
 namespace pcor {
 

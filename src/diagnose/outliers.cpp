@@ -1,9 +1,9 @@
-#include "outliers.hpp"
+#include "diagnose/outliers.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "pcor/offline/noise.hpp"
+#include <pcor/numerics/noise.hpp>
 
 namespace pcor {
 namespace {

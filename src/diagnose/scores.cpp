@@ -1,10 +1,10 @@
-#include "scores.hpp"
+#include "diagnose/scores.hpp"
 
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "../triangular_factor.hpp"
+#include "numerics/triangular_factor.hpp"
 
 namespace pcor {
 namespace {

@@ -3,7 +3,7 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "noise_model.hpp"
+#include "diagnose/noise_model.hpp"
 
 namespace pcor {
 

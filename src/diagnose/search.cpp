@@ -1,4 +1,4 @@
-#include "search.hpp"
+#include "diagnose/search.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <numeric>
 #include <random>
 
-#include "../triangular_factor.hpp"
-#include "chi_squared.hpp"
-#include "pseudo_inverse.hpp"
+#include "numerics/chi_squared.hpp"
+#include "numerics/pseudo_inverse.hpp"
+#include "numerics/triangular_factor.hpp"
 
 namespace pcor {
 namespace {

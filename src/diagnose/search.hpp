@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "pcor/offline/model_file.hpp"
-#include "scores.hpp"
+#include <pcor/laws/model_file.hpp>
+#include "diagnose/scores.hpp"
 
 namespace pcor {
 

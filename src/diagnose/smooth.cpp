@@ -1,4 +1,4 @@
-#include "smooth.hpp"
+#include "diagnose/smooth.hpp"
 
 #include <algorithm>
 #include <cmath>

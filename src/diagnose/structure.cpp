@@ -1,14 +1,14 @@
-#include "structure.hpp"
+#include "diagnose/structure.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
 
-#include "../triangular_factor.hpp"
-#include "chi_squared.hpp"
-#include "pseudo_inverse.hpp"
-#include "scores.hpp"
+#include "diagnose/scores.hpp"
+#include "numerics/chi_squared.hpp"
+#include "numerics/pseudo_inverse.hpp"
+#include "numerics/triangular_factor.hpp"
 
 namespace pcor {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "binning.hpp"
-#include "noise_model.hpp"
-#include "smooth.hpp"
+#include "diagnose/binning.hpp"
+#include "diagnose/noise_model.hpp"
+#include "diagnose/smooth.hpp"
 
 namespace pcor {
 

@@ -1,4 +1,4 @@
-#include "unexplained.hpp"
+#include "diagnose/unexplained.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <set>
 
-#include "chi_squared.hpp"
-#include "pcor/offline/error.hpp"
-#include "structure.hpp"
+#include <pcor/words/error.hpp>
+#include "diagnose/structure.hpp"
+#include "numerics/chi_squared.hpp"
 
 namespace pcor {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "analysis.hpp"
-#include "pcor/offline/diagnose.hpp"
-#include "pcor/offline/flight.hpp"
+#include <pcor/diagnose/diagnose.hpp>
+#include <pcor/flight/flight.hpp>
+#include "diagnose/analysis.hpp"
 
 namespace pcor {
 

@@ -1,4 +1,4 @@
-#include "cells.hpp"
+#include "regimes/cells.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include <pcor/offline/error.hpp>
+#include <pcor/words/error.hpp>
 
-#include "series.hpp"
+#include "regimes/series.hpp"
 
 namespace pcor {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include <pcor/offline/regimes.hpp>
+#include <pcor/regimes/regimes.hpp>
 
 namespace pcor {
 

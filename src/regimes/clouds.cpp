@@ -1,4 +1,4 @@
-#include "search.hpp"
+#include "regimes/search.hpp"
 
 namespace pcor {
 

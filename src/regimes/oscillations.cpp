@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "search.hpp"
+#include "regimes/search.hpp"
 
 namespace pcor {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "search.hpp"
+#include "regimes/search.hpp"
 
 namespace pcor {
 namespace {

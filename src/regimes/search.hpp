@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include <pcor/offline/regimes.hpp>
+#include <pcor/regimes/regimes.hpp>
 
-#include "cells.hpp"
-#include "series.hpp"
+#include "regimes/cells.hpp"
+#include "regimes/series.hpp"
 
 namespace pcor {
 

@@ -1,4 +1,4 @@
-#include "series.hpp"
+#include "regimes/series.hpp"
 
 #include <cmath>
 #include <limits>

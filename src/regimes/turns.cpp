@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "search.hpp"
+#include "regimes/search.hpp"
 
 namespace pcor {
 namespace {

@@ -1,5 +1,5 @@
 #include <fmt/format.h>
-#include <pcor/offline/error.hpp>
+#include <pcor/words/error.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "report_data.hpp"
+#include "report/report_data.hpp"
 
 namespace pcor::report {
 

@@ -1,4 +1,4 @@
-#include <pcor/offline/error.hpp>
+#include <pcor/words/error.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-#include "report_data.hpp"
+#include "report/report_data.hpp"
 
 namespace pcor::report {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <pcor/offline/report.hpp>
+#include <pcor/report/report.hpp>
 
 #include <string>
 

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
-#include <pcor/offline/error.hpp>
-#include <pcor/offline/replacement_file.hpp>
-#include <pcor/offline/report.hpp>
+#include <pcor/report/report.hpp>
+#include <pcor/words/error.hpp>
+#include <pcor/words/replacement_file.hpp>
 
 #include <cstddef>
 #include <cstdlib>
@@ -10,8 +10,8 @@
 #include <string_view>
 #include <variant>
 
-#include "assets.hpp"
-#include "report_data.hpp"
+#include "report/assets.hpp"
+#include "report/report_data.hpp"
 
 namespace pcor {
 

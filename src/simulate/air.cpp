@@ -1,4 +1,4 @@
-#include "air.hpp"
+#include "simulate/air.hpp"
 
 #include <cmath>
 

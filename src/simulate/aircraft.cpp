@@ -1,4 +1,4 @@
-#include "aircraft.hpp"
+#include "simulate/aircraft.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <array>
-#include <pcor/offline/simulate.hpp>
+#include <pcor/simulate/simulate.hpp>
 #include <string_view>
 
 namespace pcor::simulate {

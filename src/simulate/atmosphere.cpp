@@ -1,11 +1,11 @@
-#include "atmosphere.hpp"
+#include "simulate/atmosphere.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <pcor/offline/error.hpp>
 #include <pcor/physics/constants.hpp>
+#include <pcor/words/error.hpp>
 
 namespace pcor::simulate {
 namespace {

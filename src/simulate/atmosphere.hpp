@@ -1,9 +1,9 @@
 #pragma once
 
-#include <pcor/offline/simulate.hpp>
+#include <pcor/simulate/simulate.hpp>
 #include <vector>
 
-#include "air.hpp"
+#include "simulate/air.hpp"
 
 namespace pcor::simulate {
 

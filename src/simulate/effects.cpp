@@ -1,11 +1,11 @@
-#include "effects.hpp"
+#include "simulate/effects.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <pcor/physics/constants.hpp>
 
-#include "air.hpp"
-#include "aircraft.hpp"
+#include "simulate/air.hpp"
+#include "simulate/aircraft.hpp"
 
 namespace pcor::simulate {
 namespace {

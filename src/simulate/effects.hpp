@@ -1,12 +1,12 @@
 #pragma once
 
 #include <map>
-#include <pcor/offline/simulate.hpp>
+#include <pcor/simulate/simulate.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "truth.hpp"
+#include "simulate/truth.hpp"
 
 namespace pcor::simulate {
 

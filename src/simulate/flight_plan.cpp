@@ -1,10 +1,10 @@
-#include "flight_plan.hpp"
+#include "simulate/flight_plan.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "pilot.hpp"
+#include "simulate/pilot.hpp"
 
 namespace pcor::simulate {
 namespace {

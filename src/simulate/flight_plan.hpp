@@ -1,12 +1,12 @@
 #pragma once
 
 #include <array>
-#include <pcor/offline/simulate.hpp>
+#include <pcor/simulate/simulate.hpp>
 #include <string_view>
 #include <vector>
 
-#include "aircraft.hpp"
-#include "truth.hpp"
+#include "simulate/aircraft.hpp"
+#include "simulate/truth.hpp"
 
 namespace pcor::simulate {
 

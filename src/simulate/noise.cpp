@@ -1,7 +1,7 @@
-#include "noise.hpp"
+#include "simulate/noise.hpp"
 
-#include "aircraft.hpp"
-#include "truth.hpp"
+#include "simulate/aircraft.hpp"
+#include "simulate/truth.hpp"
 
 namespace pcor::simulate {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <map>
-#include <pcor/offline/simulate.hpp>
+#include <pcor/simulate/simulate.hpp>
 #include <string>
 
 namespace pcor::simulate {

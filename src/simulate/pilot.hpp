@@ -1,13 +1,13 @@
 #pragma once
 
 #include <optional>
-#include <pcor/offline/simulate.hpp>
+#include <pcor/simulate/simulate.hpp>
 
-#include "aircraft.hpp"
-#include "atmosphere.hpp"
-#include "random.hpp"
-#include "truth.hpp"
-#include "turbulence.hpp"
+#include "simulate/aircraft.hpp"
+#include "simulate/atmosphere.hpp"
+#include "simulate/random.hpp"
+#include "simulate/truth.hpp"
+#include "simulate/turbulence.hpp"
 
 namespace pcor::simulate {
 

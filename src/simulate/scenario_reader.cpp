@@ -6,17 +6,17 @@
 #include <iterator>
 #include <map>
 #include <optional>
-#include <pcor/offline/error.hpp>
-#include <pcor/offline/simulate.hpp>
+#include <pcor/simulate/simulate.hpp>
+#include <pcor/words/error.hpp>
 #include <sstream>
 #include <utility>
 
-#include "../model_names.hpp"
-#include "../toml_reader.hpp"
-#include "aircraft.hpp"
-#include "effects.hpp"
-#include "flight_plan.hpp"
-#include "noise.hpp"
+#include "simulate/aircraft.hpp"
+#include "simulate/effects.hpp"
+#include "simulate/flight_plan.hpp"
+#include "simulate/noise.hpp"
+#include "words/quoting.hpp"
+#include "words/toml_reader.hpp"
 
 namespace pcor {
 namespace {

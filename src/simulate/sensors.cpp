@@ -1,12 +1,12 @@
-#include "sensors.hpp"
+#include "simulate/sensors.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <pcor/physics/constants.hpp>
 
-#include "air.hpp"
-#include "random.hpp"
+#include "simulate/air.hpp"
+#include "simulate/random.hpp"
 
 namespace pcor::simulate {
 namespace {

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <pcor/offline/simulate.hpp>
+#include <pcor/simulate/simulate.hpp>
 #include <string>
 #include <vector>
 
-#include "aircraft.hpp"
-#include "effects.hpp"
-#include "truth.hpp"
+#include "simulate/aircraft.hpp"
+#include "simulate/effects.hpp"
+#include "simulate/truth.hpp"
 
 namespace pcor::simulate {
 

@@ -2,19 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <pcor/offline/error.hpp>
-#include <pcor/offline/flight_writer.hpp>
-#include <pcor/offline/simulate.hpp>
-#include <pcor/offline/utc.hpp>
+#include <pcor/flight/flight_writer.hpp>
 #include <pcor/physics/constants.hpp>
+#include <pcor/simulate/simulate.hpp>
+#include <pcor/words/error.hpp>
+#include <pcor/words/utc.hpp>
 #include <tuple>
 #include <utility>
 
-#include "air.hpp"
-#include "aircraft.hpp"
-#include "effects.hpp"
-#include "flight_plan.hpp"
-#include "sensors.hpp"
+#include "simulate/air.hpp"
+#include "simulate/aircraft.hpp"
+#include "simulate/effects.hpp"
+#include "simulate/flight_plan.hpp"
+#include "simulate/sensors.hpp"
 
 namespace pcor {
 namespace {

@@ -1,4 +1,4 @@
-#include "turbulence.hpp"
+#include "simulate/turbulence.hpp"
 
 #include <cmath>
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "random.hpp"
+#include "simulate/random.hpp"
 
 namespace pcor::simulate {
 

@@ -1,4 +1,4 @@
-#include "archived_steps.hpp"
+#include "temperature/archived_steps.hpp"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <limits>
 #include <sstream>
 
-#include "../archived_model.hpp"
-#include "pcor/offline/error.hpp"
-#include "pcor/physics/constants.hpp"
+#include <pcor/physics/constants.hpp>
+#include <pcor/words/error.hpp>
+#include "laws/archived_model.hpp"
 
 namespace pcor {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "../flight_air.hpp"
+#include "residuals/flight_air.hpp"
 
 namespace pcor {
 

@@ -1,9 +1,9 @@
-#include "height_least_squares.hpp"
+#include "temperature/height_least_squares.hpp"
 
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "../triangular_factor.hpp"
+#include "numerics/triangular_factor.hpp"
 
 namespace pcor {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "height_record.hpp"
-#include "pcor/offline/temperature.hpp"
+#include <pcor/temperature/temperature.hpp>
+#include "temperature/height_record.hpp"
 
 namespace pcor {
 

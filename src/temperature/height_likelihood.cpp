@@ -1,4 +1,4 @@
-#include "height_likelihood.hpp"
+#include "temperature/height_likelihood.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <limits>
 #include <nlopt.hpp>
 
-#include "../triangular_factor.hpp"
+#include "numerics/triangular_factor.hpp"
 
 namespace pcor {
 namespace {

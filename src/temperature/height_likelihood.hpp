@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "height_record.hpp"
+#include "temperature/height_record.hpp"
 
 namespace pcor {
 

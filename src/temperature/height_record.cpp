@@ -1,4 +1,4 @@
-#include "height_record.hpp"
+#include "temperature/height_record.hpp"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 
-#include "pcor/offline/error.hpp"
-#include "pcor/physics/geodesy.hpp"
-#include "pcor/physics/hydrostatic.hpp"
+#include <pcor/physics/geodesy.hpp>
+#include <pcor/physics/hydrostatic.hpp>
+#include <pcor/words/error.hpp>
 
 namespace pcor {
 namespace {

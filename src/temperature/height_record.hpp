@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "../flight_air.hpp"
+#include "residuals/flight_air.hpp"
 
 namespace pcor {
 

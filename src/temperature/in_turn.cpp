@@ -2,10 +2,10 @@
 #include <cmath>
 #include <vector>
 
-#include "../flight_air.hpp"
-#include "calibration.hpp"
-#include "pcor/offline/error.hpp"
-#include "pcor/offline/temperature.hpp"
+#include <pcor/temperature/temperature.hpp>
+#include <pcor/words/error.hpp>
+#include "laws/calibration.hpp"
+#include "residuals/flight_air.hpp"
 
 namespace pcor {
 namespace {

@@ -1,4 +1,4 @@
-#include "isobar_slope.hpp"
+#include "temperature/isobar_slope.hpp"
 
 #include <Eigen/Dense>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "pcor/physics/geodesy.hpp"
+#include <pcor/physics/geodesy.hpp>
 
 namespace pcor {
 namespace {

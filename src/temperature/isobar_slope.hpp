@@ -1,7 +1,7 @@
 #pragma once
 
-#include "height_record.hpp"
-#include "pcor/offline/temperature.hpp"
+#include <pcor/temperature/temperature.hpp>
+#include "temperature/height_record.hpp"
 
 namespace pcor {
 

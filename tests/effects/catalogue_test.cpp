@@ -1,9 +1,9 @@
 #include <gmock/gmock.h>
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/effects/without_trace.hpp>
-#include <pcor/realtime/formula.hpp>
-#include <support/archetype.hpp>
-#include <support/input_range.hpp>
+#include <pcor/model/formula.hpp>
+#include "support/archetype.hpp"
+#include "support/input_range.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 #include <pcor/physics/air_data.hpp>
-#include <support/atmosphere.hpp>
+#include "support/atmosphere.hpp"
 
 #include <cmath>
 #include <limits>

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 #include <pcor/physics/geodesy.hpp>
-#include <support/archetype.hpp>
+#include "support/archetype.hpp"
 
 #include <cmath>
 #include <limits>

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <pcor/physics/hydrostatic.hpp>
 #include <pcor/physics/standard_atmosphere.hpp>
-#include <support/archetype.hpp>
+#include "support/archetype.hpp"
 
 #include <cmath>
 #include <limits>

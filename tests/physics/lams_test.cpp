@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 #include <pcor/physics/lams.hpp>
-#include <support/atmosphere.hpp>
+#include "support/atmosphere.hpp"
 
 #include <algorithm>
 #include <cmath>

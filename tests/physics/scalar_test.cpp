@@ -2,7 +2,7 @@
 #include <pcor/physics/flow_angles.hpp>
 #include <pcor/physics/humidity.hpp>
 #include <pcor/physics/lams.hpp>
-#include <support/archetype.hpp>
+#include "support/archetype.hpp"
 
 #include <array>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <pcor/physics/humidity.hpp>
 #include <pcor/physics/lams.hpp>
-#include <support/atmosphere.hpp>
+#include "support/atmosphere.hpp"
 
 #include <cmath>
 #include <string_view>

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "pcor/realtime/loop.hpp"
+#include <pcor/realtime/loop.hpp>
 
 namespace {
 

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <pcor/realtime/chain.hpp>
-#include <support/archetype.hpp>
-#include <support/atmosphere.hpp>
+#include "support/archetype.hpp"
+#include "support/atmosphere.hpp"
 
 #include <cmath>
 #include <map>

@@ -1,4 +1,4 @@
-#include "pcor/realtime/loop.hpp"
+#include <pcor/realtime/loop.hpp>
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "pcor/realtime/low_pass.hpp"
+#include <pcor/realtime/low_pass.hpp>
 
 #include <gmock/gmock.h>
 

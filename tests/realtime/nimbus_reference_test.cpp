@@ -5,10 +5,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "pcor/physics/air_data.hpp"
-#include "pcor/physics/humidity.hpp"
-#include "pcor/physics/recovery_factor.hpp"
-#include "pcor/realtime/chain.hpp"
+#include <pcor/physics/air_data.hpp>
+#include <pcor/physics/humidity.hpp>
+#include <pcor/physics/recovery_factor.hpp>
+#include <pcor/realtime/chain.hpp>
 #include "support/reference_table.hpp"
 
 namespace pcor {

@@ -1,4 +1,4 @@
-#include "pcor/realtime/nimbus.hpp"
+#include <pcor/realtime/nimbus.hpp>
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "pcor/realtime/rate_of_change.hpp"
+#include <pcor/realtime/rate_of_change.hpp>
 
 #include <gmock/gmock.h>
 

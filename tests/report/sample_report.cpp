@@ -2,7 +2,7 @@
 //
 //   sample_report FILE [SAMPLES [FLIGHTS]]
 
-#include <pcor/offline/report.hpp>
+#include <pcor/report/report.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <pcor/realtime/quantity.hpp>
+#include <pcor/model/quantity.hpp>
 
 /// The values between which flight finds a quantity, in its unit.
 struct InputRange {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <pcor/offline/residuals.hpp>
+#include <pcor/residuals/residuals.hpp>
 
 #include <cmath>
 #include <cstddef>

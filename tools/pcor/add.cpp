@@ -5,15 +5,16 @@
 #include <memory>
 #include <string>
 
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/flight/flight.hpp>
+#include <pcor/improve/improve.hpp>
+#include <pcor/model/formula.hpp>
+#include <pcor/roles/with_effects.hpp>
+#include <pcor/units/units.hpp>
+#include <pcor/words/error.hpp>
+#include <pcor/words/suggest.hpp>
 #include "command.hpp"
 #include "diagnosis.hpp"
-#include "pcor/effects/catalogue.hpp"
-#include "pcor/offline/error.hpp"
-#include "pcor/offline/flight.hpp"
-#include "pcor/offline/improve.hpp"
-#include "pcor/offline/suggest.hpp"
-#include "pcor/offline/units.hpp"
-#include "pcor/realtime/formula.hpp"
 
 namespace pcor::tool {
 namespace {

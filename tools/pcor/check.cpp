@@ -1,4 +1,4 @@
-#include "pcor/offline/check.hpp"
+#include <pcor/checks/check.hpp>
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include <pcor/laws/model_file.hpp>
 #include "comparison.hpp"
-#include "pcor/offline/model_file.hpp"
 #include "progress.hpp"
 
 namespace pcor::tool {

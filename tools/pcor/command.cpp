@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <fstream>
 
-#include "pcor/offline/error.hpp"
+#include <pcor/words/error.hpp>
 
 namespace pcor::tool {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "pcor/offline/replacement_file.hpp"
+#include <pcor/words/replacement_file.hpp>
 
 namespace pcor::tool {
 

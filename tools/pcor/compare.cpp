@@ -1,4 +1,4 @@
-#include "pcor/offline/compare.hpp"
+#include <pcor/compare/compare.hpp>
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <memory>
 #include <string>
 
+#include <pcor/compare/comparison_report.hpp>
+#include <pcor/words/utc.hpp>
 #include "comparison.hpp"
-#include "pcor/offline/comparison_report.hpp"
-#include "pcor/offline/utc.hpp"
 #include "progress.hpp"
 
 namespace pcor::tool {

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "pcor/offline/error.hpp"
-#include "pcor/offline/suggest.hpp"
+#include <pcor/words/error.hpp>
+#include <pcor/words/suggest.hpp>
 
 namespace pcor::tool {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <pcor/compare/compare.hpp>
 #include "command.hpp"
-#include "pcor/offline/compare.hpp"
 
 namespace pcor::tool {
 

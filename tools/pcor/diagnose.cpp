@@ -1,4 +1,4 @@
-#include "pcor/offline/diagnose.hpp"
+#include <pcor/diagnose/diagnose.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,10 +8,10 @@
 #include <memory>
 #include <string>
 
+#include <pcor/diagnose/diagnosis_report.hpp>
+#include <pcor/words/utc.hpp>
 #include "comparison.hpp"
 #include "diagnosis.hpp"
-#include "pcor/offline/diagnosis_report.hpp"
-#include "pcor/offline/utc.hpp"
 #include "progress.hpp"
 
 namespace pcor::tool {

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
+#include <pcor/model/formula.hpp>
+#include <pcor/words/error.hpp>
+#include <pcor/words/utc.hpp>
 #include "comparison.hpp"
-#include "pcor/offline/error.hpp"
-#include "pcor/offline/utc.hpp"
-#include "pcor/realtime/formula.hpp"
 
 namespace pcor::tool {
 namespace {

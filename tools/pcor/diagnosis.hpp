@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pcor/offline/diagnose.hpp"
+#include <pcor/diagnose/diagnose.hpp>
 
 namespace pcor::tool {
 

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/effects/without_trace.hpp>
+#include <pcor/words/error.hpp>
+#include <pcor/words/suggest.hpp>
 #include "command.hpp"
-#include "pcor/effects/catalogue.hpp"
-#include "pcor/effects/without_trace.hpp"
-#include "pcor/offline/error.hpp"
-#include "pcor/offline/suggest.hpp"
 
 namespace pcor::tool {
 namespace {

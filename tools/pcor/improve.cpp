@@ -1,4 +1,4 @@
-#include "pcor/offline/improve.hpp"
+#include <pcor/improve/improve.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,9 +7,9 @@
 #include <optional>
 #include <string>
 
+#include <pcor/improve/improvement_report.hpp>
 #include "comparison.hpp"
 #include "diagnosis.hpp"
-#include "pcor/offline/diagnosis_report.hpp"
 #include "progress.hpp"
 
 namespace pcor::tool {

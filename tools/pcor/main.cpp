@@ -11,10 +11,10 @@
 #include <system_error>
 #include <vector>
 
+#include <pcor/words/error.hpp>
+#include <pcor/words/replacement_file.hpp>
+#include <pcor/words/suggest.hpp>
 #include "command.hpp"
-#include "pcor/offline/error.hpp"
-#include "pcor/offline/replacement_file.hpp"
-#include "pcor/offline/suggest.hpp"
 
 namespace {
 

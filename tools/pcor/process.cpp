@@ -1,4 +1,4 @@
-#include "pcor/offline/process.hpp"
+#include <pcor/process/process.hpp>
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
+#include <pcor/words/utc.hpp>
 #include "command.hpp"
-#include "pcor/offline/utc.hpp"
 #include "progress.hpp"
 
 namespace pcor::tool {

@@ -1,4 +1,4 @@
-#include "pcor/offline/refit.hpp"
+#include <pcor/fit/refit.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,9 +7,9 @@
 #include <memory>
 #include <string>
 
+#include <pcor/fit/refit_report.hpp>
+#include <pcor/words/error.hpp>
 #include "comparison.hpp"
-#include "pcor/offline/comparison_report.hpp"
-#include "pcor/offline/error.hpp"
 #include "progress.hpp"
 
 namespace pcor::tool {

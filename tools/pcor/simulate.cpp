@@ -1,4 +1,4 @@
-#include "pcor/offline/simulate.hpp"
+#include <pcor/simulate/simulate.hpp>
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 
+#include <pcor/words/utc.hpp>
 #include "command.hpp"
-#include "pcor/offline/utc.hpp"
 #include "progress.hpp"
 
 namespace pcor::tool {

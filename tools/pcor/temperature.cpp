@@ -1,4 +1,4 @@
-#include "pcor/offline/temperature.hpp"
+#include <pcor/temperature/temperature.hpp>
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <memory>
 #include <string>
 
+#include <pcor/words/error.hpp>
 #include "comparison.hpp"
-#include "pcor/offline/error.hpp"
 #include "progress.hpp"
 
 namespace pcor::tool {

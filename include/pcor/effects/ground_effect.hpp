@@ -1,7 +1,7 @@
 #pragma once
 
-#include "pcor/physics/scalar.hpp"
-#include "pcor/realtime/effect.hpp"
+#include <pcor/model/effect.hpp>
+#include <pcor/physics/scalar.hpp>
 
 namespace pcor::effects {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pcor/realtime/effect.hpp"
+#include <pcor/model/effect.hpp>
 
 namespace pcor::effects {
 

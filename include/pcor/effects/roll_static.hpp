@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "pcor/physics/constants.hpp"
-#include "pcor/realtime/effect.hpp"
+#include <pcor/model/effect.hpp>
+#include <pcor/physics/constants.hpp>
 
 namespace pcor::effects {
 

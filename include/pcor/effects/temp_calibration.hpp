@@ -1,7 +1,7 @@
 #pragma once
 
-#include "pcor/physics/constants.hpp"
-#include "pcor/realtime/effect.hpp"
+#include <pcor/model/effect.hpp>
+#include <pcor/physics/constants.hpp>
 
 namespace pcor::effects {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "pcor/effects/in_cloud.hpp"
-#include "pcor/realtime/effect.hpp"
+#include <pcor/effects/in_cloud.hpp>
+#include <pcor/model/effect.hpp>
 
 namespace pcor::effects {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pcor/physics/moist_air.hpp"
+#include <pcor/physics/moist_air.hpp>
 
 namespace pcor {
 

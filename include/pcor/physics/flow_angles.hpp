@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pcor/physics/scalar.hpp"
+#include <pcor/physics/scalar.hpp>
 
 namespace pcor {
 

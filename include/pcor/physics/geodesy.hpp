@@ -1,7 +1,7 @@
 #pragma once
 
-#include "pcor/physics/constants.hpp"
-#include "pcor/physics/scalar.hpp"
+#include <pcor/physics/constants.hpp>
+#include <pcor/physics/scalar.hpp>
 
 namespace pcor {
 

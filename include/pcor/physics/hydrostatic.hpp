@@ -1,8 +1,8 @@
 #pragma once
 
-#include "pcor/physics/constants.hpp"
-#include "pcor/physics/geodesy.hpp"
-#include "pcor/physics/scalar.hpp"
+#include <pcor/physics/constants.hpp>
+#include <pcor/physics/geodesy.hpp>
+#include <pcor/physics/scalar.hpp>
 
 namespace pcor {
 

@@ -2,8 +2,8 @@
 
 #include <type_traits>
 
-#include "pcor/physics/air_data.hpp"
-#include "pcor/physics/recovery_factor.hpp"
+#include <pcor/physics/air_data.hpp>
+#include <pcor/physics/recovery_factor.hpp>
 
 namespace pcor {
 

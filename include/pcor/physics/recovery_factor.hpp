@@ -3,7 +3,7 @@
 #include <array>
 #include <string_view>
 
-#include "pcor/physics/moist_air.hpp"
+#include <pcor/physics/moist_air.hpp>
 
 namespace pcor {
 

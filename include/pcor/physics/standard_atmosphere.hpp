@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "pcor/physics/geodesy.hpp"
+#include <pcor/physics/geodesy.hpp>
 
 namespace pcor {
 

@@ -9,14 +9,14 @@
 #include <string>
 #include <vector>
 
-#include "pcor/effects/catalogue.hpp"
-#include "pcor/physics/air_data.hpp"
-#include "pcor/physics/humidity.hpp"
-#include "pcor/physics/lams.hpp"
-#include "pcor/realtime/formula.hpp"
-#include "pcor/realtime/model.hpp"
-#include "pcor/realtime/quality.hpp"
-#include "pcor/realtime/state.hpp"
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/model/formula.hpp>
+#include <pcor/model/model.hpp>
+#include <pcor/model/quality.hpp>
+#include <pcor/model/state.hpp>
+#include <pcor/physics/air_data.hpp>
+#include <pcor/physics/humidity.hpp>
+#include <pcor/physics/lams.hpp>
 
 namespace pcor {
 

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "pcor/realtime/quality.hpp"
-#include "pcor/realtime/state.hpp"
+#include <pcor/model/quality.hpp>
+#include <pcor/model/state.hpp>
 
 namespace pcor {
 

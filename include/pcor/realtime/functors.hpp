@@ -3,8 +3,8 @@
 #include <memory>
 #include <utility>
 
-#include "pcor/realtime/chain.hpp"
-#include "pcor/realtime/functor.hpp"
+#include <pcor/realtime/chain.hpp>
+#include <pcor/realtime/functor.hpp>
 
 namespace pcor {
 

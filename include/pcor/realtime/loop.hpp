@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "pcor/realtime/functors.hpp"
-#include "pcor/realtime/low_pass.hpp"
-#include "pcor/realtime/rate_of_change.hpp"
+#include <pcor/realtime/functors.hpp>
+#include <pcor/realtime/low_pass.hpp>
+#include <pcor/realtime/rate_of_change.hpp>
 
 namespace pcor {
 

@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "pcor/physics/constants.hpp"
-#include "pcor/physics/scalar.hpp"
-#include "pcor/realtime/functor.hpp"
+#include <pcor/physics/constants.hpp>
+#include <pcor/physics/scalar.hpp>
+#include <pcor/realtime/functor.hpp>
 
 namespace pcor {
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "pcor/physics/constants.hpp"
-#include "pcor/realtime/loop.hpp"
+#include <pcor/physics/constants.hpp>
+#include <pcor/realtime/loop.hpp>
 
 namespace pcor {
 

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "pcor/realtime/functor.hpp"
+#include <pcor/realtime/functor.hpp>
 
 namespace pcor {
 

@@ -1,4 +1,4 @@
-#include "aircraft.hpp"
+#include "diagnose/manoeuvres/aircraft.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <map>
 #include <utility>
 
-#include "pcor/physics/air_data.hpp"
-#include "pcor/physics/moist_air.hpp"
+#include <pcor/physics/air_data.hpp>
+#include <pcor/physics/moist_air.hpp>
 
 namespace pcor::manoeuvres {
 namespace {

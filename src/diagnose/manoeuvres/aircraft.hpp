@@ -1,7 +1,7 @@
 #pragma once
 
-#include "flown.hpp"
-#include "statistics.hpp"
+#include "diagnose/manoeuvres/flown.hpp"
+#include "diagnose/manoeuvres/statistics.hpp"
 
 namespace pcor::manoeuvres {
 

@@ -1,9 +1,9 @@
-#include "atmosphere.hpp"
+#include "diagnose/manoeuvres/atmosphere.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "pcor/physics/moist_air.hpp"
+#include <pcor/physics/moist_air.hpp>
 
 namespace pcor::manoeuvres {
 namespace {

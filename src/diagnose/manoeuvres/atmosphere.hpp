@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "flown.hpp"
-#include "statistics.hpp"
+#include "diagnose/manoeuvres/flown.hpp"
+#include "diagnose/manoeuvres/statistics.hpp"
 
 namespace pcor::manoeuvres {
 

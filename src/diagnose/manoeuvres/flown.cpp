@@ -1,14 +1,14 @@
-#include "flown.hpp"
+#include "diagnose/manoeuvres/flown.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "pcor/physics/air_data.hpp"
-#include "pcor/physics/humidity.hpp"
-#include "pcor/physics/moist_air.hpp"
-#include "pcor/physics/recovery_factor.hpp"
-#include "statistics.hpp"
+#include <pcor/physics/air_data.hpp>
+#include <pcor/physics/humidity.hpp>
+#include <pcor/physics/moist_air.hpp>
+#include <pcor/physics/recovery_factor.hpp>
+#include "diagnose/manoeuvres/statistics.hpp"
 
 namespace pcor::manoeuvres {
 namespace {

@@ -1,4 +1,4 @@
-#include "path.hpp"
+#include "diagnose/manoeuvres/path.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "pcor/offline/regimes.hpp"
+#include <pcor/regimes/regimes.hpp>
 
 namespace pcor::manoeuvres {
 

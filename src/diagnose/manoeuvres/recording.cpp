@@ -1,4 +1,4 @@
-#include "recording.hpp"
+#include "diagnose/manoeuvres/recording.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,10 +8,10 @@
 #include <string_view>
 #include <utility>
 
-#include "pcor/physics/air_data.hpp"
-#include "pcor/physics/lams.hpp"
-#include "pcor/physics/moist_air.hpp"
-#include "pcor/physics/recovery_factor.hpp"
+#include <pcor/physics/air_data.hpp>
+#include <pcor/physics/lams.hpp>
+#include <pcor/physics/moist_air.hpp>
+#include <pcor/physics/recovery_factor.hpp>
 
 namespace pcor::manoeuvres {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "aircraft.hpp"
-#include "atmosphere.hpp"
-#include "path.hpp"
+#include "diagnose/manoeuvres/aircraft.hpp"
+#include "diagnose/manoeuvres/atmosphere.hpp"
+#include "diagnose/manoeuvres/path.hpp"
 
 namespace pcor::manoeuvres {
 

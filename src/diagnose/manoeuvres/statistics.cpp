@@ -1,4 +1,4 @@
-#include "statistics.hpp"
+#include "diagnose/manoeuvres/statistics.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <pcor/laws/model_file.hpp>
+#include <pcor/report/report.hpp>
+#include <pcor/residuals/residuals.hpp>
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pcor {
+
+/// What a check says of the correction.
+enum class CheckVerdict {
+  consistent,    ///< what is measured agrees within what the noise allows
+  inconsistent,  ///< it does not
+  cannot_tell    ///< the noise allows more than the largest error that would matter
+};
+
+/// "consistent", "inconsistent", "cannot tell".
+std::string_view name_of(CheckVerdict verdict);
+
+/// The number of a check that would be zero if all were well.
+struct KeyNumber {
+  double value = 0.0;
+  double standard_error = 0.0;
+  double matters = 0.0;  ///< the smallest value that matters
+  std::string unit{};    ///< for example "hPa"
+  std::string what{};    ///< in words, for example "from slow to fast"
+};
+
+/// One independent test of the correction, on all flights together.
+struct CheckResult {
+  std::string name{};    ///< for example "reverse-heading"
+  bool ran = false;      ///< else the flights do not allow it
+  std::string reason{};  ///< why it did not run, and what it would need; empty where it ran
+  CheckVerdict verdict = CheckVerdict::cannot_tell;
+  KeyNumber key{};           ///< what the verdict rests on first; some checks judge a second number too
+  std::string finding{};     ///< the verdict in a sentence with its numbers
+  std::string cannot_see{};  ///< which errors the check is blind to, a sentence
+  std::vector<std::pair<std::string, double>> numbers{};  ///< by name with the unit, like "offset_hpa"
+  std::vector<ReportTable> tables{};                      ///< for example one row for each pair of legs
+  std::vector<std::string> notes{};                       ///< what a user should know, a sentence each
+
+  /// What the pictures show, over all records of all flights, one flight after another; names begin with that
+  /// of the check.
+  std::vector<ReportColumn> columns{};
+  std::vector<ReportItem> pictures{};
+};
+
+struct CheckOptions {
+  MaskOptions mask;
+  TimeStamp time_stamp = TimeStamp::begin;
+  /// The model of a second static system of the aircraft, for the checks of redundant systems. Without it the
+  /// second pair of pressures is looked for by its usual names, and is as measured.
+  std::optional<ModelFile> second{};
+  std::function<void(std::size_t done, std::size_t total)> progress{};  ///< told after every flight
+};
+
+/// All checks over some flights.
+struct Checks {
+  std::string model;  ///< in words: the model, or "as recorded"
+  std::vector<std::string> flights;
+  std::vector<CheckResult> results;  ///< all ten, in the order of the memo
+  std::vector<std::string> notes;
+  Report pictures;  ///< time, flights, intervals and columns for the report's pictures
+};
+
+/// Holds what `model` makes of the flights against what does not depend on it (memo-requirements B, M, N):
+/// the total pressure and the corrected static pressure of redundant systems, the wind on reverse headings,
+/// in circles and in speed runs, the residual in pitch and yaw manoeuvres, the temperature of layers, the
+/// temperature of the laser, and the spectrum of delta-p. A check that the flights do not allow says why.
+///
+/// Without a model the pressures and the temperature are those that the flight's own processing corrected
+/// (PSXC, QCXC, ATX), else those measured, and nothing is added to them.
+/// A flight whose pressures have no value anywhere is left out, and `notes` says so.
+///
+/// @throws Error if a flight cannot be read or is given twice, a variable of the model is absent, the flights
+/// are of different aircraft, or both models are of the same pressures.
+Checks check(const std::vector<std::filesystem::path>& flights, const std::optional<ModelFile>& model,
+             const CheckOptions& options = {});
+
+/// The report of the checks: a table of verdicts, and for each check its numbers, tables and pictures.
+Report check_report(const Checks& checks);
+
+}  // namespace pcor

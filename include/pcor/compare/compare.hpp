@@ -1,0 +1,103 @@
+#pragma once
+
+#include <pcor/numerics/line_fit.hpp>
+#include <pcor/residuals/residuals.hpp>
+#include <pcor/residuals/statistics.hpp>
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcor {
+
+/// Statistics of a part of the samples: a regime, or a band of a variable.
+struct PartStatistics {
+  std::string name;  ///< "climb", or "Mach 0.30 to 0.35"
+  Statistics statistics;
+};
+
+/// A stretch of a flight in which a model fails most.
+struct WorstInterval {
+  std::string flight;
+  double begin = 0.0;  ///< s since 1970 UTC
+  double end = 0.0;
+  Statistics statistics;
+  std::string regimes;  ///< what was flown, for example "climb, turn"
+};
+
+/// One model held against the reference over all flights.
+struct ModelComparison {
+  std::string name;
+  Statistics all;
+  /// 1 - sum of squared residuals / sum of squared departures of the reference's delta-p from its mean.
+  double r_squared = 0.0;
+  double samples_per_independent = 1.0;
+  std::vector<PartStatistics> regimes;  ///< those that occur, in the order of `Regime`
+  std::vector<PartStatistics> bands;    ///< altitude, Mach, angle of attack, sideslip
+  std::vector<PartStatistics> flights;
+  std::vector<WorstInterval> worst;  ///< at most five, the worst first
+};
+
+/// The residuals of one flight, one value for each record.
+struct FlightResiduals {
+  std::shared_ptr<const FlightSamples> samples;
+  std::vector<Mask> mask;                   ///< of the first model; the samples used are those of all models
+  std::vector<std::vector<double>> values;  ///< of each model, hPa; NaN where the sample is not used
+  std::vector<std::vector<double>> reference_defects;  ///< delta-p that the reference asks of each model, hPa
+  std::vector<std::vector<double>> model_defects;      ///< delta-p of each model, hPa
+  std::vector<double> static_pressure;                 ///< as measured, hPa
+  std::vector<double> corrected_pressure;              ///< static pressure of the first model, hPa
+  std::vector<double> total_pressure;                  ///< p_m + q_m of the first model, hPa
+  /// p_m + q_m of the reference, hPa, where that is a static system; else empty.
+  std::vector<double> reference_total_pressure;
+  std::vector<double> mach;           ///< of the first model's corrected pressures
+  std::vector<double> dynamic_ratio;  ///< q_m/p_m
+};
+
+struct Comparison {
+  std::string reference;  ///< in words
+  std::vector<ModelComparison> models;
+  std::vector<FlightResiduals> flights;
+  /// The total pressures of two systems, of the reference against that of the model: static defects cancel in
+  /// it (R6). Where the reference is a static system.
+  std::optional<LineFit> total_pressure{};
+  /// The corrected static pressures, of the reference against that of the first model, as distances from the
+  /// line (R54).
+  LineFit static_pressure;
+  std::array<std::size_t, mask_count> masks{};  ///< samples with each reason, over all flights
+  std::vector<std::string> notes;               ///< what a user should know, a sentence each
+};
+
+struct CompareOptions {
+  MaskOptions mask;
+  TimeStamp time_stamp = TimeStamp::begin;
+  std::function<void(std::size_t done, std::size_t total)> progress{};  ///< told after every flight
+};
+
+/// A model, and what it is held against.
+struct Contender {
+  std::string name;  ///< in tables
+  ModelFile model;
+  Reference reference;
+};
+
+/// Holds every contender against its reference over the flights. A sample counts where all models have a
+/// residual, so the figures of models can be compared.
+///
+/// @throws Error if a flight cannot be read, a variable is absent, the flights are of different aircraft, or
+/// no sample is left: the message says which mask took how many.
+Comparison compare(const std::vector<std::filesystem::path>& flights,
+                   const std::vector<Contender>& contenders, const CompareOptions& options = {});
+
+/// Writes the residuals of a flight to a netCDF file: for each model RESIDUAL_1, RESIDUAL_2 ..., delta-p of
+/// the model PCOR_1 ... and of the reference PCOR_REFERENCE_1 ..., and the mask and the regimes as flags.
+/// @throws Error if the file cannot be written.
+void write_residuals(const Comparison& comparison, std::size_t flight, const std::filesystem::path& input,
+                     const std::filesystem::path& output, const std::string& history);
+
+}  // namespace pcor

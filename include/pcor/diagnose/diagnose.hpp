@@ -1,0 +1,209 @@
+#pragma once
+
+#include <pcor/laws/model_file.hpp>
+#include <pcor/residuals/reference.hpp>
+#include <pcor/residuals/residuals.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pcor {
+
+/// What a diagnosis comes to.
+enum class Verdict {
+  silent,       ///< nothing is missing that these flights could show
+  identified,   ///< effects are missing, and each can be named
+  ambiguous,    ///< an effect is missing, but these flights cannot tell it from others
+  partial,      ///< effects explain much, but structure is left that they do not explain
+  unexplained,  ///< structure is there, and no effect explains it
+};
+
+/// As JSON and text have it: "silent", "identified", "cannot be told apart", "partial", "unexplained".
+std::string_view name_of(Verdict verdict);
+
+struct DiagnoseOptions {
+  MaskOptions mask;
+  TimeStamp time_stamp = TimeStamp::begin;
+  /// Formula effects that are tried beside the catalogue. Those that the model has are part of the model.
+  std::vector<ModelEffect> formulas{};
+  bool whole_file = true;                    ///< look for structure in every variable of the files
+  std::vector<std::string> not_variables{};  ///< variables of the files that are not looked at
+  double training_share = 1.0;  ///< only the first part of every flight, this share of the samples
+  /// chi2 of effects that were found before and are in the model now: what is found further has to be at
+  /// least 8 % of their rms, lest it only mend how they are described.
+  double explained = 0.0;
+  std::uint64_t seed = 20120106;  ///< of the draws that set thresholds
+  std::function<void(std::size_t done, std::size_t total)> progress{};
+};
+
+/// A coefficient as the diagnosis estimates it.
+struct Estimate {
+  std::string name;  ///< of the parameter, e.g. "tau"
+  std::string unit;
+  double value = 0.0;
+  double standard_error = 0.0;  ///< with the memory of the noise
+  double typical = 0.0;         ///< size met in practice; 0 where nobody knows
+};
+
+/// A stretch of a flight that speaks for an effect.
+struct Evidence {
+  std::string flight;
+  double begin = 0.0;   ///< s since 1970 UTC
+  double end = 0.0;     ///< s since 1970 UTC
+  std::string regimes;  ///< what was flown, e.g. "level, yaw manoeuvre"
+  double share = 0.0;   ///< of all evidence for the effect, 0 to 1
+};
+
+/// An effect that explains the data as well as the one that is named, within the uncertainty.
+struct Alias {
+  std::string effect;
+  std::string title;
+  double correlation = 0.0;    ///< of what the two leave after the model's own coefficients, -1 to 1
+  double chi2_less = 0.0;      ///< by so much its chi2 is below that of the one named; negative: above
+  double size_to_usual = 0.0;  ///< its coefficient over its typical size; 0 where nobody knows
+  std::vector<Estimate> estimates{};
+};
+
+/// A manoeuvre that would tell rivals apart.
+struct Advice {
+  std::string
+      sentence{};  ///< for people: what to fly, how long, and what it would tell; may say that nothing would
+  std::string manoeuvre{};  ///< e.g. "yaw manoeuvre at 3000 m"; empty where none helps
+  double duration = 0.0;    ///< s
+  double power = 0.0;       ///< probability that it tells the effect from all rivals with 95 % confidence
+};
+
+/// A missing effect.
+struct Finding {
+  ModelEffect effect;  ///< with the estimated coefficients, ready for a model
+  std::string title;
+  std::vector<Estimate> estimates{};
+  /// Parameters that the model's own coefficients imitate: neutral in `effect`, to be held in a fit.
+  std::vector<std::string> held{};
+  double rms = 0.0;    ///< of what it adds to the residual over the samples used, hPa
+  double worst = 0.0;  ///< the largest of it, with sign, hPa
+  std::string worst_flight;
+  double worst_time = 0.0;  ///< s since 1970 UTC
+  double chi2 = 0.0;        ///< evidence: fall of the squared residuals in units of the noise
+  double p_value = 0.0;     ///< of the best of all candidates being as good on flights without any effect
+  /// Of residuals on stretches that took no part in the fit of model and effect (five parts in turn), hPa.
+  double rms_before = 0.0;
+  double rms_after = 0.0;
+  double events = 0.0;               ///< on how many separate events the evidence rests
+  std::vector<Evidence> evidence{};  ///< the strongest first, at most six
+  std::vector<Alias> aliases{};      ///< the most alike first
+  /// By how much the corrected static pressure would differ, rms hPa, were the worst of the aliases the cause
+  /// and not this effect; 0 without aliases.
+  double static_risk = 0.0;
+  /// By how much the corrected static pressure changes, rms hPa, when model and findings are fitted anew: for
+  /// an effect that the model nearly imitates, many times what it takes off the residual.
+  double static_change = 0.0;
+  Advice advice{};
+};
+
+/// An effect that the model's own coefficients imitate.
+struct AbsorbedEffect {
+  std::string effect;
+  std::string title;
+  std::vector<std::string> by{};  ///< coefficients like "static-qp.a2"
+  double remaining = 0.0;         ///< the part of its variance that they leave, 0 to 1
+};
+
+/// An effect that was looked for and not found, and how large it may be nevertheless.
+struct UpperLimit {
+  std::string effect;
+  std::string title;
+  std::vector<Estimate> estimates{};  ///< what came out
+  std::vector<double> limits{};       ///< of each coefficient's size, 95 % confidence, in its unit
+  double rms = 0.0;    ///< hPa that an effect at its limit would add beyond the model's coefficients
+  std::string note{};  ///< e.g. "would have to be impossible in size to explain what is left"
+};
+
+struct NotTestable {
+  std::string effect;
+  std::string title;
+  std::string reason;  ///< e.g. "needs the role 'cabin_pressure'"
+};
+
+/// A variable of the files with which unexplained structure goes.
+struct TracedVariable {
+  std::string name;
+  std::string unit;
+  std::string description{};
+  double r2 = 0.0;         ///< part of the residual's variance that goes with it, 0 to 1
+  double p_value = 0.0;    ///< after protection against chance over all variables
+  double linear_r2 = 0.0;  ///< part that a straight line explains
+  double slope = 0.0;      ///< of the line, hPa per unit of the variable
+  double slope_error = 0.0;
+  double centre = 0.0;    ///< mean of the variable over the samples used
+  std::string formula{};  ///< of an effect that would describe it, e.g. "k * (ENGTRQ - 48)"
+};
+
+/// Structure that no effect explains.
+struct Unexplained {
+  bool significant = false;
+  double rms = 0.0;        ///< hPa
+  double drift_rms = 0.0;  ///< of it the part that wanders slowly, with nothing that is recorded, hPa
+  double p_value = 1.0;
+  std::string regime{};                     ///< where most of it lies, e.g. "climb"
+  std::vector<TracedVariable> variables{};  ///< the largest r2 first
+  std::vector<std::string> shares_noise{};  ///< variables left out: their noise is that of the residual
+};
+
+/// A flight as the diagnosis saw it, for pictures. All arrays have one value for each record.
+struct FlightDiagnosis {
+  std::shared_ptr<const FlightSamples> samples;
+  std::vector<Mask> mask;
+  std::vector<double> before;  ///< residual, the model's own coefficients refitted, hPa; NaN where not used
+  std::vector<double> after;   ///< residual with all findings, everything refitted, hPa
+  std::vector<std::vector<double>> added;     ///< by each finding, hPa
+  std::vector<std::vector<double>> evidence;  ///< for each finding: gain in chi2 per minute around the sample
+  std::vector<double> drift;                  ///< what wanders slowly, hPa
+  std::vector<double> traced;                 ///< the first traced variable, in its unit; empty without
+  std::vector<double> static_pressure;        ///< corrected, hPa
+  std::vector<double> mach;
+  std::vector<double> attack;    ///< deg; NaN where unknown
+  std::vector<double> sideslip;  ///< deg; NaN where unknown
+};
+
+struct Diagnosis {
+  Verdict verdict = Verdict::silent;
+  std::string reference;
+  std::vector<Finding> findings{};  ///< the strongest first
+  Unexplained unexplained;
+  std::vector<AbsorbedEffect> absorbed{};
+  std::vector<UpperLimit> limits{};  ///< the effect that could be largest first
+  std::vector<NotTestable> not_testable{};
+  std::size_t candidates = 0;          ///< effects that were tested
+  double threshold = 0.0;              ///< chi2 that an effect had to exceed
+  double rms_given = 0.0;              ///< of the residual with the model's coefficients as they are, hPa
+  double residual_rms = 0.0;           ///< with the model's free coefficients refitted, hPa
+  double residual_rms_held_out = 0.0;  ///< the same on stretches that took no part (five parts in turn), hPa
+  double noise_rms = 0.0;              ///< hPa
+  std::size_t samples = 0;
+  std::array<std::size_t, mask_count> masks{};
+  std::vector<FlightDiagnosis> flights{};
+  double statistics_seconds = 0.0;  ///< time spent in statistics, without reading and without the chain
+  std::vector<std::string> notes{};
+};
+
+/// Looks for the physical effect that a fitted model lacks.
+///
+/// Every effect of the catalogue that is not in the model, and every formula of the options, is tested: does
+/// what it would add explain residuals that the model's own free coefficients cannot? Columns are derivatives
+/// through the whole chain where the model says that the air is; the noise is an autoregression with a level
+/// of its own every five minutes and a slow drift; the threshold is that of the best of all candidates on
+/// flights without any effect.
+///
+/// @throws Error if a flight cannot be read, a variable of the model is absent, or too few samples are left.
+Diagnosis diagnose(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
+                   const Reference& reference, const DiagnoseOptions& options = {});
+
+}  // namespace pcor

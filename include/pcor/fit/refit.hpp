@@ -1,0 +1,135 @@
+#pragma once
+
+#include <pcor/residuals/residuals.hpp>
+#include <pcor/residuals/statistics.hpp>
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcor {
+
+/// How residuals count in a fit, by their size in units of the noise. All but `none` let outliers count less.
+enum class Loss {
+  /// Tukey's bisquare, beyond 4.685 robust deviations nothing. The default: on clean normal noise its errors
+  /// are 5 % larger than those of least squares, and outliers of whatever size move nothing, whereas the
+  /// bounded influence of Huber's loss moves a coefficient by several standard errors once a few per cent
+  /// of some thousand samples lie on one side. It starts from Huber's solution, which is unique.
+  tukey,
+  huber,    ///< linear beyond 1.345 robust deviations
+  soft_l1,  ///< as scipy's soft_l1: 2 (sqrt(1 + s) - 1), s in squared robust deviations
+  cauchy,   ///< log(1 + s), s in squared units of 2.385 robust deviations
+  none      ///< least squares
+};
+
+std::string_view name_of(Loss loss);
+/// The loss of that name; nothing where there is none.
+std::optional<Loss> loss_named(std::string_view name);
+
+/// A first stage of a fit: some parameters from the samples of some regimes, each interval of which has an
+/// offset of its own, of delta-p/p; then they are held. So the memo found its sensitivities from manoeuvres
+/// (R49).
+struct FitStage {
+  std::vector<Regime> regimes;
+  std::vector<std::string> parameters;  ///< like "static-alpha.a1"; or an effect: all of its parameters
+};
+
+struct RefitOptions {
+  MaskOptions mask;
+  TimeStamp time_stamp = TimeStamp::begin;
+  Loss loss = Loss::tukey;
+  std::vector<std::string> fix{};   ///< parameters, or effects, held besides those that the file fixes
+  std::vector<std::string> free{};  ///< parameters, or effects, fitted although the file fixes them
+  std::vector<FitStage> stages{};
+  /// The model of a static system that is the reference is fitted together with the model.
+  bool fit_reference = false;
+  /// Every coefficient is drawn to its starting value, as if that were measured to within the typical size of
+  /// its effect. Always so where the reference is fitted too: two static systems tell only their difference.
+  bool use_prior = false;
+  /// Look for the start by a global search between the bounds, for parameters in which the residual is not
+  /// linear.
+  bool search = false;
+  /// The fit uses the first part of every flight, this share of the samples; the rest is held out.
+  double training_share = 1.0;
+  std::vector<std::filesystem::path> holdout{};  ///< flights that take no part in the fit
+  std::size_t threads = 0;                       ///< flights reduced at a time; 0: as many as processors
+  /// Bytes of flights that may be kept between passes; what is beyond is read again in every pass, so memory
+  /// does not grow with the number of flights.
+  std::size_t memory = std::size_t{512} << 20U;
+  std::function<void(std::size_t pass, std::size_t passes)> progress{};
+};
+
+/// A coefficient after the fit.
+struct FittedParameter {
+  std::string name;  ///< like "static-qp.a2"; of the reference's model "reference:static-qp.a2"
+  std::string unit;
+  double start = 0.0;
+  double value = 0.0;
+  double standard_error =
+      0.0;  ///< with the memory of the noise; NaN where it was not fitted or is at a bound
+  bool fitted = false;
+  bool at_bound = false;
+  int stage = 0;  ///< in which it was fitted, from 1; the last is that of all the rest
+};
+
+/// What the fit becomes without an effect, the others fitted again.
+struct Omission {
+  std::string effect;
+  double rms = 0.0;  ///< hPa
+  double r_squared = 0.0;
+};
+
+/// A flight in the fit, before and after.
+struct FlightFit {
+  std::string flight;
+  bool holdout = false;
+  Statistics before;
+  Statistics after;
+};
+
+struct RefitResult {
+  ModelFile model;                       ///< with coefficients, standard errors, covariance and provenance
+  std::optional<ModelFile> reference{};  ///< of the reference's model, where it was fitted too
+  std::vector<FittedParameter> parameters{};
+  std::vector<std::string> covariance_names{};
+  std::vector<std::vector<double>> covariance{};  ///< of the fitted parameters
+  std::size_t samples = 0;
+  double rms = 0.0;                ///< hPa, of all samples in the fit, outliers too
+  double rms_over_pressure = 0.0;  ///< of residual over static pressure
+  double bulk_rms = 0.0;           ///< robust deviation, hPa: without outliers
+  double noise_rms = 0.0;          ///< of the noise floor, hPa
+  double r_squared = 0.0;
+  double rms_before = 0.0;   ///< hPa, with the coefficients of the file
+  std::size_t outliers = 0;  ///< samples beyond 4.685 robust deviations
+  /// Ratio of the largest to the smallest singular value of the derivatives, each column of length one.
+  double condition_number = 0.0;
+  double samples_per_independent = 1.0;
+  std::array<std::size_t, mask_count> masks{};
+  std::vector<Omission> omissions{};
+  std::vector<FlightFit> flights{};
+  std::string reference_text{};
+  std::vector<std::string> notes{};  ///< what a user should know, a sentence each, the gravest first
+};
+
+/// Fits the free coefficients of `model` to the flights.
+///
+/// From the coefficients of the file the linear problem is solved in closed form; then Ceres does the full
+/// one, with bounds and loss. Every pass reduces each flight to a triangular factor of its derivatives and
+/// residuals, and the factors add up. Residuals are weighted by the noise measured in each flight, five
+/// minutes at a time. Standard errors are those of the loss on noise with the memory that the residuals have.
+///
+/// @throws Error if a flight cannot be read, nothing is free, no sample is left (with the masks), samples are
+/// fewer than coefficients, bounds leave nothing, or coefficients cannot be told apart on these flights: the
+/// message names them and says which to fix.
+RefitResult refit(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
+                  const Reference& reference, const RefitOptions& options = {});
+
+/// As above, for flights in memory.
+RefitResult refit(const std::vector<std::shared_ptr<const FlightSamples>>& flights, const ModelFile& model,
+                  const Reference& reference, const RefitOptions& options = {});
+
+}  // namespace pcor

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <pcor/improve/improve.hpp>
+#include <pcor/report/report.hpp>
+
+namespace pcor {
+
+/// The report of an improvement: the ladder, why it ended, the residual at its foot and at its top, and for
+/// each effect that was added the page of its finding.
+/// @param start the model at the foot of the ladder
+Report improvement_report(const Improvement& improvement, const ModelFile& start);
+
+}  // namespace pcor

@@ -1,0 +1,123 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <pcor/model/model.hpp>
+#include <pcor/model/quantity.hpp>
+
+namespace pcor {
+
+/// The range that a parameter may take in a fit.
+struct Bounds {
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+};
+
+/// What a model file says of a parameter beyond its value.
+struct ParameterFit {
+  bool fixed = false;                      ///< a refit leaves it as it is
+  std::optional<double> standard_error{};  ///< in the parameter's unit
+  std::optional<Bounds> bounds{};          ///< the file's own; without them those of the catalogue hold
+};
+
+/// One entry for each parameter of an effect, in their order.
+using EffectFit = std::vector<ParameterFit>;
+
+/// Where the law comes from and when it holds. Dates are ISO dates, such as 2011-11-02, or empty.
+struct LawFacts {
+  std::string source{};
+  std::string valid_from{};
+  std::string valid_to{};
+  std::optional<double> rms_hpa{};
+  std::string note{};
+};
+
+/// The covariance of the fitted parameters, which are named like "static-qp.a2". Empty where nothing was
+/// fitted.
+struct Covariance {
+  std::vector<std::string> parameters{};
+  std::vector<std::vector<double>> matrix{};
+};
+
+struct ProvenanceValue;
+using ProvenanceList = std::vector<ProvenanceValue>;
+/// How a model came to be: keys with their values, in order.
+using Provenance = std::vector<std::pair<std::string, ProvenanceValue>>;
+
+/// A value of the provenance: text, a number, true or false, or several of them. Dates and times of a file
+/// are read as text.
+struct ProvenanceValue : std::variant<std::string, double, std::int64_t, bool, ProvenanceList, Provenance> {
+  using variant::variant;
+};
+
+/// The names under which results are written unless a model's [output] table renames them.
+inline constexpr std::array<std::string_view, 12> output_names{"PCOR",    "PCOR_LAMS", "PSXC",    "QCXC",
+                                                               "MACHX",   "ATX",       "TASX",    "ATLAMS",
+                                                               "ATLAMSF", "QCLAMS",    "HYDSTEP", "PCORFLAG"};
+
+/// A model as its file holds it: what the real-time part needs, and what only files, fits and people need.
+struct ModelFile {
+  Model model;
+
+  std::map<Quantity, std::string> variables{};  ///< the netCDF variable of each role that is used
+  std::map<Quantity, std::string> units{};      ///< units of roles that the model states itself
+  std::map<std::string, std::string> output{};  ///< new names of results, by their standard names
+  std::string recovery_factor_name{};           ///< of a published law; empty where the file has numbers
+  std::vector<EffectFit> fits{};                ///< one for each effect of the model, or fewer
+  LawFacts law{};
+  Covariance covariance{};
+  Provenance provenance{};
+
+  /// The roles that have a variable, in the order of the enumeration.
+  std::vector<Quantity> roles() const;
+
+  /// What the result with that standard name is called in this model's output.
+  std::string output_name(std::string_view standard_name) const;
+
+  /// What the file says of parameter number `parameter` of effect number `effect`.
+  ParameterFit fit(std::size_t effect, std::size_t parameter) const;
+
+  /// The bounds of that parameter: the file's, else the catalogue's, else none.
+  Bounds bounds(std::size_t effect, std::size_t parameter) const;
+};
+
+/// The names of an effect's parameters, of the catalogue or of a formula. @throws Error if the effect is
+/// neither.
+std::vector<std::string> parameter_names(const ModelEffect& effect);
+
+/// The effect of the catalogue called `id` with its neutral parameters. @throws Error with what may have been
+/// meant, if there is none.
+ModelEffect neutral_effect(std::string_view id);
+
+/// Reads a model file. @throws Error "file:line:column: what is wrong; what to do" for whatever the file says
+/// that has no meaning: nothing in it is ignored.
+ModelFile read_model(const std::filesystem::path& path);
+
+/// As `read_model`, for the text of a file. Messages call it `name`.
+ModelFile parse_model(std::string_view text, std::string_view name);
+
+/// The text of a model file that restores `file` to the last bit. @throws Error if there is no such text: for
+/// numbers that are not finite, an unknown effect, parameters that do not match their effect, and whatever
+/// else `parse_model` refuses.
+std::string write_model(const ModelFile& file);
+
+/// Writes a model file, which appears whole or not at all and replaces an older one.
+///
+/// `inputs` are the files that models were read from. They may hold someone's comments and edits, so they are
+/// never written over, under whatever name. @throws Error in that case, if the file cannot be written, and as
+/// `write_model`.
+void save_model(const ModelFile& file, const std::filesystem::path& path,
+                const std::vector<std::filesystem::path>& inputs);
+
+}  // namespace pcor

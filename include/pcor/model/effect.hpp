@@ -1,0 +1,142 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string_view>
+
+#include <pcor/model/quantity.hpp>
+
+namespace pcor {
+
+/// Where in the instrument an effect acts, from what was recorded to the air. The value of an effect is added
+/// to the quantity of its place.
+enum class Where : std::uint8_t {
+  static_transducer,
+  dynamic_transducer,
+  static_line,
+  total_line,
+  radome,
+  attack_ratio,
+  attack,
+  sideslip,
+  temperature,
+  recovery,
+  ambient_temperature,
+  humidity,
+  beam_elevation,
+  beam_azimuth,
+  beam_speed,
+  static_defect,
+  pitot,
+  count
+};
+
+inline constexpr std::size_t where_count = static_cast<std::size_t>(Where::count);
+
+/// A place in the instrument: its name in model files, the unit of what acts there, and what that is added
+/// to.
+struct WhereFacts {
+  std::string_view name;
+  std::string_view unit;
+  std::string_view adds_to;
+};
+
+inline constexpr std::array<WhereFacts, where_count> where_facts{{
+    {"static-transducer", "hPa", "measured static pressure"},
+    {"dynamic-transducer", "hPa", "measured dynamic pressure"},
+    {"static-line", "hPa", "measured static pressure, and taken from the dynamic pressure"},
+    {"total-line", "hPa", "measured dynamic pressure"},
+    {"radome", "hPa", "radome dynamic pressure"},
+    {"attack-ratio", "1", "radome attack ratio ADIFR/QCR"},
+    {"attack", "deg", "angle of attack"},
+    {"sideslip", "deg", "sideslip"},
+    {"temperature", "K", "recovery temperature"},
+    {"recovery", "1", "recovery factor"},
+    {"ambient-temperature", "K", "ambient temperature"},
+    {"humidity", "hPa", "water vapour pressure"},
+    {"lams-elevation", "deg", "elevation of the laser beam"},
+    {"lams-azimuth", "deg", "azimuth of the laser beam"},
+    {"lams", "m/s", "airspeed along the laser beam"},
+    {"static", "hPa", "delta-p: added to the static, taken from the dynamic pressure"},
+    {"pitot", "hPa", "total pressure, and so the dynamic pressure"},
+}};
+
+constexpr const WhereFacts& facts_of(Where where) { return where_facts[static_cast<std::size_t>(where)]; }
+
+/// The place called `name`, or `Where::count` where there is none.
+constexpr Where where_named(std::string_view name) {
+  for (std::size_t i = 0; i < where_count; ++i) {
+    if (where_facts[i].name == name) return static_cast<Where>(i);
+  }
+  return Where::count;
+}
+
+/// A coefficient of an effect.
+struct ParameterFacts {
+  std::string_view name;
+  std::string_view unit;
+  double neutral = 0.0;                                     ///< the value at which the effect is absent
+  double lower = -std::numeric_limits<double>::infinity();  ///< bounds of what physics allows
+  double upper = std::numeric_limits<double>::infinity();
+  double typical = 0.0;  ///< size met in practice
+  /// True where it only shapes the effect, as the Mach number from which the effect acts does. It is neutral
+  /// at its typical value, and the effect is absent, whatever the shape, when all others are neutral.
+  bool shape = false;
+};
+
+inline constexpr std::size_t parameter_capacity = 3;
+inline constexpr std::size_t need_capacity = 4;
+
+/// The gas constants of a model in which an effect has a meaning.
+enum class GasConstants : std::uint8_t { any, dry, moist };
+
+/// A worked example of an effect: its inputs, coefficients and value, from outside this program.
+struct EffectExample {
+  struct Input {
+    Quantity quantity = Quantity::count;
+    double value = 0.0;
+  };
+  std::array<Input, need_capacity> inputs{};
+  std::array<double, parameter_capacity> parameters{};
+  double value = 0.0;
+};
+
+/// All that is known of an effect beside its formula in code. The help, the documentation, the law tests, the
+/// refit and the diagnosis read it.
+///
+/// An effect is a type with `static constexpr EffectFacts facts()` and
+///
+///     template <class State, class P> static auto value(const State& state, const P* parameters)
+///
+/// which gives what is added at its place: the correction, which brings what was recorded to what is true.
+/// The value is smooth in its parameters and zero at the neutral ones.
+struct EffectFacts {
+  std::string_view id;
+  std::string_view title;
+  Where where = Where::static_defect;
+  std::string_view formula;  ///< in the language of formula effects; a test holds it against `value`
+  std::array<ParameterFacts, parameter_capacity> parameters{};
+  std::array<Quantity, need_capacity> needs{Quantity::count, Quantity::count, Quantity::count,
+                                            Quantity::count};
+  std::string_view size;         ///< how large it is met, in words
+  std::string_view look_alikes;  ///< effects that data easily confuse with it
+  std::string_view manoeuvre;    ///< what separates it from them
+  std::string_view source;
+  EffectExample example{};
+  GasConstants constants = GasConstants::any;
+
+  constexpr std::size_t parameter_count() const {
+    std::size_t n = 0;
+    while (n < parameter_capacity && !parameters[n].name.empty()) ++n;
+    return n;
+  }
+  constexpr std::size_t need_count() const {
+    std::size_t n = 0;
+    while (n < need_capacity && needs[n] != Quantity::count) ++n;
+    return n;
+  }
+};
+
+}  // namespace pcor

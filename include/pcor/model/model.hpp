@@ -1,0 +1,77 @@
+#pragma once
+
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <pcor/model/effect.hpp>
+#include <pcor/model/quantity.hpp>
+#include <pcor/physics/flow_angles.hpp>
+#include <pcor/physics/recovery_factor.hpp>
+
+namespace pcor {
+
+/// One effect of a model with its coefficients.
+///
+/// An effect of the catalogue has its `id`; one of the user's own has a `formula`, a place and names for its
+/// parameters besides.
+struct ModelEffect {
+  std::string id{};
+  std::vector<double> parameters{};  ///< in the order of the effect's parameters
+
+  std::vector<std::string> parameter_names{};  ///< of a formula; empty for an effect of the catalogue
+  std::string formula{};                       ///< empty for an effect of the catalogue
+  Where where = Where::static_defect;          ///< of a formula
+  std::string unit{};                          ///< of a formula's value
+  std::string source{};                        ///< of a formula
+
+  bool is_formula() const { return !formula.empty(); }
+};
+
+/// How the temperature enters delta-p from LAMS: the approaches of the memo. There is no fourth.
+enum class LamsApproach {
+  simultaneous = 1,     ///< closed form from the recovery temperature
+  iterated = 2,         ///< iteration from the recovery temperature
+  with_temperature = 3  ///< an ambient temperature measured without any pressure
+};
+
+/// How LAMS is mounted and used.
+struct LamsMounting {
+  double elevation = 0.0;  ///< theta_1, deg above the longitudinal axis
+  double azimuth = 0.0;    ///< theta_2, deg to starboard
+  LamsApproach approach = LamsApproach::simultaneous;
+};
+
+/// The one policy for what physics leaves open. What it does to a sample is told in the quality bits.
+struct Policy {
+  /// Below this dynamic pressure (hPa) delta-p is multiplied by (q_m/taper_below)^taper_power; 0 for none.
+  double taper_below = 0.0;
+  double taper_power = 3.0;
+  /// Delta-p (hPa) is not less than this, before the taper.
+  double minimum = -std::numeric_limits<double>::infinity();
+};
+
+/// The range of a quantity over which the law was fitted. Outside it a sample is flagged.
+struct DomainRange {
+  std::string quantity{};
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+};
+
+/// What an aircraft's pressure system is believed to be: its effects with their coefficients, and what else
+/// the chain from the recorded values to the air needs.
+struct Model {
+  std::string name{};
+  std::string aircraft{};
+  std::vector<ModelEffect> effects{};
+  LamsMounting lams;
+  RecoveryFactor recovery{{1.0, 0.0, 0.0, 0.0}};
+  bool moist = true;  ///< constants of moist air; of dry air where false
+  RadomeCalibration attack_radome;
+  RadomeCalibration sideslip_radome;
+  Policy policy;
+  std::vector<DomainRange> domain{};
+};
+
+}  // namespace pcor

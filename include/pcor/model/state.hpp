@@ -1,0 +1,25 @@
+#pragma once
+
+#include <array>
+
+#include <pcor/model/quantity.hpp>
+#include <pcor/physics/scalar.hpp>
+
+namespace pcor {
+
+/// The values of all quantities at one sample, in the units of `quantity_facts`. What is not known is NaN.
+template <class S>
+class State {
+ public:
+  using Scalar = S;
+
+  State() { values_.fill(missing<S>()); }
+
+  S& operator[](Quantity quantity) { return values_[index(quantity)]; }
+  const S& operator[](Quantity quantity) const { return values_[index(quantity)]; }
+
+ private:
+  std::array<S, state_capacity> values_;
+};
+
+}  // namespace pcor

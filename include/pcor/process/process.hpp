@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <pcor/flight/flight.hpp>
+#include <pcor/laws/model_file.hpp>
+#include <pcor/model/quality.hpp>
+#include <pcor/realtime/functors.hpp>
+
+namespace pcor {
+
+/// How a flight is processed.
+struct ProcessOptions {
+  CorrectWith correct_with = CorrectWith::model;
+  bool copy_all = false;  ///< copy every variable of the input, not only coordinates and what was used
+  /// Write the steps of hydrostatic height, `HYDSTEP`, and copy what a fit of temperature needs besides.
+  bool hydrostatic = false;
+  std::string suffix{};  ///< added to the name of every derived variable
+  TimeStamp time_stamp = TimeStamp::begin;
+  std::string history{};  ///< what the output says of its making, e.g. the command line
+  std::function<void(std::size_t done, std::size_t total)> progress{};  ///< told after every block of records
+};
+
+/// What was done to a flight.
+struct ProcessSummary {
+  std::string aircraft;
+  std::string project;
+  std::string flight;
+  std::size_t records = 0;
+  int rate = 1;  ///< samples in a record
+  std::size_t samples = 0;
+  std::size_t corrected = 0;  ///< samples in which both pressures could be corrected
+  std::size_t gaps = 0;
+  double first_time = 0.0;  ///< seconds since 1970 UTC
+  double last_time = 0.0;
+  double mean_defect = 0.0;      ///< of the delta-p applied, hPa; NaN where no sample was corrected
+  double least_defect = 0.0;     ///< hPa
+  double greatest_defect = 0.0;  ///< hPa
+  std::array<std::size_t, quality_facts.size()> flagged{};  ///< samples with each quality bit
+  std::vector<std::string> outputs;                         ///< names of the derived variables, in order
+  std::vector<std::string> notes;                           ///< what a user should know, a sentence each
+};
+
+/// Runs every sample of the flight `input` through the real-time loop of `model` and writes the derived
+/// variables to `output`: delta-p (`PCOR`, `PCOR_LAMS`), corrected pressures (`PSXC`, `QCXC`), `MACHX`,
+/// `ATX`, `TASX`, `ATLAMS`, `ATLAMSF`, `QCLAMS` and the quality bits `PCORFLAG`, under the names of the
+/// model's `[output]` table, with the coordinates and inputs they came from. Pressures in hPa, temperatures
+/// in degC, speeds in m/s. Without a temperature there is no TASX; without LAMS, none of its variables. ATX
+/// is written where it is found from a recovery temperature, and where a recorded one is calibrated.
+///
+/// ATLAMSF is ATLAMS without periods under 3 s (`LowPass`), each value at the time of the sample that it is
+/// of: the delay of the loop is taken out, and so it is for the bit `filter_window_incomplete`. Nothing goes
+/// across a gap. At 25 Hz the first and last 0.8 s of a stretch without gaps have none.
+///
+/// `hydrostatic` asks for `HYDSTEP`, -(R_a/g0) ln(p_i/p_(i-1)) in m/K (`hydrostatic_step`): times the mean
+/// temperature of two samples in K it is the step of geopotential height (standard gravity) between them. It
+/// has no value for the first sample, after a gap, and where either PSXC is missing. Its attribute
+/// `temperature_calibration` holds a0 (K), a1 and a2 (1/K) of the model's temp-calibration, which ATX has in
+/// it already, and its attribute `model` what of the rest of the model the pressures depend on.
+///
+/// The loop runs at the higher rate of the two pressures; other inputs are brought to it
+/// (`Flight::read_at_rate`). Missing or impossible input gives missing output and a quality bit. Memory does
+/// not depend on the length of the flight.
+///
+/// @throws Error, and leaves `output` as it was, if the flight or a variable that the model needs cannot be
+/// read, a unit is unknown, the model cannot be used, a name is taken, or the output cannot be written.
+ProcessSummary process_flight(const std::filesystem::path& input, const ModelFile& model,
+                              const std::filesystem::path& output, const ProcessOptions& options = {});
+
+}  // namespace pcor

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <pcor/physics/hydrostatic.hpp>
+#include <pcor/physics/moist_air.hpp>
+#include <pcor/realtime/functor.hpp>
+
+namespace pcor {
+
+/// The step of geopotential height per kelvin (m/K) since the sample before, from the corrected pressures and
+/// the humidity of both: `hydrostatic_step`. NaN at a start, after a gap, and where either pressure is
+/// missing, which the quality bits of that sample tell.
+class HeightStep final : public Functor {
+ public:
+  explicit HeightStep(Quantity step)
+      : Functor({Quantity::corrected_static_pressure, Quantity::humidity}, {step}), step_(step) {}
+
+  void reset() noexcept override { pressure_ = missing<double>(); }
+
+  void compute(State<double>& state, QualityFlags&) noexcept override {
+    const double pressure = state[Quantity::corrected_static_pressure];
+    const double humidity = state[Quantity::humidity];
+    const double gas_constant = moist_air(0.5 * (humidity_ + humidity)).gas_constant;
+    state[step_] = finite_or_missing(hydrostatic_step(pressure_, pressure, gas_constant));
+    pressure_ = pressure;
+    humidity_ = humidity;
+  }
+
+ private:
+  Quantity step_;
+  double pressure_ = missing<double>();
+  double humidity_ = missing<double>();
+};
+
+}  // namespace pcor

@@ -1,8 +1,0 @@
-#include "batch_kernel.hpp"
-#include "pack.hpp"
-
-namespace pcor::detail {
-
-void run_batch(const BatchJob& job) { run_batch_in<Pack<xsimd::default_arch>>(job); }
-
-}  // namespace pcor::detail

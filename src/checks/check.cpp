@@ -1,0 +1,200 @@
+#include <pcor/checks/check.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <pcor/flight/same_aircraft.hpp>
+#include <pcor/words/error.hpp>
+#include "checks/checks.hpp"
+#include "checks/flown.hpp"
+#include "roles/recorded_model.hpp"
+
+namespace pcor {
+namespace {
+
+struct NamedCheck {
+  const char* name;
+  CheckResult (*run)(const CheckedFlights& flights);
+};
+
+constexpr std::array<NamedCheck, 10> all_checks{{
+    {"total-pressure", check_total_pressure},
+    {"static-pressure", check_static_pressure},
+    {"reverse-heading", check_reverse_heading},
+    {"circles", check_circles},
+    {"speed-run", check_speed_run},
+    {"pitch", check_pitch},
+    {"yaw", check_yaw},
+    {"layers", check_layers},
+    {"lams-temperature", check_lams_temperature},
+    {"spectrum", check_spectrum},
+}};
+
+PressurePair pair_of(const ModelFile& model) {
+  return {model.variables.at(Quantity::static_pressure), model.variables.at(Quantity::dynamic_pressure)};
+}
+
+bool same(const PressurePair& a, const PressurePair& b) {
+  return a.static_pressure == b.static_pressure && a.dynamic_pressure == b.dynamic_pressure;
+}
+
+/// Why nothing can be done with the pressures of a model that has its variables in the flight; empty where
+/// something can.
+std::string without_values(const Flight& flight, const ModelFile& model) {
+  const PressurePair pair = pair_of(model);
+  for (const std::string& variable : {pair.static_pressure, pair.dynamic_pressure}) {
+    if (!flight.has(variable)) return "";  // for the message that says what may have been meant
+    try {
+      flight.require_values(variable);
+    } catch (const Error& error) {
+      return error.what();
+    }
+  }
+  return "";
+}
+
+/// The pair that the model's pressures come from, and another one of the flight.
+struct Systems {
+  std::optional<PressurePair> own{};
+  std::optional<PressurePair> other{};
+};
+
+Systems systems_of(const Flight& flight, const PressurePair& of_model) {
+  Systems systems;
+  std::vector<PressurePair> pairs = measured_pairs(flight);
+  const bool corrected = of_model.static_pressure == "PSXC" || of_model.static_pressure == "PSX";
+  if (!corrected) {
+    systems.own = of_model;
+  } else if (!pairs.empty()) {
+    systems.own = pairs.front();
+  }
+  // Of two pairs with one pitot the total pressures would not be redundant.
+  const auto other = std::find_if(pairs.begin(), pairs.end(), [&](const PressurePair& pair) {
+    return systems.own && !same(pair, *systems.own) && pair.static_pressure != systems.own->static_pressure &&
+           pair.dynamic_pressure != systems.own->dynamic_pressure;
+  });
+  if (other != pairs.end()) systems.other = *other;
+  return systems;
+}
+
+MeasuredPair measured(std::string name, const FlightAir& air) {
+  return {std::move(name), air.measured_static, air.measured_dynamic};
+}
+
+CheckedFlight checked(const Flight& flight, const ModelFile& model, const CheckOptions& options) {
+  CheckedFlight result;
+  result.air = read_flight_air(flight, model, options.mask);
+  const PressurePair of_model = pair_of(model);
+  const Systems systems = systems_of(flight, of_model);
+  if (systems.own) {
+    result.measured.push_back(
+        same(*systems.own, of_model)
+            ? measured(of_model.name(), result.air)
+            : measured(systems.own->name(), read_flight_air(flight, model_of(*systems.own), options.mask)));
+  }
+  result.second_corrected = options.second.has_value();
+  std::optional<ModelFile> second = options.second;
+  if (!second && systems.other) second = model_of(*systems.other);
+  if (!second) return result;
+  if (same(pair_of(*second), of_model)) {
+    throw Error(
+        fmt::format("the model '{}' is of {}, as the one to be checked; give as second system one of "
+                    "other pressures",
+                    second->model.name, of_model.name()));
+  }
+  result.second = read_flight_air(flight, *second, options.mask);
+  result.second_name = pair_of(*second).name();
+  if (!result.measured.empty()) result.measured.push_back(measured(result.second_name, *result.second));
+  return result;
+}
+
+/// Says where a number is too small to matter and no chance either.
+void add_note_on_small(CheckResult& result) {
+  constexpr double significant = 3.0;  // standard errors
+  const double deviations = std::abs(result.key.value) / result.key.standard_error;
+  const bool is_small = result.ran && std::abs(result.key.value) <= result.key.matters;
+  if (!is_small || !(deviations > significant) || result.name == "spectrum") return;
+  result.notes.push_back(
+      fmt::format("the number is {:.0f} standard errors from zero: small, but no chance", deviations));
+}
+
+/// The samples and intervals that all pictures share.
+Report pictures_of(const CheckedFlights& flights) {
+  Report report;
+  for (const CheckedFlight& flight : flights) {
+    report.flight_starts.push_back(report.time.size());
+    report.flight_names.push_back(flight.air.samples->name);
+    const std::vector<double>& time = flight.air.time();
+    report.time.insert(report.time.end(), time.begin(), time.end());
+    for (const Interval& interval : flight.air.samples->intervals)
+      report.intervals.push_back({std::string(facts_of(interval.regime).name), interval.begin, interval.end});
+  }
+  return report;
+}
+
+}  // namespace
+
+std::string_view name_of(CheckVerdict verdict) {
+  switch (verdict) {
+    case CheckVerdict::consistent:
+      return "consistent";
+    case CheckVerdict::inconsistent:
+      return "inconsistent";
+    case CheckVerdict::cannot_tell:
+      return "cannot tell";
+  }
+  return "";
+}
+
+Checks check(const std::vector<std::filesystem::path>& flights, const std::optional<ModelFile>& model,
+             const CheckOptions& options) {
+  if (flights.empty()) throw Error("nothing to check; give at least one flight");
+  require_each_once(flights);
+  Checks checks;
+  CheckedFlights read;
+  std::vector<std::pair<std::string, std::string>> aircraft;
+  std::vector<std::string> unusable;
+  for (const std::filesystem::path& path : flights) {
+    const Flight flight(path, options.time_stamp);
+    aircraft.emplace_back(path.filename().string(), flight.aircraft());
+    require_one_aircraft(aircraft);
+    const std::optional<ModelFile> its_model = model ? model : recorded_model(flight);
+    std::string why = its_model ? without_values(flight, *its_model)
+                                : fmt::format(
+                                      "{}: there are no static and dynamic pressures with values under the "
+                                      "usual names (PSXC and QCXC, PSFD and QCF); name them in the "
+                                      "[variables] of a model, -m",
+                                      path.string());
+    if (!why.empty()) {
+      unusable.push_back(std::move(why));
+    } else {
+      read.push_back(checked(flight, *its_model, options));
+      checks.flights.push_back(read.back().air.samples->name);
+      if (checks.model.empty()) checks.model = its_model->model.name;
+      for (const std::string& note : read.back().air.notes) checks.notes.push_back(note);
+      if (!model && its_model->variables.count(Quantity::recovery_temperature) > 0) {
+        checks.notes.push_back(
+            fmt::format("{}: without a model the recovery factor of {} is taken as {:g}, that of the C-130's "
+                        "TTRR; a model (-m) "
+                        "gives its own",
+                        checks.flights.back(), its_model->variables.at(Quantity::recovery_temperature),
+                        its_model->model.recovery.coefficients[0]));
+      }
+    }
+    if (options.progress) options.progress(aircraft.size(), flights.size());
+  }
+  for (const std::string& why : unusable) checks.notes.push_back("Not used: " + why);
+  for (const NamedCheck& each : all_checks) {
+    checks.results.push_back(read.empty() ? not_run(each.name, fmt::format("{}", fmt::join(unusable, "; ")))
+                                          : each.run(read));
+  }
+  for (CheckResult& result : checks.results) add_note_on_small(result);
+  checks.pictures = pictures_of(read);
+  return checks;
+}
+
+}  // namespace pcor

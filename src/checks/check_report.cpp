@@ -1,0 +1,195 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <pcor/checks/check.hpp>
+#include <pcor/words/utc.hpp>
+
+namespace pcor {
+namespace {
+
+/// "+-", which a terminal can show, as a page does: "±".
+std::string typeset(std::string text) {
+  for (std::size_t at = text.find("+-"); at != std::string::npos; at = text.find("+-", at))
+    text.replace(at, 2, "±");
+  return text;
+}
+
+/// With a full stop, and a capital letter unless it begins with the name of a file.
+std::string sentence(std::string text) {
+  if (text.empty()) return text;
+  const std::string first_word = text.substr(0, text.find(' '));
+  if (first_word.find('.') == std::string::npos)
+    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  if (text.back() != '.') text += '.';
+  return typeset(std::move(text));
+}
+
+ReportTable typeset(ReportTable table) {
+  for (std::vector<std::string>& row : table.rows)
+    std::transform(row.begin(), row.end(), row.begin(), [](std::string& cell) { return typeset(cell); });
+  return table;
+}
+
+/// "total-pressure" as a heading: "Total pressure".
+std::string heading(std::string name) {
+  if (name == "lams-temperature") return "LAMS temperature";
+  std::replace(name.begin(), name.end(), '-', ' ');
+  name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
+  return name;
+}
+
+/// Whether a picture would show anything: a report refuses an empty one.
+class Shows {
+ public:
+  explicit Shows(const std::vector<ReportColumn>& columns) : columns_(columns) {}
+
+  bool operator()(const TimePanel& panel) const {
+    return std::any_of(panel.columns.begin(), panel.columns.end(),
+                       [this](const std::string& name) { return meet({name}); });
+  }
+  bool operator()(const BinnedPanel& panel) const {
+    return std::all_of(panel.x_choices.begin(), panel.x_choices.end(), [&](const std::string& x) {
+      return std::any_of(panel.y.begin(), panel.y.end(), [&](const std::string& y) { return meet({x, y}); });
+    });
+  }
+  bool operator()(const PlanePanel& panel) const { return meet({panel.x, panel.y, panel.colour}); }
+  bool operator()(const PairPanel& panel) const { return meet({panel.x, panel.y}); }
+  bool operator()(const RegimeTable& table) const {
+    return std::any_of(table.columns.begin(), table.columns.end(),
+                       [this](const std::string& name) { return meet({name}); });
+  }
+  bool operator()(const BarPanel& panel) const {
+    return std::any_of(panel.bars.begin(), panel.bars.end(),
+                       [](const ReportBar& bar) { return std::isfinite(bar.value); });
+  }
+  bool operator()(const ReportTable& table) const { return !table.rows.empty(); }
+  bool operator()(const ReportText&) const { return true; }
+
+ private:
+  /// Whether some sample has a value in all of these columns.
+  bool meet(const std::vector<std::string>& names) const {
+    std::vector<const std::vector<double>*> all;
+    for (const std::string& name : names) {
+      const auto found = std::find_if(columns_.begin(), columns_.end(),
+                                      [&](const ReportColumn& column) { return column.name == name; });
+      if (found == columns_.end()) return false;
+      all.push_back(&found->values);
+    }
+    for (std::size_t i = 0; i < all.front()->size(); ++i) {
+      if (std::all_of(all.begin(), all.end(),
+                      [i](const auto* values) { return std::isfinite((*values)[i]); }))
+        return true;
+    }
+    return false;
+  }
+
+  const std::vector<ReportColumn>& columns_;
+};
+
+ReportTable verdicts(const Checks& checks) {
+  ReportTable table;
+  table.title = "Verdicts";
+  table.caption =
+      "Inconsistent: beyond what matters and beyond three standard errors. Consistent: within what matters, "
+      "by two standard errors. In between it cannot be told.";
+  table.headers = {"check", "verdict", "number", "matters", "what was found"};
+  for (const CheckResult& result : checks.results) {
+    if (!result.ran) {
+      table.rows.push_back({heading(result.name), "not run", "", "", sentence(result.reason)});
+      continue;
+    }
+    const KeyNumber& key = result.key;
+    table.rows.push_back(
+        {heading(result.name), std::string(name_of(result.verdict)),
+         fmt::format("{:+.3f} ± {:.3f} {} {}", key.value, key.standard_error, key.unit, key.what),
+         fmt::format("{:g} {}", key.matters, key.unit), sentence(result.finding)});
+  }
+  return table;
+}
+
+ReportTable numbers_of(const CheckResult& result) {
+  ReportTable table;
+  table.title = heading(result.name) + ": numbers";
+  table.caption = "As in the JSON result, with the unit at the end of each name.";
+  constexpr std::size_t across = 3;  // of a row
+  for (std::size_t i = 0; i < across; ++i) {
+    table.headers.emplace_back("number");
+    table.headers.emplace_back("value");
+  }
+  for (const auto& [name, value] : result.numbers) {
+    if (!std::isfinite(value)) continue;
+    if (table.rows.empty() || table.rows.back().size() == table.headers.size()) table.rows.emplace_back();
+    table.rows.back().push_back(name);
+    table.rows.back().push_back(fmt::format("{:.5g}", value));
+  }
+  if (!table.rows.empty()) table.rows.back().resize(table.headers.size());
+  return table;
+}
+
+std::vector<std::string> summary_of(const Checks& checks) {
+  const auto count = [&](CheckVerdict verdict) {
+    return std::count_if(checks.results.begin(), checks.results.end(), [verdict](const CheckResult& result) {
+      return result.ran && result.verdict == verdict;
+    });
+  };
+  const auto ran = std::count_if(checks.results.begin(), checks.results.end(),
+                                 [](const CheckResult& result) { return result.ran; });
+  std::vector<std::string> summary{
+      fmt::format("Of {} checks {} could run: {} consistent, {} inconsistent, {} cannot tell.",
+                  checks.results.size(), ran, count(CheckVerdict::consistent),
+                  count(CheckVerdict::inconsistent), count(CheckVerdict::cannot_tell))};
+  for (const CheckResult& result : checks.results) {
+    if (result.ran && result.verdict == CheckVerdict::inconsistent)
+      summary.push_back(heading(result.name) + ": " + sentence(result.finding));
+  }
+  return summary;
+}
+
+}  // namespace
+
+Report check_report(const Checks& checks) {
+  Report report = checks.pictures;
+  report.title = "Independent checks of the pressures";
+  report.subtitle = checks.model;
+  report.summary = summary_of(checks);
+  for (std::size_t i = 0; i < report.flight_names.size(); ++i) {
+    const std::size_t first = report.flight_starts[i];
+    const std::size_t end =
+        i + 1 < report.flight_starts.size() ? report.flight_starts[i + 1] : report.time.size();
+    report.facts.emplace_back(
+        "Flight", fmt::format("{}, {} to {} UTC", report.flight_names[i], utc_text(report.time[first]),
+                              utc_text(report.time[end - 1], "%H:%M:%S")));
+  }
+  report.facts.emplace_back("Program", "pcor " PCOR_VERSION);
+  for (const std::string& note : checks.notes) report.facts.emplace_back("Note", note);
+  report.items.emplace_back(verdicts(checks));
+  for (const CheckResult& result : checks.results) {
+    if (!result.ran) continue;
+    ReportText text;
+    text.title = fmt::format("{}: {}", heading(result.name), name_of(result.verdict));
+    text.paragraphs = {sentence(result.finding), "What it cannot see: " + result.cannot_see};
+    for (const std::string& note : result.notes) text.paragraphs.push_back(sentence(note));
+    report.items.emplace_back(std::move(text));
+    const Shows shows(result.columns);
+    for (const ReportItem& picture : result.pictures) {
+      if (std::visit(shows, picture)) report.items.push_back(picture);
+    }
+    for (const ReportTable& table : result.tables) {
+      if (!table.rows.empty()) report.items.emplace_back(typeset(table));
+    }
+    if (ReportTable numbers = numbers_of(result); !numbers.rows.empty())
+      report.items.emplace_back(std::move(numbers));
+    report.columns.insert(report.columns.end(), result.columns.begin(), result.columns.end());
+  }
+  return report;
+}
+
+}  // namespace pcor

@@ -1,0 +1,451 @@
+#include "checks/climb_layers.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <tuple>
+
+#include <pcor/numerics/noise.hpp>
+#include <pcor/physics/hydrostatic.hpp>
+#include <pcor/words/error.hpp>
+#include "checks/statistics.hpp"
+
+namespace pcor {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double usual_height_noise = 1.0;    // m: GPS of 2004, without differential corrections
+constexpr double least_height_noise = 0.15;   // m: differential GPS of today
+constexpr double usual_gradient = 5.0;        // m per 100 km
+constexpr double metres_per_gradient = 1e-5;  // of height per metre of way, of 1 m per 100 km
+constexpr double share_of_flight = 0.8;       // of the variance of the gradient; the rest is of each climb
+constexpr double rate_time = 15.0;            // s before and after a sample
+constexpr double least_step = 2.0;            // m between the GPS height and the pressure, in one sample
+constexpr double largest_level_rate = 0.5;    // m/s
+constexpr double piece_time = 300.0;          // s: the time of a layer, about
+constexpr double band = 500.0;                // m: delta-p may err otherwise in the next
+constexpr double least_swing = 2.0;           // m/s of the climb rate, to tell a lag
+constexpr double lag_that_matters = 0.5;      // s: 2.5 m in a climb of 5 m/s
+constexpr double least_range = 5.0;           // K of temperature for a line
+
+/// The samples where pressure, height, temperature and humidity are known, in flight.
+std::vector<double> usable_heights(const FlightAir& air) {
+  std::vector<double> heights(air.size(), nan);
+  for (std::size_t i = 0; i < air.size(); ++i) {
+    const bool known = air.flying[i] && air.pressure[i] > 0.0 && air.temperature[i] > 0.0 &&
+                       !std::isnan(air.gas_constant[i]);
+    if (known) heights[i] = air.geopotential_height[i];
+  }
+  return heights;
+}
+
+/// Geopotential height from one sample to the next, m, by pressure and temperature.
+double predicted_step(const FlightAir& air, std::size_t i) {
+  return hydrostatic_step(air.pressure[i - 1], air.pressure[i],
+                          0.5 * (air.gas_constant[i - 1] + air.gas_constant[i])) *
+         0.5 * (air.temperature[i - 1] + air.temperature[i]);
+}
+
+/// The stretches without gaps, missing values and steps of the GPS height.
+std::vector<Stretch> steady_stretches(const FlightAir& air, const std::vector<double>& heights) {
+  const std::vector<Stretch> stretches = stretches_of(heights, air.time(), air.step());
+  std::vector<double> departures(air.size(), nan);
+  for (const Stretch& stretch : stretches) {
+    for (std::size_t i = stretch.first + 1; i < stretch.first + stretch.count; ++i)
+      departures[i] = heights[i] - heights[i - 1] - predicted_step(air, i);
+  }
+  const double limit = std::max(least_step * air.step(), 8.0 * robust_deviation(departures));
+  std::vector<Stretch> steady;
+  for (const Stretch& stretch : stretches) {
+    std::size_t first = stretch.first;
+    const std::size_t end = stretch.first + stretch.count;
+    for (std::size_t i = first + 1; i <= end; ++i) {
+      if (i < end && !(std::abs(departures[i]) > limit)) continue;
+      steady.push_back({first, i - first});
+      first = i;
+    }
+  }
+  return steady;
+}
+
+/// Vertical speed over half a minute, m/s.
+std::vector<double> climb_rates(const FlightAir& air, const std::vector<double>& heights,
+                                const std::vector<Stretch>& stretches) {
+  std::vector<double> rates(air.size(), nan);
+  const auto reach = static_cast<std::size_t>(std::max(1.0, std::round(rate_time / air.step())));
+  for (const Stretch& stretch : stretches) {
+    if (stretch.count < 2) continue;
+    const std::size_t last = stretch.first + stretch.count - 1;
+    for (std::size_t i = stretch.first; i <= last; ++i) {
+      const std::size_t before = std::max(stretch.first + reach, i) - reach;
+      const std::size_t after = std::min(last, i + reach);
+      rates[i] = (heights[after] - heights[before]) / (air.time()[after] - air.time()[before]);
+    }
+  }
+  return rates;
+}
+
+/// The parts of the stretches where `within` holds of every sample.
+template <class Condition>
+std::vector<Stretch> parts_where(const std::vector<Stretch>& stretches, const Condition& within) {
+  std::vector<Stretch> parts;
+  for (const Stretch& stretch : stretches) {
+    std::size_t first = stretch.first;
+    const std::size_t end = stretch.first + stretch.count;
+    for (std::size_t i = first; i <= end; ++i) {
+      if (i < end && within(i)) continue;
+      if (i > first) parts.push_back({first, i - first});
+      first = i + 1;
+    }
+  }
+  return parts;
+}
+
+double speed_at(const std::vector<double>& speed, std::size_t i) {
+  return speed.empty() || std::isnan(speed[i]) ? 0.0 : speed[i];
+}
+
+/// How the GPS height departs from that which pressure and temperature ask for, within five minutes.
+struct Piece {
+  double squares = 0.0;     ///< of what a line in time and one in height leave, m2
+  double freedom = 0.0;     ///< samples less what was fitted
+  double gradient = 0.0;    ///< the line in time, m per 100 km of way
+  Estimated lag{nan, nan};  ///< of the pressure behind the height, s; NaN where the climb rate hardly changes
+};
+
+/// The line in time is the slope of the pressure surfaces, the one in height an error of the thermometer, and
+/// what goes with the climb rate a lag. The rest is the error of height and pressure, and what the air does
+/// itself within five minutes.
+Piece look_at_piece(const FlightAir& air, const std::vector<double>& heights,
+                    const std::vector<double>& climb_rate, std::size_t first, std::size_t samples) {
+  Eigen::MatrixXd columns(samples, 4);
+  Eigen::VectorXd departures(samples);
+  double way = 0.0;
+  double predicted = 0.0;
+  for (std::size_t k = 0; k < samples; ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    if (k > 0) predicted += predicted_step(air, first + k);
+    columns(row, 0) = 1.0;
+    columns(row, 1) = (air.time()[first + k] - air.time()[first]) / piece_time - 0.5;
+    columns(row, 2) = predicted;
+    columns(row, 3) = climb_rate[first + k];
+    departures(row) = heights[first + k] - heights[first] - predicted;
+    way += air.airspeed[first + k] * air.step();
+  }
+  for (const Eigen::Index column : {2, 3}) columns.col(column).array() -= columns.col(column).mean();
+  const Eigen::VectorXd fit = columns.colPivHouseholderQr().solve(departures);
+  Piece piece;
+  piece.squares = (departures - columns * fit).squaredNorm();
+  piece.freedom = static_cast<double>(samples) - 4.0;
+  piece.gradient = fit(1) / way / metres_per_gradient;
+  const double swing = columns.col(3).maxCoeff() - columns.col(3).minCoeff();
+  if (swing < least_swing) return piece;
+  const double variance = piece.squares / piece.freedom * (columns.transpose() * columns).inverse()(3, 3);
+  piece.lag = {fit(3), std::sqrt(variance)};
+  return piece;
+}
+
+std::vector<Piece> look_at_pieces(const FlightAir& air, const std::vector<double>& heights,
+                                  const std::vector<double>& climb_rate,
+                                  const std::vector<Stretch>& stretches) {
+  std::vector<Piece> pieces;
+  const auto samples = static_cast<std::size_t>(piece_time / air.step());
+  for (const Stretch& stretch : stretches) {
+    for (std::size_t first = stretch.first; first + samples <= stretch.first + stretch.count;
+         first += samples)
+      pieces.push_back(look_at_piece(air, heights, climb_rate, first, samples));
+  }
+  return pieces;
+}
+
+/// Says where the pressure lags behind the height: layers in which a climb begins or ends are then wrong by
+/// some kelvins, with opposite signs.
+void note_lag(const std::vector<Piece>& pieces, std::vector<std::string>& notes) {
+  constexpr double significant = 4.0;  // standard errors
+  std::vector<Estimated> lags;
+  for (const Piece& piece : pieces) lags.push_back(piece.lag);
+  const Estimated lag = combined(lags);
+  if (!(std::abs(lag.value) > std::max(lag_that_matters, significant * lag.error))) return;
+  notes.push_back(fmt::format(
+      "the static pressure is {:.1f} +- {:.1f} s {} the GPS height, where the climb rate changes: a lag of "
+      "the static line or a clock, which makes layers wrong where a climb begins or ends",
+      std::abs(lag.value), lag.error, lag.value > 0.0 ? "behind" : "ahead of"));
+}
+
+/// @param all pieces of the flight; @param level those in level flight
+LayerUncertainty uncertainty_of(const LayerOptions& options, const std::vector<Piece>& all,
+                                const std::vector<Piece>& level, std::vector<std::string>& notes) {
+  LayerUncertainty uncertainty;
+  uncertainty.pressure_noise = options.pressure_noise;
+  uncertainty.static_bias = options.static_bias;
+  uncertainty.static_change = options.static_change;
+  double squares = 0.0;
+  double freedom = 0.0;
+  for (const Piece& piece : all) {
+    squares += piece.squares;
+    freedom += piece.freedom;
+  }
+  if (options.height_noise) {
+    uncertainty.height_noise = *options.height_noise;
+  } else if (all.empty()) {
+    uncertainty.height_noise = usual_height_noise;
+    notes.push_back(fmt::format(
+        "there is no stretch of {:.0f} s to tell the error of the GPS height from; it is taken as {} m",
+        piece_time, usual_height_noise));
+  } else {
+    uncertainty.height_noise = std::max(least_height_noise, std::sqrt(squares / freedom));
+    notes.push_back(
+        fmt::format("the error of the GPS height is taken as {:.2f} m: so much it wavers about the height of "
+                    "the pressure (rms) within {} stretches of {:.0f} s",
+                    uncertainty.height_noise, all.size(), piece_time));
+  }
+  note_lag(all, notes);
+  uncertainty.gradient = options.gradient.value_or(usual_gradient);
+  if (options.gradient || level.empty()) return uncertainty;
+  double slopes = 0.0;
+  for (const Piece& piece : level) slopes += piece.gradient * piece.gradient;
+  const double gradient = std::sqrt(slopes / static_cast<double>(level.size()));
+  if (gradient > usual_gradient) {
+    uncertainty.gradient = gradient;
+    notes.push_back(
+        fmt::format("along level legs the pressure surfaces slope by {:.1f} m per 100 km (rms), which is "
+                    "taken for climbs",
+                    gradient));
+  }
+  return uncertainty;
+}
+
+Layer make_layer(const FlightAir& air, const std::vector<double>& heights, std::size_t first,
+                 std::size_t last) {
+  Layer layer;
+  layer.first = first;
+  layer.last = last;
+  layer.begin = air.time()[first];
+  layer.end = air.time()[last];
+  layer.height_begin = heights[first];
+  layer.height_end = heights[last];
+  layer.pressure_begin = air.pressure[first];
+  layer.pressure_end = air.pressure[last];
+  for (std::size_t i = first + 1; i <= last; ++i) {
+    const double step = heights[i] - heights[i - 1];
+    const double passed = air.time()[i] - air.time()[i - 1];
+    layer.s1 -= hydrostatic_step(air.pressure[i - 1], air.pressure[i],
+                                 0.5 * (air.gas_constant[i - 1] + air.gas_constant[i]));
+    layer.s2 += step;
+    layer.s3 += step * 0.5 * (1.0 / air.temperature[i - 1] + 1.0 / air.temperature[i]);
+    layer.east += passed * speed_at(air.east_speed, i);
+    layer.north += passed * speed_at(air.north_speed, i);
+  }
+  if (!air.east_speed.empty()) return layer;
+  // Without a ground velocity the way is that through the air, and its direction that of the nose.
+  for (std::size_t i = first + 1; i <= last; ++i) {
+    const std::vector<double>& headings = air.samples->motion.heading;
+    const double angle = speed_at(headings, i) * constants::radians_per_degree;
+    const double way = (air.time()[i] - air.time()[i - 1]) * speed_at(air.airspeed, i);
+    layer.east += way * std::sin(angle);
+    layer.north += way * std::cos(angle);
+  }
+  return layer;
+}
+
+/// dT_p for an error of 1 m in S2, K/m.
+double per_metre(const Layer& layer) { return layer.hydrostatic_temperature() / layer.s2; }
+
+/// dT_p for an error of 1 hPa in the pressure at the end, K/hPa; at the begin it is the other way round.
+double per_pressure(const Layer& layer, double pressure) {
+  return -layer.hydrostatic_temperature() / std::log(layer.pressure_end / layer.pressure_begin) / pressure;
+}
+
+LayerErrors errors_of(const Layer& layer, const LayerUncertainty& uncertainty) {
+  LayerErrors errors;
+  const double at_end = per_pressure(layer, layer.pressure_end);
+  const double at_begin = per_pressure(layer, layer.pressure_begin);
+  errors.height_noise = std::abs(per_metre(layer)) * std::sqrt(2.0) * uncertainty.height_noise;
+  errors.pressure_noise = std::hypot(at_end, at_begin) * uncertainty.pressure_noise;
+  errors.static_bias = std::abs(at_end - at_begin) * uncertainty.static_bias;
+  errors.static_change = std::hypot(at_end, at_begin) * uncertainty.static_change;
+  errors.gradient = std::abs(per_metre(layer)) * std::hypot(layer.east, layer.north) * metres_per_gradient *
+                    uncertainty.gradient;
+  return errors;
+}
+
+/// What errors of layers come from, one unknown with unit variance each: how much each layer errs by it.
+class Causes {
+ public:
+  enum class Kind { height, pressure, bias, change, east, north, climb_east, climb_north };
+
+  explicit Causes(std::size_t layers) : layers_(static_cast<Eigen::Index>(layers)) {}
+
+  void add(Kind kind, std::size_t flight, long place, std::size_t layer, double error) {
+    const auto cause = causes_.try_emplace(Key(kind, flight, place), Eigen::VectorXd::Zero(layers_)).first;
+    cause->second(static_cast<Eigen::Index>(layer)) += error;
+  }
+
+  Eigen::MatrixXd covariance() const {
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(layers_, layers_);
+    for (const auto& [key, errors] : causes_) covariance += errors * errors.transpose();
+    return covariance;
+  }
+
+ private:
+  using Key = std::tuple<Kind, std::size_t, long>;
+
+  Eigen::Index layers_;
+  std::map<Key, Eigen::VectorXd> causes_;
+};
+
+Eigen::MatrixXd covariance_of(const std::vector<FlightLayers>& flights, std::size_t count) {
+  using Kind = Causes::Kind;
+  Causes causes(count);
+  std::size_t number = 0;
+  for (std::size_t flight = 0; flight < flights.size(); ++flight) {
+    const LayerUncertainty& uncertainty = flights[flight].uncertainty;
+    const double slope = metres_per_gradient * uncertainty.gradient;
+    const double of_flight = slope * std::sqrt(share_of_flight);
+    const double of_climb = slope * std::sqrt(1.0 - share_of_flight);
+    for (const Layer& layer : flights[flight].layers) {
+      const double metre = per_metre(layer);
+      const auto end_point = [&](std::size_t record, double height, double pressure, double sign) {
+        const auto place = static_cast<long>(record);
+        causes.add(Kind::height, flight, place, number, sign * metre * uncertainty.height_noise);
+        const double hectopascal = sign * per_pressure(layer, pressure);
+        causes.add(Kind::pressure, flight, place, number, hectopascal * uncertainty.pressure_noise);
+        causes.add(Kind::bias, 0, 0, number, hectopascal * uncertainty.static_bias);
+        causes.add(Kind::change, 0, std::lround(height / band), number,
+                   hectopascal * uncertainty.static_change);
+      };
+      end_point(layer.first, layer.height_begin, layer.pressure_begin, -1.0);
+      end_point(layer.last, layer.height_end, layer.pressure_end, 1.0);
+      const auto climb = static_cast<long>(layer.climb);
+      causes.add(Kind::east, flight, 0, number, metre * layer.east * of_flight);
+      causes.add(Kind::north, flight, 0, number, metre * layer.north * of_flight);
+      causes.add(Kind::climb_east, flight, climb, number, metre * layer.east * of_climb);
+      causes.add(Kind::climb_north, flight, climb, number, metre * layer.north * of_climb);
+      ++number;
+    }
+  }
+  return causes.covariance();
+}
+
+void require(bool well, const char* what) {
+  if (!well) throw Error(fmt::format("layers: {}", what));
+}
+
+}  // namespace
+
+FlightLayers find_layers(const FlightAir& air, const LayerOptions& options) {
+  require(options.least_climb_rate > 0.0, "the least climb rate must be above zero");
+  require(options.least_thickness > 0.0 && options.thickness > 0.0, "thicknesses must be above zero");
+  require(options.height_noise.value_or(1.0) > 0.0, "the noise of the height must be above zero");
+  require(options.pressure_noise >= 0.0 && options.static_bias >= 0.0 && options.static_change >= 0.0 &&
+              options.gradient.value_or(0.0) >= 0.0,
+          "standard deviations must not be negative");
+  require(!air.temperature.empty(), "the model has no thermometer, so no temperature to test");
+  require(!air.geopotential_height.empty(), "the flight has no GPS height or no latitude");
+
+  FlightLayers found;
+  found.flight = air.samples->name;
+  const std::vector<double> heights = usable_heights(air);
+  const std::vector<Stretch> stretches = steady_stretches(air, heights);
+  const std::vector<double> climb_rate = climb_rates(air, heights, stretches);
+  const std::vector<Stretch> level =
+      parts_where(stretches, [&](std::size_t i) { return std::abs(climb_rate[i]) < largest_level_rate; });
+  found.uncertainty = uncertainty_of(options, look_at_pieces(air, heights, climb_rate, stretches),
+                                     look_at_pieces(air, heights, climb_rate, level), found.notes);
+  std::vector<Stretch> climbs;
+  for (const double sign : {1.0, -1.0}) {
+    const std::vector<Stretch> parts = parts_where(
+        stretches, [&](std::size_t i) { return sign * climb_rate[i] > options.least_climb_rate; });
+    climbs.insert(climbs.end(), parts.begin(), parts.end());
+  }
+  std::sort(climbs.begin(), climbs.end(),
+            [](const Stretch& a, const Stretch& b) { return a.first < b.first; });
+  std::size_t impossible = 0;
+  std::size_t number = 0;
+  for (const Stretch& climb : climbs) {
+    const std::size_t last = climb.first + climb.count - 1;
+    const double thickness = heights[last] - heights[climb.first];
+    if (std::abs(thickness) < options.least_thickness) continue;
+    const double parts = std::max(1.0, std::round(std::abs(thickness) / options.thickness));
+    std::size_t first = climb.first;
+    for (double part = 1.0; part <= parts; part += 1.0) {
+      std::size_t end = first;
+      const double wanted = std::abs(thickness) * part / parts;
+      while (end < last && std::abs(heights[end] - heights[climb.first]) < wanted) ++end;
+      if (part == parts) end = last;
+      if (end == first) continue;
+      Layer layer = make_layer(air, heights, first, end);
+      first = end;
+      if (!(layer.hydrostatic_temperature() > 0.0)) {
+        ++impossible;
+        continue;
+      }
+      layer.climb = number;
+      layer.errors = errors_of(layer, found.uncertainty);
+      found.layers.push_back(layer);
+    }
+    ++number;
+  }
+  if (impossible > 0)
+    found.notes.push_back(
+        fmt::format("in {} layers the pressure rises with height; they do not count", impossible));
+  return found;
+}
+
+LayerFit fit_layers(const std::vector<FlightLayers>& flights) {
+  LayerFit fit;
+  for (const FlightLayers& flight : flights) fit.layers += flight.layers.size();
+  fit.offset = fit.offset_error = fit.mean_temperature = fit.centre = fit.c0 = fit.c0_error = fit.c1 =
+      fit.c1_error = nan;
+  if (fit.layers == 0) return fit;
+  const auto count = static_cast<Eigen::Index>(fit.layers);
+  Eigen::VectorXd differences(count);
+  Eigen::VectorXd temperatures(count);
+  Eigen::Index row = 0;
+  for (const FlightLayers& flight : flights) {
+    for (const Layer& layer : flight.layers) {
+      differences(row) = layer.difference();
+      temperatures(row++) = layer.measured_temperature();
+    }
+  }
+  const Eigen::MatrixXd covariance = covariance_of(flights, fit.layers);
+  // Whitened by the covariance, the line is ordinary least squares.
+  const Eigen::LLT<Eigen::MatrixXd> root(covariance);
+  const auto whitened = [&](const Eigen::VectorXd& column) -> Eigen::VectorXd {
+    return root.matrixL().solve(column);
+  };
+  const Eigen::VectorXd y = whitened(differences);
+  const Eigen::VectorXd ones = whitened(Eigen::VectorXd::Ones(count));
+  const double weight = ones.squaredNorm();
+  const double mean = ones.dot(y) / weight;
+  Eigen::VectorXd rest = y - mean * ones;
+  fit.mean_temperature = temperatures.mean();
+  fit.offset = mean;
+  fit.offset_error = 1.0 / std::sqrt(weight);
+  fit.degrees_of_freedom = fit.layers - 1;
+  if (fit.layers >= 3 && temperatures.maxCoeff() - temperatures.minCoeff() >= least_range) {
+    fit.centre = ones.dot(whitened(temperatures)) / weight;
+    const Eigen::VectorXd tilted = whitened((temperatures.array() - fit.centre).matrix());
+    fit.c0 = mean;
+    fit.c0_error = 1.0 / std::sqrt(weight);
+    fit.c1 = tilted.dot(y) / tilted.squaredNorm();
+    fit.c1_error = 1.0 / tilted.norm();
+    fit.offset = fit.correction_at(fit.mean_temperature);
+    fit.offset_error = fit.correction_error_at(fit.mean_temperature);
+    rest -= fit.c1 * tilted;
+    fit.degrees_of_freedom = fit.layers - 2;
+  }
+  fit.chi_squared = rest.squaredNorm();
+  if (fit.degrees_of_freedom > 0) {
+    fit.error_scale = std::max(1.0, std::sqrt(fit.chi_squared / static_cast<double>(fit.degrees_of_freedom)));
+  }
+  fit.offset_error *= fit.error_scale;
+  fit.c0_error *= fit.error_scale;
+  fit.c1_error *= fit.error_scale;
+  return fit;
+}
+
+}  // namespace pcor

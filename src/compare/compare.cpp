@@ -1,0 +1,351 @@
+#include <pcor/compare/compare.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+
+#include <pcor/flight/flight_writer.hpp>
+#include <pcor/flight/same_aircraft.hpp>
+#include <pcor/words/error.hpp>
+
+#include "residuals/residual_sums.hpp"
+
+namespace pcor {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double worst_length = 60.0;  // s
+constexpr std::size_t worst_count = 5;
+// hPa2: a reference delta-p that varies less than the rounding of a file leaves nothing to explain.
+constexpr double smallest_variance = 1e-10;
+constexpr std::size_t fewest_in_band = 30;
+
+/// Bands of a variable: all samples with the same `floor(value / width)`.
+struct Banding {
+  const char* name;
+  double width;
+  const char* format;  // of the limits
+  double (*value)(const FlightResiduals&, std::size_t);
+};
+
+double at(const std::vector<double>& values, std::size_t sample) {
+  return values.empty() ? nan : values[sample];
+}
+
+const std::array<Banding, 4> bandings{{
+    {"altitude", 1000.0, "{} {:.0f} to {:.0f} m",
+     [](const FlightResiduals& f, std::size_t i) { return at(f.samples->motion.altitude, i); }},
+    {"Mach", 0.05, "{} {:.2f} to {:.2f}",
+     [](const FlightResiduals& f, std::size_t i) { return at(f.mach, i); }},
+    {"angle of attack", 1.0, "{} {:.0f} to {:.0f} deg",
+     [](const FlightResiduals& f, std::size_t i) { return at(f.samples->motion.attack, i); }},
+    {"sideslip", 1.0, "{} {:.0f} to {:.0f} deg",
+     [](const FlightResiduals& f, std::size_t i) { return at(f.samples->motion.sideslip, i); }},
+}};
+
+std::string regimes_text(const RegimeSet& regimes) {
+  std::vector<std::string_view> names;
+  for (std::size_t i = 0; i < regime_count; ++i) {
+    if (regimes[i]) names.push_back(regime_facts[i].name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// The statistics of one model, gathered flight by flight.
+class Gathering {
+ public:
+  explicit Gathering(std::string name) { result_.name = std::move(name); }
+
+  void add(const FlightResiduals& flight, std::size_t model, const NoiseFloor& noise);
+  ModelComparison finish();
+
+ private:
+  void add_worst(const FlightResiduals& flight, const std::vector<double>& values, const NoiseFloor& noise,
+                 const std::vector<RegimeSet>& regimes);
+
+  ModelComparison result_;
+  ResidualSums all_;
+  double wanted_sum_ = 0.0;
+  double wanted_squares_ = 0.0;
+  std::array<ResidualSums, regime_count> regimes_{};
+  std::array<std::map<long, ResidualSums>, bandings.size()> bands_{};
+};
+
+/// For how many samples one independent one stands: in the residual as it is, with what the model misses, or
+/// in the noise alone, whichever is more.
+double memory_of(const std::vector<double>& values, const FlightSamples& samples, const NoiseFloor& noise) {
+  std::vector<double> centred = values;
+  double sum = 0.0;
+  double squares = 0.0;
+  std::size_t count = 0;
+  for (const double value : values) {
+    if (std::isnan(value)) continue;
+    sum += value;
+    squares += value * value;
+    ++count;
+  }
+  const double mean = sum / static_cast<double>(count);
+  for (double& value : centred) value -= mean;
+  const Autoregression process = autoregression(centred, stretches_of(centred, samples.time, samples.step));
+  const double variance = squares / static_cast<double>(count) - mean * mean;
+  const double memory = process.samples_per_independent(std::sqrt(std::max(variance, 0.0)));
+  return std::isfinite(memory) ? std::max(memory, noise.samples_per_independent)
+                               : noise.samples_per_independent;
+}
+
+void Gathering::add(const FlightResiduals& flight, std::size_t model, const NoiseFloor& noise) {
+  const std::vector<double>& values = flight.values[model];
+  const std::vector<double>& wanted = flight.reference_defects[model];
+  const FlightSamples& samples = *flight.samples;
+  const double memory = memory_of(values, samples, noise);
+  const std::vector<RegimeSet> regimes = regimes_of_samples(samples.time, samples.intervals);
+  ResidualSums own;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isnan(values[i])) continue;
+    const auto count = [&](ResidualSums& sums) { sums.add(values[i], noise.local_rms[i], memory); };
+    count(own);
+    count(all_);
+    wanted_sum_ += wanted[i];
+    wanted_squares_ += wanted[i] * wanted[i];
+    for (std::size_t r = 0; r < regime_count; ++r) {
+      if (regimes[i][r]) count(regimes_[r]);
+    }
+    for (std::size_t b = 0; b < bandings.size(); ++b) {
+      const double value = bandings[b].value(flight, i);
+      if (!std::isnan(value)) count(bands_[b][std::lround(std::floor(value / bandings[b].width))]);
+    }
+  }
+  result_.flights.push_back({samples.name, own.statistics()});
+  add_worst(flight, values, noise, regimes);
+}
+
+void Gathering::add_worst(const FlightResiduals& flight, const std::vector<double>& values,
+                          const NoiseFloor& noise, const std::vector<RegimeSet>& regimes) {
+  const FlightSamples& samples = *flight.samples;
+  const auto enough = static_cast<std::size_t>(0.5 * worst_length / samples.step);
+  for (std::size_t first = 0; first < values.size();) {
+    ResidualSums sums;
+    RegimeSet flown;
+    std::size_t i = first;
+    for (; i < values.size() && samples.time[i] < samples.time[first] + worst_length; ++i) {
+      if (std::isnan(values[i])) continue;
+      sums.add(values[i], noise.local_rms[i], 1.0);
+      flown |= regimes[i];
+    }
+    if (sums.samples > 0 && sums.samples >= enough) {
+      result_.worst.push_back({samples.name, samples.time[first] - 0.5 * samples.step,
+                               samples.time[i - 1] + 0.5 * samples.step, sums.statistics(),
+                               regimes_text(flown)});
+    }
+    first = i;
+  }
+  std::stable_sort(
+      result_.worst.begin(), result_.worst.end(),
+      [](const WorstInterval& a, const WorstInterval& b) { return fails_more(a.statistics, b.statistics); });
+  if (result_.worst.size() > worst_count) result_.worst.resize(worst_count);
+}
+
+ModelComparison Gathering::finish() {
+  result_.all = all_.statistics();
+  const auto count = static_cast<double>(all_.samples);
+  const double variation = wanted_squares_ - wanted_sum_ * wanted_sum_ / count;
+  result_.r_squared = variation > count * smallest_variance ? 1.0 - all_.squares / variation : nan;
+  result_.samples_per_independent = count / all_.independent;
+  for (std::size_t r = 0; r < regime_count; ++r) {
+    if (regimes_[r].samples > 0)
+      result_.regimes.push_back({std::string(regime_facts[r].name), regimes_[r].statistics()});
+  }
+  for (std::size_t b = 0; b < bandings.size(); ++b) {
+    for (const auto& [band, sums] : bands_[b]) {
+      if (sums.samples < fewest_in_band) continue;
+      const double from = static_cast<double>(band) * bandings[b].width;
+      result_.bands.push_back(
+          {fmt::format(fmt::runtime(bandings[b].format), bandings[b].name, from, from + bandings[b].width),
+           sums.statistics()});
+    }
+  }
+  return std::move(result_);
+}
+
+std::vector<double> total_pressure(const ModelSamples& samples) {
+  std::vector<double> total = *samples.find(Quantity::static_pressure);
+  const std::vector<double>& q = *samples.find(Quantity::dynamic_pressure);
+  for (std::size_t i = 0; i < q.size(); ++i) total[i] += q[i];
+  return total;
+}
+
+/// The systems against each other, over the samples that take part.
+void fit_lines(Comparison& comparison) {
+  std::vector<double> total;
+  std::vector<double> reference_total;
+  std::vector<double> pressure;
+  std::vector<double> reference_pressure;
+  for (const FlightResiduals& flight : comparison.flights) {
+    for (std::size_t i = 0; i < flight.mask.size(); ++i) {
+      if (flight.mask[i] != Mask::none) continue;
+      pressure.push_back(flight.corrected_pressure[i]);
+      reference_pressure.push_back(flight.corrected_pressure[i] + flight.values.front()[i]);
+      if (flight.reference_total_pressure.empty()) continue;
+      total.push_back(flight.total_pressure[i]);
+      reference_total.push_back(flight.reference_total_pressure[i]);
+    }
+  }
+  comparison.static_pressure = orthogonal_fit(pressure, reference_pressure);
+  if (!total.empty()) comparison.total_pressure = ordinary_fit(total, reference_total);
+}
+
+/// The noise of a flight is one, whatever the models: where one of them fails quickly, another shows it.
+NoiseFloor lowest_noise(const FlightResiduals& flight) {
+  const FlightSamples& samples = *flight.samples;
+  NoiseFloor lowest;
+  for (const std::vector<double>& values : flight.values) {
+    NoiseFloor noise = noise_floor(values, stretches_of(values, samples.time, samples.step), samples.step);
+    if (&values == &flight.values.front() || noise.rms < lowest.rms) lowest = std::move(noise);
+  }
+  return lowest;
+}
+
+/// The residuals of all models on one flight, where all of them have one.
+FlightResiduals residuals_on(const Flight& flight, const std::vector<Contender>& contenders,
+                             const MaskOptions& options, std::vector<std::string>& notes) {
+  FlightResiduals result;
+  for (const auto& [name, model, reference] : contenders) {
+    const auto samples =
+        std::make_shared<const FlightSamples>(read_samples(flight, model, reference, options));
+    const Residuals residuals(samples, model, reference, options);
+    const double* const parameters = residuals.parameters().data();
+    result.values.push_back(residuals.values(parameters));
+    result.reference_defects.push_back(residuals.wanted_defect(parameters));
+    result.model_defects.push_back(residuals.quantity(Quantity::static_defect, parameters));
+    for (const std::string& note : samples->notes) notes.push_back(samples->name + ": " + note);
+    if (!result.samples) {
+      result.samples = samples;
+      result.mask = residuals.mask();
+      result.static_pressure = residuals.quantity(Quantity::static_pressure, parameters);
+      result.corrected_pressure = residuals.quantity(Quantity::corrected_static_pressure, parameters);
+      result.mach = residuals.quantity(Quantity::corrected_mach, parameters);
+      const std::vector<double> q = residuals.quantity(Quantity::dynamic_pressure, parameters);
+      result.dynamic_ratio.resize(q.size());
+      for (std::size_t i = 0; i < q.size(); ++i) result.dynamic_ratio[i] = q[i] / result.static_pressure[i];
+      result.total_pressure = total_pressure(samples->model);
+      if (reference.kind == Reference::Kind::static_system)
+        result.reference_total_pressure = total_pressure(samples->reference);
+    } else {
+      for (std::size_t i = 0; i < result.mask.size(); ++i) {
+        if (result.mask[i] == Mask::none) result.mask[i] = residuals.mask()[i];
+      }
+    }
+  }
+  for (std::vector<double>& values : result.values) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (result.mask[i] != Mask::none) values[i] = nan;
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+Comparison compare(const std::vector<std::filesystem::path>& flights,
+                   const std::vector<Contender>& contenders, const CompareOptions& options) {
+  if (flights.empty() || contenders.empty())
+    throw Error("nothing to compare; give at least one flight and one model");
+  Comparison result;
+  result.reference = contenders.front().reference.description();
+  std::vector<Gathering> gatherings;
+  for (const Contender& contender : contenders) gatherings.emplace_back(contender.name);
+  std::vector<std::pair<std::string, std::string>> aircraft;
+  for (const std::filesystem::path& path : flights) {
+    const Flight flight(path, options.time_stamp);
+    aircraft.emplace_back(path.filename().string(), flight.aircraft());
+    require_one_aircraft(aircraft);
+    FlightResiduals residuals = residuals_on(flight, contenders, options.mask, result.notes);
+    for (const Mask mask : residuals.mask) ++result.masks[static_cast<std::size_t>(mask)];
+    const NoiseFloor noise = lowest_noise(residuals);
+    for (std::size_t m = 0; m < contenders.size(); ++m) gatherings[m].add(residuals, m, noise);
+    result.flights.push_back(std::move(residuals));
+    if (options.progress) options.progress(result.flights.size(), flights.size());
+  }
+  if (result.masks[0] == 0) {
+    throw Error(
+        fmt::format("{}: no sample is left to compare: {}; see the variables of the model and "
+                    "--min-airspeed, --max-flaps, --exclude",
+                    flights.size() == 1 ? flights.front().string() : "the flights", mask_text(result.masks)));
+  }
+  for (Gathering& gathering : gatherings) result.models.push_back(gathering.finish());
+  fit_lines(result);
+  std::sort(result.notes.begin(), result.notes.end());
+  result.notes.erase(std::unique(result.notes.begin(), result.notes.end()), result.notes.end());
+  return result;
+}
+
+void write_residuals(const Comparison& comparison, std::size_t flight, const std::filesystem::path& input,
+                     const std::filesystem::path& output, const std::string& history) {
+  const FlightResiduals& residuals = comparison.flights.at(flight);
+  const Flight source(input);
+  FileDescription description;
+  description.history = history;
+  description.title = "Residuals of pressure corrections against " + comparison.reference;
+  FlightWriter writer(output, source, description);
+  std::vector<std::pair<std::size_t, std::vector<double>>> columns;
+  const auto define = [&](const std::string& name, const std::string& long_name, std::vector<double> values) {
+    OutputVariable variable;
+    variable.name = name;
+    variable.units = "hPa";
+    variable.long_name = long_name;
+    variable.category = "Aircraft State";
+    columns.emplace_back(writer.define(variable), std::move(values));
+  };
+  for (std::size_t m = 0; m < residuals.values.size(); ++m) {
+    define(fmt::format("RESIDUAL_{}", m + 1),
+           fmt::format("Static pressure of {} less that of the model {}", comparison.reference,
+                       comparison.models[m].name),
+           residuals.values[m]);
+    define(fmt::format("PCOR_{}", m + 1),
+           fmt::format("Static defect (delta-p) of the model {}", comparison.models[m].name),
+           residuals.model_defects[m]);
+    define(fmt::format("PCOR_REFERENCE_{}", m + 1),
+           fmt::format("Static defect (delta-p) that the reference asks of the model {}",
+                       comparison.models[m].name),
+           residuals.reference_defects[m]);
+  }
+
+  const auto flags = [&](const std::string& name, const std::string& long_name, std::vector<Flag> meanings,
+                         std::vector<double> values) {
+    OutputVariable variable;
+    variable.name = name;
+    variable.long_name = long_name;
+    variable.standard_name = "status_flag";
+    variable.category = "Housekeeping";
+    variable.flags = std::move(meanings);
+    columns.emplace_back(writer.define(variable), std::move(values));
+  };
+  std::vector<Flag> mask_flags;
+  for (std::size_t i = 1; i < mask_count; ++i)
+    mask_flags.push_back({1 << (i - 1), std::string(mask_facts[i].name)});
+  std::vector<double> masks;
+  for (const Mask mask : residuals.mask)
+    masks.push_back(mask == Mask::none ? 0.0 : static_cast<double>(1 << (static_cast<int>(mask) - 1)));
+  flags("MASK", "Why a sample takes no part in the comparison", std::move(mask_flags), std::move(masks));
+  std::vector<Flag> regime_flags;
+  for (std::size_t i = 0; i < regime_count; ++i) {
+    std::string name(regime_facts[i].name);
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return c == ' ' || c == '-'; }, '_');
+    regime_flags.push_back({1 << i, std::move(name)});
+  }
+  std::vector<double> regimes;
+  for (const RegimeSet& set : regimes_of_samples(residuals.samples->time, residuals.samples->intervals))
+    regimes.push_back(static_cast<double>(set.to_ulong()));
+  flags("REGIME", "Flight regimes and manoeuvres", std::move(regime_flags), std::move(regimes));
+  const RecordBlock all{0, residuals.samples->time.size()};
+  for (const auto& [number, values] : columns) writer.write(number, all, values.data());
+  writer.finish();
+}
+
+}  // namespace pcor

@@ -1,0 +1,285 @@
+#include "compare/comparison_panels.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+
+#include <pcor/words/utc.hpp>
+
+namespace pcor {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// A regime with fewer samples is not called the one where a model fails most.
+constexpr std::size_t fewest_in_regime = 60;
+// Times the noise: less is hardly a failure.
+constexpr double notable_failure = 1.2;
+
+std::string residual_column(std::size_t model) { return fmt::format("residual{}", model + 1); }
+
+/// The samples of a flight that take part: a report shows no others.
+std::vector<std::size_t> used(const FlightResiduals& flight) {
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < flight.mask.size(); ++i) {
+    if (flight.mask[i] == Mask::none) places.push_back(i);
+  }
+  return places;
+}
+
+/// One series of every flight, one after another; NaN for a flight that does not have it.
+template <class Series>
+std::vector<double> joined(const Comparison& comparison, const Series& series) {
+  std::vector<double> values;
+  for (const FlightResiduals& flight : comparison.flights) {
+    const std::vector<double>& part = series(flight);
+    for (const std::size_t i : used(flight)) values.push_back(part.empty() ? nan : part[i]);
+  }
+  return values;
+}
+
+/// With a capital letter and a full stop.
+std::string sentence(std::string text) {
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text + ".";
+}
+
+bool has_value(const std::vector<double>& values) {
+  return std::any_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+}
+
+}  // namespace
+
+template <class Series>
+void ComparisonPanels::add(const std::string& name, const std::string& title, const std::string& unit,
+                           const Series& series) {
+  report_.columns.push_back({name, title, unit, joined(comparison_, series)});
+}
+
+ComparisonPanels::ComparisonPanels(const Comparison& comparison) : comparison_(comparison) {
+  for (const FlightResiduals& flight : comparison.flights) {
+    const std::vector<std::size_t> places = used(flight);
+    if (places.empty()) continue;
+    report_.flight_starts.push_back(report_.time.size());
+    report_.flight_names.push_back(flight.samples->name);
+    for (const std::size_t i : places) report_.time.push_back(flight.samples->time[i]);
+    for (const Interval& interval : flight.samples->intervals) {
+      const bool met = std::any_of(places.begin(), places.end(), [&](std::size_t i) {
+        return flight.samples->time[i] >= interval.begin && flight.samples->time[i] < interval.end;
+      });
+      if (met)
+        report_.intervals.push_back(
+            {std::string(facts_of(interval.regime).name), interval.begin, interval.end});
+    }
+  }
+  for (std::size_t m = 0; m < comparison.models.size(); ++m) {
+    const std::string& name = comparison.models[m].name;
+    const std::string title = comparison.models.size() == 1 ? "residual" : "residual, " + name;
+    add(residual_column(m), title, "hPa",
+        [m](const FlightResiduals& f) -> const std::vector<double>& { return f.values[m]; });
+    residuals_.push_back(residual_column(m));
+  }
+  const auto variable = [&](const char* name, const char* title, const char* unit, const auto& series) {
+    std::vector<double> values = joined(comparison_, series);
+    if (!has_value(values)) return;
+    report_.columns.push_back({name, title, unit, std::move(values)});
+    variables_.push_back(name);
+  };
+  using F = FlightResiduals;
+  using V = std::vector<double>;
+  variable("mach", "Mach number", "", [](const F& f) -> const V& { return f.mach; });
+  variable("pressure", "static pressure as measured", "hPa",
+           [](const F& f) -> const V& { return f.static_pressure; });
+  variable("attack", "angle of attack", "deg",
+           [](const F& f) -> const V& { return f.samples->motion.attack; });
+  variable("sideslip", "sideslip", "deg", [](const F& f) -> const V& { return f.samples->motion.sideslip; });
+  variable("ratio", "q/p as measured", "", [](const F& f) -> const V& { return f.dynamic_ratio; });
+  variable("airspeed", "true airspeed", "m/s",
+           [](const F& f) -> const V& { return f.samples->motion.airspeed; });
+  variable("altitude", "altitude", "m", [](const F& f) -> const V& { return f.samples->motion.altitude; });
+  variable("vertical_speed", "vertical speed", "m/s",
+           [](const F& f) -> const V& { return f.samples->motion.vertical_speed; });
+  variable("roll", "roll", "deg", [](const F& f) -> const V& { return f.samples->motion.roll; });
+  variable("wanted", "delta-p, reference", "hPa",
+           [](const F& f) -> const V& { return f.reference_defects.front(); });
+  defects_.emplace_back("wanted");
+  for (std::size_t m = 0; m < comparison.models.size(); ++m) {
+    const std::string name = fmt::format("model{}", m + 1);
+    const std::string title = comparison.models.size() == 1 ? "the model" : comparison.models[m].name;
+    variable(name.c_str(), ("delta-p, " + title).c_str(), "hPa",
+             [m](const F& f) -> const V& { return f.model_defects[m]; });
+    if (!variables_.empty() && variables_.back() == name) defects_.push_back(name);
+  }
+}
+
+void ComparisonPanels::add_panels() {
+  const double memory = comparison_.models.back().samples_per_independent;
+  TimePanel time;
+  time.title = "Residual in time";
+  time.caption =
+      "Static pressure of the reference less that of the model; regimes are shaded. Drag over a time "
+      "range, or choose a regime, and every picture shows its samples alone.";
+  time.columns = residuals_;
+  time.axis = "residual";
+  report_.items.emplace_back(std::move(time));
+  RegimeTable regimes;
+  regimes.title = "By regime";
+  regimes.caption = "Bias and rms of the residual in each regime of the selected samples.";
+  regimes.columns = residuals_;
+  report_.items.emplace_back(std::move(regimes));
+  BinnedPanel binned;
+  binned.title = "Residual against a variable";
+  binned.caption =
+      "A slope or a bend that is more than the error bars is an effect that the model does not have, or "
+      "has with a wrong coefficient.";
+  binned.y = residuals_;
+  binned.axis = "residual";
+  binned.x_choices = variables_;
+  binned.samples_per_independent = std::max(1.0, memory);
+  report_.items.emplace_back(std::move(binned));
+  PlanePanel plane;
+  plane.title = comparison_.models.size() == 1 ? "Residual over Mach number and pressure"
+                                               : fmt::format("Residual over Mach number and pressure, {}",
+                                                             comparison_.models.back().name);
+  plane.caption = "Where in the envelope the model fails: one colour over a region is a bias there.";
+  plane.x = "mach";
+  plane.y = "pressure";
+  plane.colour = residuals_.back();
+  plane.reverse_y = true;
+  report_.items.emplace_back(std::move(plane));
+  TimePanel defect;
+  defect.title = comparison_.models.size() == 1 ? "Delta-p of the reference and of the model"
+                                                : "Delta-p of the reference and of the models";
+  defect.caption =
+      fmt::format("What the reference ({}) asks for, and what the model gives.", comparison_.reference);
+  defect.columns = defects_;
+  defect.axis = "delta-p";
+  report_.items.emplace_back(std::move(defect));
+  PairPanel pair;
+  pair.title = comparison_.models.size() == 1
+                   ? "Delta-p of the reference against that of the model"
+                   : fmt::format("Delta-p of the reference against that of the model, {}",
+                                 comparison_.models.back().name);
+  pair.caption = "A perfect model lies on the line.";
+  pair.x = defects_.back();
+  pair.y = "wanted";
+  pair.lines = {{1.0, 0.0, "equal"}};
+  report_.items.emplace_back(std::move(pair));
+}
+
+void ComparisonPanels::add_pairs() {
+  const auto note = [](const LineFit& fit) {
+    return fmt::format(
+        "Slope {:.5f} +- {:.5f}, offset {:.3f} hPa, rms {:.3f} hPa, mean difference {:+.3f} hPa over {} "
+        "samples; the errors are those of independent samples.",
+        fit.slope, fit.slope_error, fit.offset, fit.rms, fit.mean_difference, fit.samples);
+  };
+  const auto pair = [&](const char* title, const std::string& caption, const char* x, const char* y,
+                        const LineFit& fit) {
+    PairPanel panel;
+    panel.title = title;
+    panel.caption = caption + note(fit);
+    panel.x = x;
+    panel.y = y;
+    panel.lines = {{1.0, 0.0, "equal"}, {fit.slope, fit.offset, "fitted line"}};
+    report_.items.emplace_back(std::move(panel));
+  };
+  using F = FlightResiduals;
+  using V = std::vector<double>;
+  const auto column = [this](const char* name, const char* title, const auto& series) {
+    add(name, title, "hPa", series);
+  };
+  if (comparison_.total_pressure) {
+    column("total", "total pressure of the model's system",
+           [](const F& f) -> const V& { return f.total_pressure; });
+    column("reference_total", "total pressure of the reference",
+           [](const F& f) -> const V& { return f.reference_total_pressure; });
+    pair("Total pressures of the two systems",
+         "Static defects cancel in the total pressure, so what is left is of the transducers, the pitots "
+         "and the lines. ",
+         "total", "reference_total", *comparison_.total_pressure);
+  }
+  column("corrected", "static pressure of the model",
+         [](const F& f) -> const V& { return f.corrected_pressure; });
+  report_.columns.push_back(report_.columns.back());
+  ReportColumn& reference = report_.columns.back();
+  reference.name = "reference_corrected";
+  reference.title = "static pressure of the reference";
+  for (std::size_t i = 0; i < reference.values.size(); ++i)
+    reference.values[i] += report_.columns.front().values[i];
+  pair("Corrected static pressures", "The line makes the distances perpendicular to it small. ", "corrected",
+       "reference_corrected", comparison_.static_pressure);
+}
+
+void ComparisonPanels::add_tables() {
+  ReportTable masks;
+  masks.title = "Samples";
+  masks.caption = "Every sample counts under the first reason that holds.";
+  masks.headers = {"samples", "why"};
+  for (std::size_t i = 0; i < mask_count; ++i) {
+    if (comparison_.masks[i] > 0)
+      masks.rows.push_back({std::to_string(comparison_.masks[i]),
+                            i == 0 ? "used" : "not used: " + std::string(mask_facts[i].meaning)});
+  }
+  report_.items.emplace_back(std::move(masks));
+  for (const ModelComparison& model : comparison_.models) {
+    ReportTable worst;
+    worst.title = comparison_.models.size() == 1 ? "The worst minutes" : "The worst minutes, " + model.name;
+    worst.caption = "The minutes with the largest rms residual, and what was flown.";
+    worst.headers = {"flight", "begin (UTC)", "end", "bias, hPa", "rms, hPa", "regimes"};
+    for (const WorstInterval& interval : model.worst) {
+      worst.rows.push_back({interval.flight, utc_text(interval.begin), utc_text(interval.end, "%H:%M:%S"),
+                            fmt::format("{:.3f}", interval.statistics.bias),
+                            fmt::format("{:.3f}", interval.statistics.rms), interval.regimes});
+    }
+    report_.items.emplace_back(std::move(worst));
+    ReportTable bands;
+    bands.title = comparison_.models.size() == 1 ? "By band" : "By band, " + model.name;
+    bands.caption = "Bands with fewer than 30 samples are left out.";
+    bands.headers = {"band", "samples", "bias, hPa", "std. error", "rms, hPa", "rms / noise"};
+    for (const PartStatistics& band : model.bands) {
+      bands.rows.push_back(
+          {band.name, std::to_string(band.statistics.samples), fmt::format("{:.3f}", band.statistics.bias),
+           fmt::format("{:.3f}", band.statistics.bias_error), fmt::format("{:.3f}", band.statistics.rms),
+           fmt::format("{:.1f}", band.statistics.rms_over_noise())});
+    }
+    report_.items.emplace_back(std::move(bands));
+  }
+}
+
+void ComparisonPanels::summarise() {
+  for (const ModelComparison& model : comparison_.models) {
+    report_.summary.push_back(
+        sentence(fmt::format("{}: bias {:+.3f} hPa, rms {:.3f} hPa, {:.1f} times the noise of {:.3f} hPa; R2 "
+                             "{:.4f}, over {} samples",
+                             model.name, model.all.bias, model.all.rms, model.all.rms_over_noise(),
+                             model.all.noise_rms, model.r_squared, model.all.samples)));
+  }
+  const ModelComparison& last = comparison_.models.back();
+  const PartStatistics* worst = nullptr;
+  for (const PartStatistics& part : last.regimes) {
+    if (part.statistics.samples < fewest_in_regime || !(part.statistics.rms_over_noise() > notable_failure))
+      continue;
+    if (worst == nullptr || fails_more(part.statistics, worst->statistics)) worst = &part;
+  }
+  if (worst != nullptr) {
+    report_.summary.push_back(fmt::format(
+        "{} fails most in the regime {}: bias {:+.3f} hPa, rms {:.3f} hPa, {:.1f} times the noise there.",
+        comparison_.models.size() == 1 ? "It" : "The last", worst->name, worst->statistics.bias,
+        worst->statistics.rms, worst->statistics.rms_over_noise()));
+  }
+  report_.facts.emplace_back("Reference", comparison_.reference);
+  for (const FlightResiduals& flight : comparison_.flights) {
+    const FlightSamples& samples = *flight.samples;
+    report_.facts.emplace_back("Flight",
+                               fmt::format("{}, {} to {} UTC", samples.name, utc_text(samples.time.front()),
+                                           utc_text(samples.time.back(), "%H:%M:%S")));
+  }
+  report_.facts.emplace_back("Program", "pcor " PCOR_VERSION);
+  for (const std::string& note : comparison_.notes) report_.facts.emplace_back("Note", note);
+}
+
+}  // namespace pcor

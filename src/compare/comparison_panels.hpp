@@ -1,0 +1,35 @@
+#pragma once
+
+#include <pcor/compare/compare.hpp>
+#include <pcor/report/report.hpp>
+
+#include <string>
+#include <vector>
+
+namespace pcor {
+
+/// The columns that all pictures of a comparison share, and the panels of every report of one.
+class ComparisonPanels {
+ public:
+  explicit ComparisonPanels(const Comparison& comparison);
+
+  Report& report() { return report_; }
+
+  void add_panels();
+  /// The systems against each other: figures 1 and 2 of the memo.
+  void add_pairs();
+  void add_tables();
+  void summarise();
+
+ private:
+  template <class Series>
+  void add(const std::string& name, const std::string& title, const std::string& unit, const Series& series);
+
+  const Comparison& comparison_;
+  Report report_;
+  std::vector<std::string> residuals_;
+  std::vector<std::string> variables_;
+  std::vector<std::string> defects_;  // delta-p of the reference and of every model
+};
+
+}  // namespace pcor

@@ -1,0 +1,18 @@
+#include <pcor/compare/comparison_report.hpp>
+
+#include "compare/comparison_panels.hpp"
+
+namespace pcor {
+
+Report comparison_report(const Comparison& comparison) {
+  ComparisonPanels panels(comparison);
+  panels.report().title = "Pressure corrections against " + comparison.reference;
+  panels.report().subtitle = "Where the model fails";
+  panels.summarise();
+  panels.add_panels();
+  panels.add_pairs();
+  panels.add_tables();
+  return std::move(panels.report());
+}
+
+}  // namespace pcor

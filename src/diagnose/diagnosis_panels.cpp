@@ -1,0 +1,334 @@
+#include "diagnose/diagnosis_panels.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/model/formula.hpp>
+#include <pcor/words/utc.hpp>
+
+#include "diagnose/finding_page.hpp"
+
+namespace pcor::report {
+namespace {
+
+constexpr std::size_t rivals_in_title = 2;
+
+const std::string mach = "mach";
+const std::string pressure = "static_pressure";
+
+/// The column of a variable of the files that is no quantity of the model.
+std::string variable_column(const std::string& variable) { return "variable " + variable; }
+
+/// The column that shows a quantity, its own or that of one that goes with it.
+std::string column_of(Quantity quantity) {
+  constexpr std::pair<Quantity, Quantity> stand_ins[]{
+      {Quantity::attack_ratio, Quantity::attack},
+      {Quantity::attack_differential_pressure, Quantity::attack},
+      {Quantity::sideslip_ratio, Quantity::sideslip},
+      {Quantity::sideslip_differential_pressure, Quantity::sideslip},
+      {Quantity::static_pressure_rate, Quantity::vertical_speed},
+      {Quantity::dynamic_ratio, Quantity::mach},
+      {Quantity::corrected_mach, Quantity::mach},
+      {Quantity::port_static_pressure, Quantity::static_pressure},
+      {Quantity::corrected_static_pressure, Quantity::static_pressure},
+      {Quantity::port_dynamic_pressure, Quantity::dynamic_pressure},
+      {Quantity::corrected_dynamic_pressure, Quantity::dynamic_pressure},
+      {Quantity::corrected_airspeed, Quantity::true_airspeed},
+      {Quantity::lams_airspeed, Quantity::true_airspeed},
+  };
+  for (const auto& [of, shown] : stand_ins) {
+    if (quantity == of) return std::string(facts_of(shown).name);
+  }
+  return std::string(facts_of(quantity).name);
+}
+
+std::string either(const Finding& finding) {
+  std::string names = finding.effect.id;
+  if (finding.aliases.size() > rivals_in_title) {
+    names += fmt::format(" or one of {} others", finding.aliases.size());
+  } else {
+    for (const Alias& alias : finding.aliases) names += " or " + alias.effect;
+  }
+  return fmt::format("An effect is missing, {}: these flights cannot tell which", names);
+}
+
+ReportTable variables_table(const Unexplained& unexplained) {
+  ReportTable table;
+  table.title = "Variables that the unexplained structure goes with";
+  table.caption =
+      "Share of the residual's variance that goes with the variable in any way and along a straight line; p "
+      "is protected against chance over all variables.";
+  table.headers = {"variable", "share", "on a line", "slope", "hPa per", "p", "formula", "what"};
+  for (const TracedVariable& variable : unexplained.variables) {
+    table.rows.push_back({variable.name, percent(variable.r2), percent(variable.linear_r2),
+                          with_error(variable.slope, variable.slope_error), variable.unit,
+                          probability(variable.p_value), variable.formula, variable.description});
+  }
+  return table;
+}
+
+}  // namespace
+
+std::string numbered(const char* name, std::size_t number) { return name + std::to_string(number + 1); }
+
+Series one_of(const std::vector<Series>& all, std::size_t number) {
+  return number < all.size() ? all[number] : Series{};
+}
+
+std::vector<std::string> inputs_of(const ModelEffect& effect) {
+  std::vector<std::string> inputs;
+  if (effect.is_formula()) {
+    if (const auto formula = Formula::parse(effect.formula, effect.parameter_names)) {
+      for (const std::string& name : formula->variables()) {
+        const Quantity quantity = quantity_named(name);
+        inputs.push_back(quantity == Quantity::count ? variable_column(name) : column_of(quantity));
+      }
+    }
+  } else if (const std::size_t place = effect_named(effect.id); place < catalogue_size) {
+    for (std::size_t i = 0; i < effect_facts[place].need_count(); ++i)
+      inputs.push_back(column_of(effect_facts[place].needs[i]));
+  }
+  std::stable_partition(inputs.begin(), inputs.end(),
+                        [](const std::string& name) { return name != pressure; });
+  return inputs;
+}
+
+std::string cell(double value, int decimals) {
+  return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "";
+}
+
+std::string what_is_missing(const Diagnosis& diagnosis) {
+  std::vector<std::string> ids;
+  for (const Finding& finding : diagnosis.findings) ids.push_back(finding.effect.id);
+  const std::string effects = ids.size() == 1 ? "An effect is missing: " + diagnosis.findings.front().title
+                                              : "Effects are missing: " + list_text(ids);
+  switch (diagnosis.verdict) {
+    case Verdict::identified:
+      return effects;
+    case Verdict::ambiguous:
+      return ids.size() == 1 ? either(diagnosis.findings.front())
+                             : effects + "; these flights cannot tell all of them from others";
+    case Verdict::partial:
+      return effects + "; structure is left that no effect explains";
+    case Verdict::unexplained:
+      return "Structure is left that no effect explains";
+    case Verdict::silent:
+      break;
+  }
+  return "Nothing is missing that these flights could show";
+}
+
+std::string coefficient_limits(const UpperLimit& limit) {
+  std::vector<std::string> all;
+  for (std::size_t i = 0; i < std::min(limit.estimates.size(), limit.limits.size()); ++i) {
+    const Estimate& e = limit.estimates[i];
+    if (std::isfinite(limit.limits[i]))
+      all.push_back(
+          fmt::format("|{}| < {}", e.name, with_unit(fmt::format("{:.2g}", limit.limits[i]), e.unit)));
+  }
+  return list_text(all);
+}
+
+DiagnosisPanels::DiagnosisPanels(const Flights& flights) {
+  for (std::size_t number = 0; number < flights.size(); ++number) {
+    const FlightDiagnosis& flight = flights[number];
+    if (flight.samples == nullptr) continue;
+    Used used{number, flight.samples.get(), {}};
+    for (std::size_t i = 0; i < flight.before.size(); ++i) {
+      if (std::isfinite(flight.before[i])) used.places.push_back(i);
+    }
+    if (used.places.empty()) continue;
+    report_.flight_starts.push_back(report_.time.size());
+    report_.flight_names.push_back(used.samples->name);
+    for (const std::size_t i : used.places) report_.time.push_back(used.samples->time[i]);
+    for (const Interval& interval : used.samples->intervals) {
+      const bool met = std::any_of(used.places.begin(), used.places.end(), [&](std::size_t i) {
+        return used.samples->time[i] >= interval.begin && used.samples->time[i] < interval.end;
+      });
+      if (met)
+        report_.intervals.push_back(
+            {std::string(facts_of(interval.regime).name), interval.begin, interval.end});
+    }
+    used_.push_back(std::move(used));
+  }
+  add_variables(flights);
+}
+
+bool DiagnosisPanels::meet(const std::vector<std::string>& names) const {
+  std::vector<const Series*> all;
+  for (const std::string& name : names) {
+    const ReportColumn* one = column(name);
+    if (one == nullptr) return false;
+    all.push_back(&one->values);
+  }
+  for (std::size_t i = 0; i < report_.time.size(); ++i) {
+    if (std::all_of(all.begin(), all.end(),
+                    [i](const Series* values) { return std::isfinite((*values)[i]); }))
+      return true;
+  }
+  return false;
+}
+
+void DiagnosisPanels::add_time(std::string title, std::string caption, std::vector<std::string> columns,
+                               std::string axis) {
+  if (columns.empty()) return;
+  add(TimePanel{std::move(title), std::move(caption), std::move(columns), std::move(axis)});
+}
+
+void DiagnosisPanels::add_binned(std::string title, std::string caption, std::vector<std::string> y,
+                                 const std::vector<std::string>& first) {
+  BinnedPanel panel;
+  y.erase(std::remove_if(y.begin(), y.end(), [&](const std::string& name) { return !meet({name}); }),
+          y.end());
+  const auto offer = [&](const std::string& x) {
+    const bool known = std::find(panel.x_choices.begin(), panel.x_choices.end(), x) != panel.x_choices.end();
+    const bool shown = std::any_of(y.begin(), y.end(), [&](const std::string& name) {
+      return meet({x, name});
+    });
+    if (!known && shown) panel.x_choices.push_back(x);
+  };
+  for (const std::string& x : first) offer(x);
+  for (const std::string& x : variables_) offer(x);
+  if (panel.x_choices.empty()) return;
+  panel.title = std::move(title);
+  panel.caption = std::move(caption);
+  panel.y = std::move(y);
+  panel.axis = "residual";
+  panel.samples_per_independent = memory_;
+  add(std::move(panel));
+}
+
+void DiagnosisPanels::add_plane(std::string title, std::string caption, const std::string& colour) {
+  if (meet({mach, pressure, colour}))
+    add(PlanePanel{std::move(title), std::move(caption), mach, pressure, colour, true});
+}
+
+void DiagnosisPanels::add_table(ReportTable table) {
+  if (!table.rows.empty()) add(std::move(table));
+}
+
+void DiagnosisPanels::add_flight_facts() {
+  for (const Used& used : used_) {
+    report_.facts.emplace_back(
+        "Flight", fmt::format("{}, {} to {} UTC", used.samples->name, utc_text(used.samples->time.front()),
+                              utc_text(used.samples->time.back(), "%H:%M:%S")));
+  }
+}
+
+const ReportColumn* DiagnosisPanels::column(const std::string& name) const {
+  const auto found = std::find_if(report_.columns.begin(), report_.columns.end(),
+                                  [&](const ReportColumn& one) { return one.name == name; });
+  return found == report_.columns.end() ? nullptr : &*found;
+}
+
+void DiagnosisPanels::add_variables(const Flights& flights) {
+  using F = FlightDiagnosis;
+  add_variable(mach, "Mach number", "", flights, [](const F& f) { return f.mach; });
+  add_variable(pressure, "static pressure", "hPa", flights, [](const F& f) { return f.static_pressure; });
+  add_variable("attack", "angle of attack", "deg", flights, [](const F& f) { return f.attack; });
+  add_variable("sideslip", "sideslip", "deg", flights, [](const F& f) { return f.sideslip; });
+  const auto motion = [&](const char* name, const char* title, const char* unit, Series FlightMotion::*of) {
+    add_variable(name, title, unit, flights, [of](const F& f) { return f.samples->motion.*of; });
+  };
+  motion("vertical_speed", "vertical speed", "m/s", &FlightMotion::vertical_speed);
+  motion("true_airspeed", "true airspeed", "m/s", &FlightMotion::airspeed);
+  motion("roll", "roll", "deg", &FlightMotion::roll);
+  add_variable("time", "time since the first record", "h", flights, [](const F& f) {
+    Series hours;
+    for (const double time : f.samples->time) hours.push_back((time - f.samples->time.front()) / 3600.0);
+    return hours;
+  });
+  for (std::size_t i = 0; i < role_count; ++i) {
+    const auto quantity = static_cast<Quantity>(i);
+    if (column_of(quantity) != facts_of(quantity).name) continue;
+    const QuantityFacts& facts = facts_of(quantity);
+    add_variable(std::string(facts.name), std::string(facts.description), std::string(facts.unit), flights,
+                 [quantity](const F& f) {
+                   const Series* values = f.samples->model.find(quantity);
+                   return values == nullptr ? Series{} : *values;
+                 });
+  }
+}
+
+void add_facts(DiagnosisPanels& panels, const Diagnosis& diagnosis, const ModelFile& model,
+               const Facts& numbers) {
+  Facts& facts = panels.report().facts;
+  facts.emplace_back("Model", model.model.name);
+  facts.emplace_back("Reference", diagnosis.reference);
+  facts.insert(facts.end(), numbers.begin(), numbers.end());
+  facts.emplace_back("Samples", std::to_string(diagnosis.samples));
+  std::vector<std::string> left_out;
+  for (std::size_t i = 1; i < mask_count; ++i) {
+    if (diagnosis.masks[i] > 0)
+      left_out.push_back(fmt::format("{} {}", diagnosis.masks[i], mask_facts[i].meaning));
+  }
+  if (!left_out.empty()) facts.emplace_back("Not used", fmt::format("{}", fmt::join(left_out, "; ")));
+  panels.add_flight_facts();
+  facts.emplace_back("Program", "pcor " PCOR_VERSION);
+  for (const std::string& note : diagnosis.notes) facts.emplace_back("Note", note);
+}
+
+void add_tables(DiagnosisPanels& panels, const Diagnosis& diagnosis) {
+  ReportTable limits;
+  limits.title = "How large what was not found may be";
+  limits.caption =
+      "Limits hold with 95 % confidence; the rms is what an effect at its limit would add beyond the model's "
+      "coefficients.";
+  limits.headers = {"effect", "estimate", "limit", "rms, hPa", "what"};
+  for (const UpperLimit& limit : diagnosis.limits) {
+    limits.rows.push_back({limit.effect, estimates_text(limit.estimates), coefficient_limits(limit),
+                           cell(limit.rms, 3),
+                           limit.note.empty() ? limit.title : limit.title + ": " + limit.note});
+  }
+  panels.add_table(std::move(limits));
+  ReportTable absorbed;
+  absorbed.title = "Effects that the model's own coefficients imitate";
+  absorbed.caption = "What remains is the part of the effect's variance that the coefficients leave.";
+  absorbed.headers = {"effect", "imitated by", "remains", "what"};
+  for (const AbsorbedEffect& effect : diagnosis.absorbed) {
+    absorbed.rows.push_back({effect.effect, list_text(effect.by), percent(effect.remaining), effect.title});
+  }
+  panels.add_table(std::move(absorbed));
+  ReportTable not_testable;
+  not_testable.title = "Effects that could not be tested";
+  not_testable.headers = {"effect", "what", "why"};
+  for (const NotTestable& effect : diagnosis.not_testable)
+    not_testable.rows.push_back({effect.effect, effect.title, effect.reason});
+  panels.add_table(std::move(not_testable));
+}
+
+void add_unexplained(DiagnosisPanels& panels, const Diagnosis& diagnosis, const std::string& left) {
+  const Unexplained& unexplained = diagnosis.unexplained;
+  if (!unexplained.significant) return;
+  panels.add(ReportText{"What no effect explains", unexplained_text(unexplained)});
+  if (panels.add_column("drift", "slow drift", "hPa", diagnosis.flights,
+                        [](const FlightDiagnosis& f) { return f.drift; }))
+    panels.add_time("Residual that is left, and its slow drift",
+                    "The drift is what wanders slowly, over many minutes.", {left, "drift"}, "residual");
+  panels.add_table(variables_table(unexplained));
+  if (unexplained.variables.empty()) return;
+  const std::string& variable = unexplained.variables.front().name;
+  if (panels.meet({variable_column(variable), left}))
+    panels.add_binned("What is left, against " + variable, structure_caption, {left},
+                      {variable_column(variable)});
+}
+
+void add_traced(DiagnosisPanels& panels, const Diagnosis& diagnosis) {
+  if (diagnosis.unexplained.variables.empty()) return;
+  const TracedVariable& variable = diagnosis.unexplained.variables.front();
+  panels.add_variable(variable_column(variable.name), variable.name, variable.unit, diagnosis.flights,
+                      [](const FlightDiagnosis& f) { return f.traced; });
+}
+
+void add_residual_panels(DiagnosisPanels& panels, const std::vector<std::string>& residuals) {
+  if (panels.report().time.empty()) return;
+  panels.add_time("Residual in time",
+                  "Static pressure of the reference less that of the model; regimes are shaded. Drag over a "
+                  "time range, or choose a regime, and every picture shows its samples alone.",
+                  residuals, "residual");
+  panels.add(RegimeTable{"By regime", "Bias and rms of the residual in each regime of the selected samples.",
+                         residuals});
+}
+
+}  // namespace pcor::report

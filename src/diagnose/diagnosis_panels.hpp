@@ -1,0 +1,153 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pcor/diagnose/diagnose.hpp>
+#include <pcor/numerics/noise.hpp>
+#include <pcor/report/report.hpp>
+
+/// What reports of a diagnosis and of an improvement share: their columns, panels and tables.
+namespace pcor::report {
+
+using Flights = std::vector<FlightDiagnosis>;
+using Series = std::vector<double>;
+using Facts = std::vector<std::pair<std::string, std::string>>;
+
+inline constexpr const char* structure_caption =
+    "A slope or a bend that is more than the error bars is something that the model does not have.";
+inline constexpr const char* effect_caption =
+    "Without the effect the residual has a slope or a bend that is more than the error bars; with it none "
+    "should be left.";
+
+/// The name of one of several columns, "residual1".
+std::string numbered(const char* name, std::size_t number);
+
+/// One of several series of a flight; none where it does not have that many.
+Series one_of(const std::vector<Series>& all, std::size_t number);
+
+/// What an effect depends on, by the names of columns, the pressure last: most effects grow with it.
+std::vector<std::string> inputs_of(const ModelEffect& effect);
+
+/// Empty for what is no number.
+std::string cell(double value, int decimals);
+
+/// The verdict as a title.
+std::string what_is_missing(const Diagnosis& diagnosis);
+
+/// The columns and panels of a report about diagnoses of the same flights. Its samples are those in which the
+/// first diagnosis has a residual.
+class DiagnosisPanels {
+ public:
+  explicit DiagnosisPanels(const Flights& flights);
+
+  Report& report() { return report_; }
+
+  template <class Panel>
+  void add(Panel panel) {
+    report_.items.emplace_back(std::move(panel));
+  }
+
+  /// Adds the column and returns true, if it has any value. @param series of a `FlightDiagnosis`
+  template <class Of>
+  bool add_column(const std::string& name, const std::string& title, const std::string& unit,
+                  const Flights& flights, const Of& series) {
+    Series values;
+    values.reserve(report_.time.size());
+    for (const Used& used : used_) {
+      const bool same = used.number < flights.size() && flights[used.number].samples != nullptr &&
+                        flights[used.number].samples->time.size() == used.samples->time.size();
+      const Series part = same ? series(flights[used.number]) : Series{};
+      for (const std::size_t i : used.places)
+        values.push_back(i < part.size() ? part[i] : std::numeric_limits<double>::quiet_NaN());
+    }
+    if (std::none_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); })) return false;
+    report_.columns.push_back({name, title, unit == "1" ? "" : unit, std::move(values)});
+    return true;
+  }
+
+  /// As `add_column`, for a variable that residuals are drawn against.
+  template <class Of>
+  void add_variable(const std::string& name, const std::string& title, const std::string& unit,
+                    const Flights& flights, const Of& series) {
+    if (column(name) == nullptr && add_column(name, title, unit, flights, series)) variables_.push_back(name);
+  }
+
+  /// Whether some sample has a value in all of these columns.
+  bool meet(const std::vector<std::string>& names) const;
+
+  void add_time(std::string title, std::string caption, std::vector<std::string> columns, std::string axis);
+
+  /// Residuals against the variables, those of `first` that there are before the others.
+  void add_binned(std::string title, std::string caption, std::vector<std::string> y,
+                  const std::vector<std::string>& first);
+
+  void add_plane(std::string title, std::string caption, const std::string& colour);
+
+  /// Unless it has no rows.
+  void add_table(ReportTable table);
+
+  /// Takes the memory of the noise, for error bars, from a residual without structure.
+  template <class Of>
+  void measure_memory(const Flights& flights, const Of& series) {
+    double samples = 0.0;
+    double independent = 0.0;
+    for (const FlightDiagnosis& flight : flights) {
+      if (flight.samples == nullptr) continue;
+      const Series& values = series(flight);
+      if (values.size() != flight.samples->time.size()) continue;
+      const double step = flight.samples->step;
+      const NoiseFloor noise = noise_floor(values, stretches_of(values, flight.samples->time, step), step);
+      const auto count = static_cast<double>(
+          std::count_if(values.begin(), values.end(), [](double x) { return std::isfinite(x); }));
+      samples += count;
+      independent += count / noise.samples_per_independent;
+    }
+    if (independent > 0.0) memory_ = std::max(1.0, samples / independent);
+  }
+
+  void add_flight_facts();
+
+ private:
+  /// A flight and the samples of it that the report shows.
+  struct Used {
+    std::size_t number;
+    const FlightSamples* samples;
+    std::vector<std::size_t> places;
+  };
+
+  const ReportColumn* column(const std::string& name) const;
+
+  void add_variables(const Flights& flights);
+
+  Report report_;
+  std::vector<Used> used_;
+  std::vector<std::string> variables_;
+  double memory_ = 1.0;
+};
+
+/// @param numbers what else is said after the model and the reference
+void add_facts(DiagnosisPanels& panels, const Diagnosis& diagnosis, const ModelFile& model,
+               const Facts& numbers);
+
+/// Upper limits, and what could not be seen or tested.
+void add_tables(DiagnosisPanels& panels, const Diagnosis& diagnosis);
+
+/// What no effect explains, and the variable that it goes with.
+/// @param left the column of the residual that is left
+void add_unexplained(DiagnosisPanels& panels, const Diagnosis& diagnosis, const std::string& left);
+
+/// The variable that most of the unexplained structure goes with, where there is one.
+void add_traced(DiagnosisPanels& panels, const Diagnosis& diagnosis);
+
+void add_residual_panels(DiagnosisPanels& panels, const std::vector<std::string>& residuals);
+
+/// The largest values that coefficients may have, 95 % confidence: "|a0| < 0.001".
+std::string coefficient_limits(const UpperLimit& limit);
+
+}  // namespace pcor::report

@@ -1,0 +1,189 @@
+#include <pcor/diagnose/diagnosis_report.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pcor/words/utc.hpp>
+
+#include "diagnose/diagnosis_panels.hpp"
+#include "diagnose/finding_page.hpp"
+
+namespace pcor {
+namespace {
+
+using namespace report;
+
+constexpr std::size_t limits_in_summary = 3;
+
+void summarise(Report& report, const Diagnosis& diagnosis) {
+  report.summary.push_back(fmt::format(
+      "With the model's own coefficients fitted again the residual is {} hPa rms; the noise is {} hPa.",
+      hpa(diagnosis.residual_rms), hpa(diagnosis.noise_rms)));
+  for (const Finding& finding : diagnosis.findings) report.summary.push_back(finding_summary(finding));
+  if (diagnosis.findings.empty()) {
+    report.summary.push_back(
+        fmt::format("None of the {} effects that were tested exceeds the threshold.", diagnosis.candidates));
+  }
+  for (std::string& text : unexplained_text(diagnosis.unexplained)) report.summary.push_back(std::move(text));
+  std::vector<std::string> limits;
+  for (const UpperLimit& limit : diagnosis.limits) {
+    if (limits.size() == limits_in_summary) break;
+    if (std::string bound = coefficient_limits(limit); !bound.empty())
+      limits.push_back(fmt::format("{} {} ({} hPa rms)", limit.effect, bound, hpa(limit.rms)));
+  }
+  if (!limits.empty()) {
+    report.summary.push_back(
+        fmt::format("Not found, and with 95 % confidence not above: {}.", list_text(limits)));
+  }
+  if (!diagnosis.absorbed.empty()) {
+    std::vector<std::string> ids;
+    for (const AbsorbedEffect& effect : diagnosis.absorbed) ids.push_back(effect.effect);
+    report.summary.push_back(
+        "These flights cannot show what the model's own coefficients imitate: " + list_text(ids) + ".");
+  }
+}
+
+Facts numbers_of(const Diagnosis& diagnosis) {
+  return {{"Noise", hpa(diagnosis.noise_rms) + " hPa rms"},
+          {"Residual, coefficients as given", hpa(diagnosis.rms_given) + " hPa rms"},
+          {"Residual, refitted", hpa(diagnosis.residual_rms) + " hPa rms"},
+          {"Residual, parts not in the fit", hpa(diagnosis.residual_rms_held_out) + " hPa rms"},
+          {"Effects tested", std::to_string(diagnosis.candidates)},
+          {"Threshold", fmt::format("chi2 {:.1f}", diagnosis.threshold)}};
+}
+
+BarPanel ranking_bars(const Diagnosis& diagnosis) {
+  BarPanel bars;
+  bars.title = "Ranking";
+  bars.caption =
+      "By how much chi2 falls with each effect that was found, and with each rival (\"or\") in its place.";
+  bars.axis = "fall of chi2";
+  for (const Finding& finding : diagnosis.findings) {
+    bars.bars.push_back({finding.effect.id, finding.chi2});
+    for (const Alias& alias : finding.aliases)
+      bars.bars.push_back({"or " + alias.effect, finding.chi2 - alias.chi2_less});
+  }
+  bars.bars.push_back({"threshold", diagnosis.threshold});
+  return bars;
+}
+
+/// Empty where the usual size is not known.
+std::string ratio_cell(double ratio) { return ratio == 0.0 ? "" : ratio_text(ratio); }
+
+ReportTable ranking_table(const Diagnosis& diagnosis) {
+  ReportTable table;
+  table.title = "Findings and their rivals";
+  table.caption =
+      "A rival (\"or\") explains the flights as well as the effect above it. The correlation is that of what "
+      "the two leave after the model's own coefficients; the size is that of the coefficient over its usual "
+      "size.";
+  table.headers = {"",    "effect", "coefficients", "rms, hPa", "fall of chi2", "correlation", "size / usual",
+                   "what"};
+  for (std::size_t i = 0; i < diagnosis.findings.size(); ++i) {
+    const Finding& finding = diagnosis.findings[i];
+    table.rows.push_back({std::to_string(i + 1), finding.effect.id, estimates_text(finding.estimates),
+                          cell(finding.rms, 3), cell(finding.chi2, 1), "",
+                          ratio_cell(size_to_usual(finding.estimates)), finding.title});
+    for (const Alias& alias : finding.aliases) {
+      table.rows.push_back(
+          {"or", alias.effect, estimates_text(alias.estimates), "", cell(finding.chi2 - alias.chi2_less, 1),
+           fmt::format("{:+.3f}", alias.correlation), ratio_cell(alias.size_to_usual), alias.title});
+    }
+  }
+  return table;
+}
+
+ReportTable evidence_table(const std::vector<Finding>& findings) {
+  ReportTable table;
+  table.title = "Where the evidence lies";
+  table.caption = "The stretches that speak most for each effect.";
+  table.headers = {"effect", "flight", "begin (UTC)", "end", "share", "regimes"};
+  for (const Finding& finding : findings) {
+    for (const Evidence& evidence : finding.evidence) {
+      table.rows.push_back({finding.effect.id, evidence.flight, utc_text(evidence.begin),
+                            utc_text(evidence.end, "%H:%M:%S"), percent(evidence.share), evidence.regimes});
+    }
+  }
+  return table;
+}
+
+/// The pictures of what a diagnosis found, and a page for each finding.
+void add_findings(DiagnosisPanels& panels, const Diagnosis& diagnosis,
+                  const std::vector<std::string>& residuals) {
+  using F = FlightDiagnosis;
+  const std::vector<Finding>& findings = diagnosis.findings;
+  std::vector<std::string> evidence;
+  std::vector<std::string> added;
+  for (std::size_t i = 0; i < findings.size(); ++i) {
+    const std::string& id = findings[i].effect.id;
+    if (std::string name = numbered("evidence", i);
+        panels.add_column(name, "evidence for " + id, "1/min", diagnosis.flights,
+                          [i](const F& f) { return one_of(f.evidence, i); }))
+      evidence.push_back(std::move(name));
+    if (std::string name = numbered("added", i); panels.add_column(
+            name, "added by " + id, "hPa", diagnosis.flights, [i](const F& f) { return one_of(f.added, i); }))
+      added.push_back(std::move(name));
+  }
+  panels.add_time("What the missing effects add", "To the residual, with the estimated coefficients.", added,
+                  "added");
+  panels.add_time("Evidence in time", "Fall of chi2 per minute around each sample.", evidence,
+                  "fall of chi2");
+  panels.add(ranking_bars(diagnosis));
+  panels.add_plane("What is left, over Mach number and pressure",
+                   "Residual with all findings: one colour over a region is a bias there.", residuals.back());
+  panels.add(ranking_table(diagnosis));
+  panels.add_table(evidence_table(findings));
+  for (std::size_t i = 0; i < findings.size(); ++i) {
+    const std::string& id = findings[i].effect.id;
+    panels.add(
+        finding_page(findings[i], diagnosis.threshold,
+                     findings.size() == 1 ? "The finding: " + id : fmt::format("Finding {}: {}", i + 1, id)));
+    std::vector<std::string> inputs = inputs_of(findings[i].effect);
+    inputs.push_back(numbered("added", i));
+    panels.add_binned("Residual before and after, against what " + id + " depends on", effect_caption,
+                      residuals, inputs);
+    panels.add_plane("Evidence for " + id + ", over Mach number and pressure",
+                     "Orange speaks for the effect, blue against it.", numbered("evidence", i));
+  }
+}
+
+}  // namespace
+
+Report diagnosis_report(const Diagnosis& diagnosis, const ModelFile& model) {
+  using F = FlightDiagnosis;
+  DiagnosisPanels panels(diagnosis.flights);
+  Report& report = panels.report();
+  report.title = what_is_missing(diagnosis);
+  report.subtitle = fmt::format("Diagnosis of {} against {}", model.model.name, diagnosis.reference);
+  summarise(report, diagnosis);
+  add_facts(panels, diagnosis, model, numbers_of(diagnosis));
+
+  const bool found = !diagnosis.findings.empty();
+  add_traced(panels, diagnosis);
+  std::vector<std::string> residuals{"before"};
+  panels.add_column("before", found ? "residual before" : "residual", "hPa", diagnosis.flights,
+                    [](const F& f) { return f.before; });
+  if (found && panels.add_column("after", "residual after, with all findings", "hPa", diagnosis.flights,
+                                 [](const F& f) { return f.after; }))
+    residuals.emplace_back("after");
+  panels.measure_memory(diagnosis.flights,
+                        [&](const F& f) -> const Series& { return found ? f.after : f.before; });
+  add_residual_panels(panels, residuals);
+  if (found) {
+    add_findings(panels, diagnosis, residuals);
+  } else {
+    panels.add_binned("Residual against a variable", structure_caption, residuals, {});
+    panels.add_plane("Residual over Mach number and pressure", "One colour over a region is a bias there.",
+                     "before");
+  }
+  add_unexplained(panels, diagnosis, residuals.back());
+  add_tables(panels, diagnosis);
+  return std::move(report);
+}
+
+}  // namespace pcor

@@ -1,0 +1,264 @@
+#include "diagnose/finding_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstddef>
+#include <string_view>
+#include <utility>
+
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/words/utc.hpp>
+
+namespace pcor::report {
+namespace {
+
+constexpr std::size_t most_in_a_sentence = 3;
+
+/// What the page says of an effect without any flight.
+struct Law {
+  std::string formula, unit, added_to, size, look_alikes, manoeuvre, source;
+};
+
+Law law_of(const ModelEffect& effect) {
+  const std::size_t place = effect_named(effect.id);
+  if (effect.is_formula() || place == catalogue_size) {
+    return {effect.formula, effect.unit, std::string(facts_of(effect.where).adds_to), "", "", "",
+            effect.source};
+  }
+  const EffectFacts& facts = effect_facts[place];
+  return {std::string(facts.formula),
+          std::string(facts_of(facts.where).unit),
+          std::string(facts_of(facts.where).adds_to),
+          std::string(facts.size),
+          std::string(facts.look_alikes),
+          std::string(facts.manoeuvre),
+          std::string(facts.source)};
+}
+
+std::string times_usual(double ratio) { return ratio_text(ratio) + " times the usual size"; }
+
+std::string what_it_is(const Finding& finding, const Law& law) {
+  std::string text = "What is missing: " + name_with_id(finding.title, finding.effect.id) + ".";
+  if (law.formula.empty()) return text;
+  const bool defect = law.added_to.rfind("delta-p", 0) == 0;
+  return text + fmt::format(" The correction {}{} is added to {}.", law.formula,
+                            law.unit.empty() || law.unit == "1" ? "" : fmt::format(" ({})", law.unit),
+                            defect ? "delta-p" : "the " + law.added_to);
+}
+
+std::string how_large(const Finding& finding, const Law& law) {
+  std::string text = fmt::format("The flights give {}", estimates_text(finding.estimates));
+  if (const double ratio = size_to_usual(finding.estimates); ratio > 0.0) text += ", " + times_usual(ratio);
+  text += ".";
+  if (!law.size.empty()) text += fmt::format(" Sizes met in practice: {}.", law.size);
+  text += fmt::format(" Over the samples used it adds {} hPa rms to the residual", hpa(finding.rms));
+  if (!finding.worst_flight.empty() && std::isfinite(finding.worst)) {
+    text += fmt::format(", and at most {:+.3f} hPa, in {} at {} UTC", finding.worst, finding.worst_flight,
+                        utc_text(finding.worst_time));
+  }
+  return text + ".";
+}
+
+std::string how_sure(const Finding& finding, double threshold) {
+  std::string text = fmt::format(
+      "The evidence is a fall of chi2 by {:.1f}, where {:.1f} would have been enough; on flights without any "
+      "effect the best of all candidates comes as far with a probability of {}.",
+      finding.chi2, threshold, probability(finding.p_value));
+  if (finding.events > 0.0) {
+    text += finding.events < 1.5 ? " It rests on a single event."
+                                 : fmt::format(" It rests on about {:.0f} separate events.", finding.events);
+  }
+  std::vector<std::string> stretches;
+  for (const Evidence& evidence : finding.evidence) {
+    if (stretches.size() == most_in_a_sentence) break;
+    stretches.push_back(fmt::format("{}, {}", stretch_text(evidence), percent(evidence.share)));
+  }
+  if (!stretches.empty()) text += fmt::format(" Most of it lies in {}.", fmt::join(stretches, "; "));
+  return text;
+}
+
+std::string held_out(const Finding& finding) {
+  if (!std::isfinite(finding.rms_before) || !std::isfinite(finding.rms_after)) return "";
+  return fmt::format("On stretches that took no part in the fit the rms residual {} from {} to {} hPa.",
+                     finding.rms_after < finding.rms_before ? "falls" : "does not fall: it goes",
+                     hpa(finding.rms_before), hpa(finding.rms_after));
+}
+
+std::string rival(const Alias& alias) {
+  std::string text = fmt::format("{} ({}{}correlation {:+.3f}, chi2 {:.1f} {}", alias.effect, alias.title,
+                                 alias.title.empty() ? "" : "; ", alias.correlation,
+                                 std::abs(alias.chi2_less), alias.chi2_less < 0.0 ? "higher" : "lower");
+  if (alias.size_to_usual != 0.0 && std::isfinite(alias.size_to_usual))
+    text += ", " + times_usual(alias.size_to_usual);
+  return text + ")";
+}
+
+std::string rivals(const Finding& finding, const Law& law) {
+  std::string text = "No other effect that was tested explains these flights as well.";
+  if (!finding.aliases.empty()) {
+    std::vector<std::string> all;
+    for (const Alias& alias : finding.aliases) {
+      if (all.size() < most_in_a_sentence) all.push_back(rival(alias));
+    }
+    text = fmt::format("These flights cannot tell it from {}", fmt::join(all, "; "));
+    if (const std::size_t more = finding.aliases.size() - all.size(); more > 0)
+      text += fmt::format("; and {} more, which the ranking lists", more);
+    text += ".";
+  }
+  if (!finding.advice.sentence.empty()) {
+    text += " " + sentence(finding.advice.sentence);
+    if (!finding.advice.manoeuvre.empty() && finding.advice.power > 0.0)
+      text += fmt::format(" That would decide with a probability of {}.", percent(finding.advice.power));
+  } else if (!law.look_alikes.empty()) {
+    text += fmt::format(" In general it is easily taken for {}", law.look_alikes);
+    text += law.manoeuvre.empty() ? "." : fmt::format("; what tells them apart: {}.", law.manoeuvre);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string sentence(std::string text) {
+  if (text.empty()) return text;
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  if (std::string_view(".!?").find(text.back()) == std::string_view::npos) text += ".";
+  return text;
+}
+
+std::string list_text(const std::vector<std::string>& all) {
+  if (all.size() < 2) return all.empty() ? "" : all.front();
+  return fmt::format("{} and {}", fmt::join(all.begin(), all.end() - 1, ", "), all.back());
+}
+
+std::string with_unit(const std::string& number, const std::string& unit) {
+  return unit.empty() || unit == "1" ? number : number + " " + unit;
+}
+
+std::string with_error(double value, double error) {
+  constexpr int most_decimals = 7;
+  if (!std::isfinite(value)) return "unknown";
+  if (!(error > 0.0) || !std::isfinite(error)) return fmt::format("{:.4g}", value);
+  const int decimals = std::max(0, 1 - static_cast<int>(std::floor(std::log10(error))));
+  return decimals > most_decimals ? fmt::format("{:.3g} ± {:.2g}", value, error)
+                                  : fmt::format("{0:.{2}f} ± {1:.{2}f}", value, error, decimals);
+}
+
+std::string hpa(double value) { return std::isfinite(value) ? fmt::format("{:.3f}", value) : "unknown"; }
+
+std::string probability(double p) {
+  constexpr double least = 1e-6;
+  if (!std::isfinite(p)) return "unknown size";
+  return p < least ? "less than one in a million" : fmt::format("{:.2g}", p);
+}
+
+std::string percent(double share) {
+  if (!std::isfinite(share)) return "unknown";
+  return fmt::format("{:.{}f} %", 100.0 * share, std::abs(share) < 0.0995 ? 1 : 0);
+}
+
+std::string estimates_text(const std::vector<Estimate>& estimates) {
+  std::vector<std::string> all;
+  for (const Estimate& e : estimates) {
+    all.push_back(
+        std::isfinite(e.value)
+            ? fmt::format("{} = {}", e.name, with_unit(with_error(e.value, e.standard_error), e.unit))
+            : e.name + " unknown");
+  }
+  return list_text(all);
+}
+
+double size_to_usual(const std::vector<Estimate>& estimates) {
+  for (const Estimate& e : estimates) {
+    const double ratio = std::abs(e.value / e.typical);
+    if (std::isfinite(ratio)) return ratio;
+  }
+  return 0.0;
+}
+
+std::string ratio_text(double ratio) {
+  const double size = std::abs(ratio);
+  if (!std::isfinite(size)) return "";
+  if (size < 0.095) return fmt::format("{:.1g}", size);
+  return fmt::format("{:.{}f}", size, size < 0.995 ? 2 : size < 9.95 ? 1 : 0);
+}
+
+std::string name_with_id(const std::string& title, const std::string& id) {
+  if (title.empty() || title == id) return id;
+  return id.empty() ? title : fmt::format("{} ({})", title, id);
+}
+
+std::string stretch_text(const Evidence& evidence) {
+  std::string text = fmt::format("{}, {} to {} UTC", evidence.flight, utc_text(evidence.begin),
+                                 utc_text(evidence.end, "%H:%M:%S"));
+  return evidence.regimes.empty() ? text : text + fmt::format(" ({})", evidence.regimes);
+}
+
+std::string finding_summary(const Finding& finding) {
+  std::string text =
+      fmt::format("Missing: {}, {}. It adds {} hPa rms", name_with_id(finding.title, finding.effect.id),
+                  estimates_text(finding.estimates), hpa(finding.rms));
+  if (std::isfinite(finding.worst)) text += fmt::format(", at most {:+.3f} hPa", finding.worst);
+  text += fmt::format("; chance would do as well with a probability of {}.", probability(finding.p_value));
+  if (!finding.evidence.empty())
+    text += fmt::format(" The strongest evidence is {}.", stretch_text(finding.evidence.front()));
+  if (finding.aliases.empty()) return text;
+  std::vector<std::string> all;
+  for (const Alias& alias : finding.aliases) {
+    if (all.size() < most_in_a_sentence) all.push_back(name_with_id(alias.effect, alias.title));
+  }
+  if (const std::size_t more = finding.aliases.size() - all.size(); more > 0)
+    all.push_back(fmt::format("{} more", more));
+  text += fmt::format(" These flights cannot tell it from {}.", list_text(all));
+  return finding.advice.sentence.empty() ? text : text + " " + sentence(finding.advice.sentence);
+}
+
+std::vector<std::string> unexplained_text(const Unexplained& unexplained) {
+  if (!unexplained.significant) return {};
+  std::string what =
+      fmt::format("Structure of {} hPa rms is left that no effect explains", hpa(unexplained.rms));
+  if (!unexplained.regime.empty())
+    what += fmt::format("; most of it lies in the regime {}", unexplained.regime);
+  what +=
+      fmt::format(". Chance would leave as much with a probability of {}.", probability(unexplained.p_value));
+  if (unexplained.drift_rms > 0.0) {
+    what += fmt::format(" Of it {} hPa wanders slowly.", hpa(unexplained.drift_rms));
+  }
+  std::vector<std::string> all{what};
+  if (unexplained.variables.empty()) {
+    all.emplace_back("It goes with no variable of the files that was looked at.");
+  } else {
+    const TracedVariable& first = unexplained.variables.front();
+    std::string with = fmt::format("It goes with {}, which takes {} of its variance",
+                                   name_with_id(first.description, first.name), percent(first.r2));
+    if (first.slope_error > 0.0) {
+      with +=
+          fmt::format(" (a straight line {}: {})", percent(first.linear_r2),
+                      with_unit(with_error(first.slope, first.slope_error),
+                                first.unit.empty() || first.unit == "1" ? "hPa" : "hPa per " + first.unit));
+    }
+    with += ".";
+    if (!first.formula.empty()) with += fmt::format(" The formula {} would describe it.", first.formula);
+    all.push_back(with);
+  }
+  if (!unexplained.shares_noise.empty()) {
+    all.push_back(fmt::format("Not looked at, since their noise is that of the residual: {}.",
+                              list_text(unexplained.shares_noise)));
+  }
+  return all;
+}
+
+ReportText finding_page(const Finding& finding, double threshold, const std::string& heading) {
+  const Law law = law_of(finding.effect);
+  ReportText page;
+  page.title = heading;
+  page.paragraphs = {what_it_is(finding, law), how_large(finding, law), how_sure(finding, threshold)};
+  if (std::string text = held_out(finding); !text.empty()) page.paragraphs.push_back(std::move(text));
+  page.paragraphs.push_back(rivals(finding, law));
+  if (!law.source.empty()) page.paragraphs.push_back(fmt::format("Source: {}.", law.source));
+  return page;
+}
+
+}  // namespace pcor::report

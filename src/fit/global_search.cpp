@@ -1,0 +1,121 @@
+#include "fit/global_search.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <nlopt.hpp>
+
+#include <pcor/words/error.hpp>
+
+namespace pcor {
+namespace {
+
+constexpr unsigned long seed = 20120106;
+constexpr int trials_per_dimension = 500;
+
+/// The least squares of a trial: searched parameters as given, the linear ones solved for.
+class Trial {
+ public:
+  Trial(FitFlights& flights, const FitSetup& setup, const Eigen::VectorXd& parameters,
+        const std::vector<bool>& linear, const std::function<void()>& tell)
+      : flights_(flights), setup_(setup), parameters_(parameters), tell_(tell) {
+    for (std::size_t k = 0; k < setup.wanted.size(); ++k) {
+      (linear[setup.wanted[k]] ? linear_ : searched_).push_back(as_index(k));
+    }
+    best_ = wanted();
+  }
+
+  const std::vector<Eigen::Index>& searched() const { return searched_; }
+  const Eigen::VectorXd& best() const { return best_; }
+
+  double operator()(const std::vector<double>& searched) {
+    for (std::size_t i = 0; i < searched.size(); ++i) parameters_[parameter(searched_[i])] = searched[i];
+    const Eigen::VectorXd offsets = Eigen::VectorXd::Zero(as_index(flights_.offsets()));
+    const Reduction reduction = flights_.reduce(parameters_, offsets, nullptr);
+    tell_();
+    if (!reduction.valid) return std::numeric_limits<double>::infinity();
+    const Eigen::VectorXd residual = reduction.factor.rightCols(1);
+    double squares = residual.squaredNorm();
+    Eigen::VectorXd found = wanted();
+    if (!linear_.empty()) {
+      const Eigen::MatrixXd rows = reduction.factor(Eigen::all, linear_);
+      const Eigen::VectorXd step = rows.completeOrthogonalDecomposition().solve(-residual);
+      squares = (residual + rows * step).squaredNorm();
+      for (std::size_t i = 0; i < linear_.size(); ++i) found[linear_[i]] += step[as_index(i)];
+    }
+    if (squares < least_) {
+      least_ = squares;
+      best_ = found;
+    }
+    return squares;
+  }
+
+ private:
+  Eigen::Index parameter(Eigen::Index k) const {
+    return as_index(setup_.wanted[static_cast<std::size_t>(k)]);
+  }
+
+  Eigen::VectorXd wanted() const {
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(as_index(setup_.wanted.size() + flights_.offsets()));
+    for (Eigen::Index k = 0; k < as_index(setup_.wanted.size()); ++k) result[k] = parameters_[parameter(k)];
+    return result;
+  }
+
+  FitFlights& flights_;
+  const FitSetup& setup_;
+  Eigen::VectorXd parameters_;
+  const std::function<void()>& tell_;
+  std::vector<Eigen::Index> linear_;
+  std::vector<Eigen::Index> searched_;
+  double least_ = std::numeric_limits<double>::infinity();
+  Eigen::VectorXd best_;
+};
+
+double squares_of(const std::vector<double>& x, std::vector<double>&, void* trial) {
+  return (*static_cast<Trial*>(trial))(x);
+}
+
+}  // namespace
+
+Eigen::VectorXd global_search(FitFlights& flights, const FitSetup& setup, const Eigen::VectorXd& parameters,
+                              const std::vector<bool>& linear, const std::vector<SearchRange>& ranges,
+                              const std::function<void()>& tell) {
+  Trial trial(flights, setup, parameters, linear, tell);
+  if (trial.searched().empty()) {
+    throw Error(
+        "--search: the residual is linear in every free coefficient, so there is one minimum and nothing to "
+        "search; leave the option out");
+  }
+  std::vector<double> lower;
+  std::vector<double> upper;
+  std::vector<double> start;
+  for (const Eigen::Index k : trial.searched()) {
+    const SearchRange& range = ranges[static_cast<std::size_t>(k)];
+    if (!std::isfinite(range.lower) || !std::isfinite(range.upper)) {
+      throw Error(
+          fmt::format("--search: {} has no bounds to search between; give the effect "
+                      "bounds = {{ {} = [lower, upper] }} in the model file",
+                      range.name, range.name.substr(range.name.rfind('.') + 1)));
+    }
+    lower.push_back(range.lower);
+    upper.push_back(range.upper);
+    start.push_back(0.5 * (range.lower + range.upper));
+  }
+  nlopt::srand(seed);
+  nlopt::opt search(nlopt::GN_CRS2_LM, static_cast<unsigned>(lower.size()));
+  search.set_lower_bounds(lower);
+  search.set_upper_bounds(upper);
+  search.set_min_objective(squares_of, &trial);
+  search.set_maxeval(trials_per_dimension * static_cast<int>(lower.size()));
+  search.set_ftol_rel(1e-6);
+  double least = 0.0;
+  try {
+    search.optimize(start, least);
+  } catch (const nlopt::roundoff_limited&) {
+    // What was found by then is what counts.
+  }
+  return trial.best();
+}
+
+}  // namespace pcor

@@ -1,0 +1,137 @@
+#include "fit/minimise.hpp"
+
+#include <ceres/cost_function.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <pcor/words/error.hpp>
+
+namespace pcor {
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Keeps Ceres from writing on standard error of trials that failed: what matters is in its summary.
+class QuietLog {
+ public:
+  QuietLog() : before_(FLAGS_minloglevel) { FLAGS_minloglevel = google::GLOG_FATAL; }
+  ~QuietLog() { FLAGS_minloglevel = before_; }
+  QuietLog(const QuietLog&) = delete;
+  QuietLog& operator=(const QuietLog&) = delete;
+
+ private:
+  int before_;
+};
+
+/// All flights as one residual block of a few rows: the triangular factor of the weighted derivatives and
+/// residuals has the same gradient and the same normal matrix as all samples, and the last row brings the
+/// cost to that of the loss.
+class ReducedCost final : public ceres::CostFunction {
+ public:
+  ReducedCost(FitFlights& flights, const Eigen::VectorXd& parameters, const ceres::LossFunction* loss,
+              const std::function<void()>& tell)
+      : flights_(flights), setup_(flights.setup()), parameters_(parameters), loss_(loss), tell_(tell) {
+    size_ = as_index(setup_.wanted.size() + flights.offsets());
+    set_num_residuals(static_cast<int>(size_) + 1);
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(size_));
+  }
+
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    const Eigen::Map<const Eigen::VectorXd> x(blocks[0], size_);
+    if (last_.size() == 0 || last_ != x) {
+      for (std::size_t k = 0; k < setup_.wanted.size(); ++k)
+        parameters_[as_index(setup_.wanted[k])] = x[as_index(k)];
+      reduction_ = flights_.reduce(parameters_, x.tail(as_index(flights_.offsets())), loss_);
+      last_ = x;
+      tell_();
+    }
+    if (!reduction_.valid) return false;
+    Eigen::Map<Eigen::VectorXd> all(residuals, size_ + 1);
+    all.head(size_) = reduction_.factor.col(size_).head(size_);
+    // With the curvature of the loss a step is nearly Newton's. Gradient and cost stay as they are; far from
+    // the minimum, where the cost leaves no room for it, the weighted squares alone have to do.
+    double stretch = std::sqrt(std::clamp(reduction_.curvature, 0.1, 1.0));
+    if (all.head(size_).squaredNorm() > 2.0 * reduction_.cost * stretch * stretch) stretch = 1.0;
+    all.head(size_) /= stretch;
+    const double rest = 2.0 * reduction_.cost - all.head(size_).squaredNorm();
+    all[size_] = std::sqrt(std::max(rest, 0.0));
+    if (jacobians != nullptr && jacobians[0] != nullptr) {
+      Eigen::Map<RowMajor> jacobian(jacobians[0], size_ + 1, size_);
+      jacobian.setZero();
+      jacobian.topRows(size_) = stretch * reduction_.factor.topLeftCorner(size_, size_);
+    }
+    return true;
+  }
+
+ private:
+  FitFlights& flights_;
+  const FitSetup& setup_;
+  mutable Eigen::VectorXd parameters_;
+  const ceres::LossFunction* loss_;
+  const std::function<void()>& tell_;
+  Eigen::Index size_ = 0;
+  mutable Eigen::VectorXd last_;
+  mutable Reduction reduction_;
+};
+
+/// Draws the first unknowns to their starts.
+class PriorCost final : public ceres::CostFunction {
+ public:
+  explicit PriorCost(const Prior& prior) : prior_(prior) {
+    set_num_residuals(static_cast<int>(prior.weight.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(prior.weight.size()));
+  }
+
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    const Eigen::Index size = prior_.weight.size();
+    const Eigen::Map<const Eigen::VectorXd> x(blocks[0], size);
+    Eigen::Map<Eigen::VectorXd>(residuals, size) = prior_.weight.cwiseProduct(x - prior_.start);
+    if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+    Eigen::Map<RowMajor>(jacobians[0], size, size) = prior_.weight.asDiagonal();
+    return true;
+  }
+
+ private:
+  const Prior& prior_;
+};
+
+}  // namespace
+
+void minimise(FitFlights& flights, const Eigen::VectorXd& parameters, const ceres::LossFunction* loss,
+              const Prior& prior, const std::vector<Bounds>& bounds, const std::function<void()>& tell,
+              Eigen::VectorXd& x) {
+  ceres::Problem problem;
+  problem.AddParameterBlock(x.data(), static_cast<int>(x.size()));
+  problem.AddResidualBlock(new ReducedCost(flights, parameters, loss, tell), nullptr, x.data());
+  if (prior.weight.size() > 0) problem.AddResidualBlock(new PriorCost(prior), nullptr, x.data());
+  for (std::size_t k = 0; k < bounds.size(); ++k) {
+    const auto place = static_cast<int>(k);
+    if (std::isfinite(bounds[k].lower)) problem.SetParameterLowerBound(x.data(), place, bounds[k].lower);
+    if (std::isfinite(bounds[k].upper)) problem.SetParameterUpperBound(x.data(), place, bounds[k].upper);
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  // The problem is linear or nearly so: the first step may be the whole one.
+  options.initial_trust_region_radius = 1e12;
+  options.max_num_iterations = 200;
+  options.function_tolerance = 1e-12;
+  options.parameter_tolerance = 1e-9;
+  options.gradient_tolerance = 1e-14;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  {
+    const QuietLog quiet;
+    ceres::Solve(options, &problem, &summary);
+  }
+  if (!summary.IsSolutionUsable() || !x.allFinite()) {
+    throw Error(
+        "the fit found no coefficients: from their values in the model the residuals are not numbers; give "
+        "other starting values, or look for them with --search");
+  }
+}
+
+}  // namespace pcor

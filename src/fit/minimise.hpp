@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <functional>
+#include <vector>
+
+#include <pcor/laws/model_file.hpp>
+#include "fit/fit_flights.hpp"
+
+namespace pcor {
+
+/// What draws unknowns to their starting values: weight (x - start) as further residuals. Empty for none.
+struct Prior {
+  Eigen::VectorXd start{};
+  Eigen::VectorXd weight{};
+};
+
+/// Finds with Ceres, from `x` on, the unknowns of a fit (its wanted parameters, then the offsets) with the
+/// least loss. Every step is one pass over the flights.
+///
+/// @param parameters all parameters; those that are not wanted stay as they are there
+/// @param loss of weighted residuals; null for least squares
+/// @param bounds of the wanted parameters
+/// @param tell called after every pass
+/// @throws Error if residuals are not numbers
+void minimise(FitFlights& flights, const Eigen::VectorXd& parameters, const ceres::LossFunction* loss,
+              const Prior& prior, const std::vector<Bounds>& bounds, const std::function<void()>& tell,
+              Eigen::VectorXd& x);
+
+}  // namespace pcor

@@ -1,0 +1,116 @@
+#include <pcor/fit/refit_report.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "compare/comparison_panels.hpp"
+
+namespace pcor {
+namespace {
+
+/// With a capital letter and a full stop.
+std::string sentence(std::string text) {
+  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  return text + ".";
+}
+
+ReportTable coefficient_table(const RefitResult& fit) {
+  ReportTable table;
+  table.title = "Coefficients";
+  table.caption = "Standard errors know the memory of the residuals.";
+  table.headers = {"coefficient", "before", "after", "std. error", "unit", "stage"};
+  for (const FittedParameter& p : fit.parameters) {
+    table.rows.push_back({p.name, fmt::format("{:.6g}", p.start), fmt::format("{:.6g}", p.value),
+                          !p.fitted    ? "held"
+                          : p.at_bound ? "at its bound"
+                                       : fmt::format("{:.3g}", p.standard_error),
+                          p.unit, p.fitted ? std::to_string(p.stage) : ""});
+  }
+  return table;
+}
+
+ReportTable correlation_table(const RefitResult& fit) {
+  ReportTable table;
+  table.title = "Correlations of the coefficients";
+  table.caption = fmt::format("Condition number {:.0f}.", fit.condition_number);
+  table.headers.emplace_back("");
+  for (const std::string& name : fit.covariance_names) table.headers.push_back(name);
+  for (std::size_t a = 0; a < fit.covariance_names.size(); ++a) {
+    std::vector<std::string> row{fit.covariance_names[a]};
+    for (std::size_t b = 0; b < fit.covariance_names.size(); ++b) {
+      const double scale = std::sqrt(fit.covariance[a][a] * fit.covariance[b][b]);
+      row.push_back(scale > 0.0 ? fmt::format("{:+.3f}", fit.covariance[a][b] / scale) : "");
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+ReportTable flight_table(const RefitResult& fit) {
+  ReportTable table;
+  table.title = "Flights before and after";
+  table.caption = "A flight, or a part of it, that is held out took no part in the fit.";
+  table.headers = {"flight",
+                   "part",
+                   "samples",
+                   "rms before, hPa",
+                   "rms after, hPa",
+                   "bias after, hPa",
+                   "scatter after, hPa",
+                   "noise, hPa"};
+  for (const FlightFit& flight : fit.flights) {
+    table.rows.push_back({flight.flight, flight.holdout ? "held out" : "fitted",
+                          std::to_string(flight.after.samples), fmt::format("{:.3f}", flight.before.rms),
+                          fmt::format("{:.3f}", flight.after.rms), fmt::format("{:+.3f}", flight.after.bias),
+                          fmt::format("{:.3f}", flight.after.scatter()),
+                          fmt::format("{:.3f}", flight.after.noise_rms)});
+  }
+  return table;
+}
+
+}  // namespace
+
+Report refit_report(const RefitResult& fit, const Comparison& comparison) {
+  ComparisonPanels panels(comparison);
+  Report& report = panels.report();
+  report.title = fmt::format("Refit of {} to {}", fit.model.model.name, fit.reference_text);
+  report.subtitle = "Before and after";
+  report.summary.push_back(fmt::format(
+      "The fit brings the rms residual from {:.3f} to {:.3f} hPa over {} samples; the noise is {:.3f} hPa.",
+      fit.rms_before, fit.rms, fit.samples, fit.noise_rms));
+  for (const FlightFit& flight : fit.flights) {
+    if (!flight.holdout) continue;
+    report.summary.push_back(fmt::format(
+        "Held out, {}: rms {:.3f} before and {:.3f} hPa after the fit, scatter {:.3f} and {:.3f} hPa.",
+        flight.flight, flight.before.rms, flight.after.rms, flight.before.scatter(), flight.after.scatter()));
+  }
+  for (const std::string& note : fit.notes) {
+    const bool told =
+        std::find(comparison.notes.begin(), comparison.notes.end(), note) != comparison.notes.end();
+    if (!told) report.summary.push_back(sentence(note));
+  }
+  panels.summarise();
+  report.items.emplace_back(coefficient_table(fit));
+  panels.add_panels();
+  panels.add_pairs();
+  if (fit.omissions.size() > 1) {
+    BarPanel bars;
+    bars.title = "What each effect is worth";
+    bars.caption = "The rms residual when an effect is left out and the others are fitted again.";
+    bars.bars.push_back({"all effects", fit.rms, 0.0});
+    for (const Omission& omission : fit.omissions)
+      bars.bars.push_back({"without " + omission.effect, omission.rms, 0.0});
+    bars.axis = "rms";
+    bars.unit = "hPa";
+    report.items.emplace_back(std::move(bars));
+  }
+  report.items.emplace_back(flight_table(fit));
+  if (fit.covariance_names.size() > 1) report.items.emplace_back(correlation_table(fit));
+  panels.add_tables();
+  return std::move(report);
+}
+
+}  // namespace pcor

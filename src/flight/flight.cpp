@@ -1,0 +1,541 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <netcdf.h>
+#include <pcor/flight/flight.hpp>
+#include <pcor/words/error.hpp>
+#include <pcor/words/suggest.hpp>
+#include <pcor/words/utc.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdlib>
+#include <iterator>
+#include <limits>
+#include <set>
+#include <unordered_map>
+
+#include "flight/netcdf_file.hpp"
+#include "flight/time_source.hpp"
+
+namespace pcor {
+namespace {
+
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+constexpr double day = 86400;
+constexpr std::size_t most_gaps_listed = 1000;
+
+/// A variable of the file, and what turns its stored numbers into values.
+struct Variable {
+  int id = 0;
+  VariableInfo info;
+  bool rate_dimension = false;         // (Time, spsN), also with N = 1
+  std::vector<double> missing_values;  // as numbers of the stored type
+  UnitConversion unpacking;            // scale_factor and add_offset
+  bool cache_is_fit = false;
+};
+
+std::optional<int> rate_of_dimension(const NetcdfFile& file, int dimension) {
+  const std::string name = file.dimension_name(dimension);
+  if (name.rfind("sps", 0) != 0 || name.find_first_not_of("0123456789", 3) != std::string::npos)
+    return std::nullopt;
+  return static_cast<int>(file.dimension_length(dimension));
+}
+
+bool is_numeric(int type) { return type != NC_CHAR && type > NC_NAT && type < NC_STRING; }
+
+std::optional<double> default_fill(int type) {
+  switch (type) {
+    case NC_SHORT:
+      return NC_FILL_SHORT;
+    case NC_INT:
+      return NC_FILL_INT;
+    case NC_FLOAT:
+      return static_cast<double>(NC_FILL_FLOAT);
+    case NC_DOUBLE:
+      return NC_FILL_DOUBLE;
+    default:
+      return std::nullopt;
+  }
+}
+
+std::vector<double> missing_values_of(const NetcdfFile& file, int variable, int type) {
+  std::vector<double> values;
+  for (const char* name : {"_FillValue", "missing_value", "MissingValue"})
+    for (const double value : file.number_attribute(variable, name))
+      values.push_back(type == NC_FLOAT ? static_cast<double>(static_cast<float>(value)) : value);
+  if (values.empty() && (type == NC_FLOAT || type == NC_DOUBLE)) values.push_back(-32767);
+  if (const auto fill = default_fill(type)) values.push_back(*fill);
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  return values;
+}
+
+double number_or(const NetcdfFile& file, int variable, const char* attribute, double otherwise) {
+  const std::vector<double> numbers = file.number_attribute(variable, attribute);
+  return numbers.empty() ? otherwise : numbers.front();
+}
+
+Variable describe(const NetcdfFile& file, int id, int time_dimension) {
+  Variable variable;
+  variable.id = id;
+  VariableInfo& info = variable.info;
+  info.name = file.variable_name(id);
+  info.units = file.text_attribute(id, "units");
+  info.long_name = file.text_attribute(id, "long_name");
+  for (const std::string& name : file.attribute_names(id))
+    info.attributes.emplace_back(name, file.text_attribute(id, name));
+  const std::vector<double> modulus = file.number_attribute(id, "modulus_range");
+  if (modulus.size() == 2 && modulus[0] < modulus[1]) info.modulus_range = {modulus[0], modulus[1]};
+
+  const std::vector<int> dimensions = file.dimensions_of(id);
+  for (const int dimension : dimensions) info.dimensions.push_back(file.dimension_name(dimension));
+  const int type = file.type_of(id);
+  if (!is_numeric(type) || dimensions.empty() || dimensions[0] != time_dimension || dimensions.size() > 2)
+    return variable;
+  if (dimensions.size() == 1) {
+    info.rate = 1;
+  } else {
+    const auto rate = rate_of_dimension(file, dimensions[1]);
+    if (!rate || *rate < 1) return variable;
+    info.rate = *rate;
+    variable.rate_dimension = true;
+  }
+  info.is_series = true;
+  variable.missing_values = missing_values_of(file, id, type);
+  variable.unpacking = {number_or(file, id, "scale_factor", 1), number_or(file, id, "add_offset", 0)};
+  return variable;
+}
+
+bool is_convertible(const std::string& unit, const std::string& wanted) {
+  try {
+    UnitConversion::between(unit, wanted, {});
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+// To UDUNITS an angle is a number like any other, and a count could take its place.
+bool is_angle(const std::string& unit) {
+  const std::string standard = standard_unit(unit);
+  return (standard.rfind("deg", 0) == 0 || standard.rfind("rad", 0) == 0) && is_convertible(unit, "radian");
+}
+
+bool begins_alike(const std::string& a, const std::string& b) {
+  constexpr std::size_t letters = 2;
+  return a.compare(0, letters, b, 0, letters) == 0;
+}
+
+bool is_same(const UnitConversion& a, const UnitConversion& b) {
+  constexpr double rounding = 1e-9;
+  return std::abs(a.scale() - b.scale()) <= rounding * std::abs(a.scale()) &&
+         std::abs(a.offset() - b.offset()) <= rounding * std::abs(a.offset());
+}
+
+// How many words of a role ("recovery_temperature") are in a text, without regard to case.
+int shared_words(const std::string& role, const std::string& text) {
+  const auto is_same_letter = [](char a, char b) {
+    return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+  };
+  int shared = 0;
+  for (auto word = role.begin(); word != role.end();) {
+    const auto end = std::find(word, role.end(), '_');
+    if (std::search(text.begin(), text.end(), word, end, is_same_letter) != text.end()) ++shared;
+    word = end == role.end() ? end : end + 1;
+  }
+  return shared;
+}
+
+FileKind kind_of(const NetcdfFile& file) {
+  int format = 0;
+  file.check(nc_inq_format(file.id(), &format), "cannot tell its format");
+  switch (format) {
+    case NC_FORMAT_CLASSIC:
+      return FileKind::classic;
+    case NC_FORMAT_64BIT_OFFSET:
+      return FileKind::offset64;
+    case NC_FORMAT_CDF5:
+      return FileKind::cdf5;
+    case NC_FORMAT_NETCDF4_CLASSIC:
+      return FileKind::netcdf4_classic;
+    default:
+      return FileKind::netcdf4;
+  }
+}
+
+// Of an even number of values the lower of the middle two. Changes the order of the values.
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double mean(const double* values, int count) {
+  double sum = 0;
+  int present = 0;
+  for (int i = 0; i < count; ++i) {
+    if (std::isnan(values[i])) continue;
+    sum += values[i];
+    ++present;
+  }
+  return present == 0 ? missing : sum / present;
+}
+
+double mean_on_circle(const double* values, int count, const std::array<double, 2>& range) {
+  const double turn = 2 * std::acos(-1.), width = range[1] - range[0];
+  double sine = 0, cosine = 0;
+  for (int i = 0; i < count; ++i) {
+    if (std::isnan(values[i])) continue;
+    const double angle = turn * (values[i] - range[0]) / width;
+    sine += std::sin(angle);
+    cosine += std::cos(angle);
+  }
+  // Nothing there, or directions that cancel: there is no mean direction.
+  if (std::hypot(sine, cosine) < 1e-9 * count) return missing;
+  const double angle = std::atan2(sine, cosine) / turn;
+  return range[0] + width * (angle < 0 ? angle + 1 : angle);
+}
+
+}  // namespace
+
+std::vector<RecordBlock> blocks_of(std::size_t records, std::size_t size) {
+  std::vector<RecordBlock> blocks;
+  for (std::size_t first = 0; first < records; first += size)
+    blocks.push_back({first, std::min(size, records - first)});
+  return blocks;
+}
+
+struct Flight::Implementation {
+  NetcdfFile file;
+  FileKind kind;
+  TimeStamp time_stamp;
+  TimeSource source;
+  std::size_t records;
+  TimeAxis axis;
+  std::vector<std::string> names;
+  std::vector<Variable> variables;  // in the order of `names`
+  std::unordered_map<std::string, std::size_t> index;
+  std::vector<double> scratch;
+
+  Implementation(const std::filesystem::path& path, TimeStamp stamp)
+      : file(NetcdfFile::open(path)),
+        kind(kind_of(file)),
+        time_stamp(stamp),
+        source(find_time(file)),
+        records(file.dimension_length(source.dimension)) {
+    int count = 0;
+    file.check(nc_inq_nvars(file.id(), &count), "cannot count its variables");
+    for (int id = 0; id < count; ++id) {
+      variables.push_back(describe(file, id, source.dimension));
+      names.push_back(variables.back().info.name);
+      index.emplace(names.back(), variables.size() - 1);
+    }
+    scan_time();
+  }
+
+  std::string path() const { return file.path().string(); }
+
+  Variable& find(const std::string& name) {
+    const auto found = index.find(name);
+    if (found != index.end()) return variables[found->second];
+    const std::vector<std::string> alike = suggest(name, names);
+    throw Error(path() + ": " + name + " is not in this file; it has " +
+                (alike.empty() ? fmt::format("{} others, see ncdump -h {}", names.size(), path())
+                               : fmt::format("{}", fmt::join(alike, ", "))));
+  }
+
+  // That a variable of the model is absent, and which ones of the file could take its place.
+  [[noreturn]] void refuse_absent(const std::string& name, const std::string& wanted,
+                                  const std::string& role) const {
+    std::vector<const VariableInfo*> fitting;
+    std::vector<std::string> namesakes;
+    for (const Variable& variable : variables) {
+      if (!variable.info.is_series || !is_convertible(variable.info.units, wanted) ||
+          is_angle(variable.info.units) != is_angle(wanted))
+        continue;
+      fitting.push_back(&variable.info);
+      if (begins_alike(variable.info.name, name)) namesakes.push_back(variable.info.name);
+    }
+    const std::vector<std::string> alike = suggest(name, namesakes);
+    if (!alike.empty())
+      throw Error(
+          fmt::format("{}: {} is not in this file; it has {}; change {} in the [variables] of the model",
+                      path(), name, fmt::join(alike, ", "), role));
+    const std::string absent =
+        fmt::format("{}: {} ({} of the model) is not in this file", path(), name, role);
+    if (fitting.empty())
+      throw Error(fmt::format(
+          "{}; it has no time series in {} or a unit that converts to it, see ncdump -h {}; change "
+          "[variables] of the model",
+          absent, wanted, path()));
+
+    constexpr std::size_t most_named = 6;
+    // What a probe recovers files call total.
+    const std::string words = role == "recovery_temperature" ? role + "_total" : role;
+    std::stable_sort(fitting.begin(), fitting.end(), [&](const VariableInfo* a, const VariableInfo* b) {
+      return shared_words(words, a->long_name) > shared_words(words, b->long_name);
+    });
+    const std::size_t others = fitting.size() - std::min(fitting.size(), most_named);
+    fitting.resize(fitting.size() - others);
+    std::string named;
+    for (std::size_t i = 0; i < fitting.size(); ++i) {
+      named += (i == 0 ? "" : ", ") + fitting[i]->name;
+      const bool unit_changes =
+          i + 1 == fitting.size() || standard_unit(fitting[i]->units) != standard_unit(fitting[i + 1]->units);
+      if (unit_changes) named += " in " + standard_unit(fitting[i]->units);
+    }
+    if (others > 0) named += fmt::format(" and {} more", others);
+    throw Error(
+        fmt::format("{}; it has {} (units that fit); change [variables] of the model", absent, named));
+  }
+
+  // The names of rates that can be brought to the wanted one, as this file has them: "1, 5 or 25".
+  std::string rates_that_fit(int wanted) const {
+    std::set<int> rates;
+    for (const Variable& variable : variables) {
+      const int rate = variable.info.rate;
+      if (rate > 0 && (rate % wanted == 0 || wanted % rate == 0)) rates.insert(rate);
+    }
+    std::string text;
+    for (auto rate = rates.begin(); rate != rates.end(); ++rate)
+      text += (rate == rates.begin()            ? ""
+               : std::next(rate) == rates.end() ? " or "
+                                                : ", ") +
+              std::to_string(*rate);
+    return text;
+  }
+
+  Variable& find_series(const std::string& name) {
+    Variable& variable = find(name);
+    if (variable.info.is_series) return variable;
+    std::string dimensions;
+    for (const std::string& each : variable.info.dimensions)
+      dimensions += (dimensions.empty() ? "" : ", ") + each;
+    throw Error(fmt::format(
+        "{}: {}({}) is not a time series of numbers over (Time) or (Time, spsN); choose another variable",
+        path(), name, dimensions));
+  }
+
+  void check_block(const std::string& name, RecordBlock block) const {
+    if (block.first > records || block.count > records - block.first)
+      throw Error(fmt::format("{}: cannot read {} at records {} to {}, there are {}", path(), name,
+                              block.first, block.first + block.count, records));
+  }
+
+  void read_stored(Variable& variable, RecordBlock block, double* out) {
+    check_block(variable.info.name, block);
+    if (block.count == 0) return;
+    if (!variable.cache_is_fit) file.fit_chunk_cache(variable.id);
+    variable.cache_is_fit = true;
+    const std::size_t start[] = {block.first, 0};
+    const std::size_t count[] = {block.count, static_cast<std::size_t>(variable.info.rate)};
+    file.check(nc_get_vara_double(file.id(), variable.id, start, count, out),
+               "cannot read " + variable.info.name);
+  }
+
+  static void clean(const Variable& variable, std::size_t count, double* values) {
+    for (const double marker : variable.missing_values)
+      for (std::size_t i = 0; i < count; ++i) values[i] = values[i] == marker ? missing : values[i];
+    const double scale = variable.unpacking.scale(), offset = variable.unpacking.offset();
+    for (std::size_t i = 0; i < count; ++i)
+      values[i] = std::isfinite(values[i]) ? values[i] * scale + offset : missing;
+  }
+
+  void read(Variable& variable, RecordBlock block, double* out) {
+    read_stored(variable, block, out);
+    clean(variable, block.count * static_cast<std::size_t>(variable.info.rate), out);
+  }
+
+  // Records at which seconds of the day began again are known after the scan; until then it adds them itself.
+  void read_time(RecordBlock block, double* out) {
+    Variable& variable = variables[static_cast<std::size_t>(source.variable)];
+    read(variable, block, out);
+    for (std::size_t i = 0; i < block.count; ++i) {
+      if (std::isnan(out[i]))
+        throw Error(fmt::format("{}: the time of record {} is missing; leave that record out", path(),
+                                block.first + i));
+      out[i] = out[i] * source.scale + source.offset;
+    }
+    for (const std::size_t wrap : axis.midnight_wraps)
+      for (std::size_t i = wrap > block.first ? wrap - block.first : 0; i < block.count; ++i) out[i] += day;
+  }
+
+  bool begins_again_at_midnight(double before, double now) const {
+    constexpr double little = 600;
+    const double midnight = midnight_before(source.offset);
+    const double from = before - midnight, to = now - midnight;
+    const double last_midnight = std::floor(from / day) * day;
+    return from - last_midnight > day - little && to >= last_midnight && to < last_midnight + little &&
+           now + day > before;
+  }
+
+  void scan_time() {
+    axis.source = source.words;
+    std::size_t backward = 0, repeated = 0, first_bad = 0;
+    double bad = 0, bad_before = 0, before = 0;
+    std::vector<double> times, steps;
+    for (const RecordBlock block : blocks_of(records)) {
+      times.resize(block.count);
+      read_time(block, times.data());
+      if (block.first == 0) {
+        axis.first = times.front();
+        for (std::size_t i = 1; i < block.count; ++i)
+          if (times[i] > times[i - 1]) steps.push_back(times[i] - times[i - 1]);
+        if (!steps.empty()) axis.step = median(steps);
+      }
+      for (std::size_t i = 0; i < block.count; ++i) {
+        const std::size_t record = block.first + i;
+        if (record > 0 && begins_again_at_midnight(before, times[i])) {
+          axis.midnight_wraps.push_back(record);
+          for (std::size_t j = i; j < block.count; ++j) times[j] += day;
+        }
+        const double now = times[i];
+        if (record > 0 && now <= before) {
+          if (backward + repeated == 0) first_bad = record, bad = now, bad_before = before;
+          ++(now < before ? backward : repeated);
+        }
+        if (record > 0 && now - before > 1.5 * axis.step) {
+          ++axis.gap_count;
+          if (axis.gaps.size() < most_gaps_listed) axis.gaps.push_back({record, before, now});
+        }
+        axis.whole_seconds = axis.whole_seconds && now == std::floor(now);
+        before = now;
+      }
+    }
+    axis.last = before;
+    if (backward + repeated > 0)
+      throw Error(fmt::format(
+          "{}: time {} at record {} ({} after {}), {} backward and {} repeated steps in all; cut the file "
+          "there with ncks -d {},0,{}",
+          path(), bad < bad_before ? "runs backwards" : "repeats", first_bad, utc_text(bad),
+          utc_text(bad_before), backward, repeated, file.dimension_name(source.dimension), first_bad - 1));
+  }
+};
+
+Flight::Flight(const std::filesystem::path& path, TimeStamp time_stamp)
+    : implementation_(std::make_unique<Implementation>(path, time_stamp)) {}
+Flight::Flight(Flight&&) noexcept = default;
+Flight& Flight::operator=(Flight&&) noexcept = default;
+Flight::~Flight() = default;
+
+const std::filesystem::path& Flight::path() const { return implementation_->file.path(); }
+FileKind Flight::kind() const { return implementation_->kind; }
+std::size_t Flight::records() const { return implementation_->records; }
+const TimeAxis& Flight::time() const { return implementation_->axis; }
+TimeStamp Flight::time_stamp() const { return implementation_->time_stamp; }
+
+const std::string& Flight::time_variable() const {
+  return implementation_->names[static_cast<std::size_t>(implementation_->source.variable)];
+}
+
+std::string Flight::attribute(const std::string& name) const {
+  return implementation_->file.text_attribute(NC_GLOBAL, name);
+}
+
+std::string Flight::aircraft() const {
+  const std::string platform = attribute("platform");
+  return platform.empty() ? attribute("Aircraft") : platform;
+}
+
+std::string Flight::project() const {
+  const std::string project = attribute("project");
+  return project.empty() ? attribute("ProjectName") : project;
+}
+
+std::string Flight::flight_number() const { return attribute("FlightNumber"); }
+
+const std::vector<std::string>& Flight::variables() const { return implementation_->names; }
+
+bool Flight::has(const std::string& name) const { return implementation_->index.count(name) > 0; }
+
+const VariableInfo& Flight::variable(const std::string& name) const {
+  return implementation_->find(name).info;
+}
+
+UnitConversion Flight::conversion(const std::string& name, const std::string& wanted, const std::string& role,
+                                  const std::string& stated) const {
+  if (!has(name) && !role.empty()) implementation_->refuse_absent(name, wanted, role);
+  const std::string& own = variable(name).units;
+  if (stated.empty()) return UnitConversion::between(own, wanted, {name, path().string(), role});
+  if (!is_convertible(stated, wanted))
+    throw Error(
+        fmt::format("{}: the unit \"{}\" that the model states for {} ({}) is not known or does not convert "
+                    "to {}; correct unit.{} in the [units] of the model",
+                    path().string(), stated, name, role, wanted, role));
+  const UnitConversion conversion = UnitConversion::between(stated, wanted, {name, path().string(), role});
+  const bool file_says_otherwise =
+      is_known_unit(own) &&
+      !(is_convertible(own, wanted) && is_same(UnitConversion::between(own, wanted, {}), conversion));
+  if (file_says_otherwise)
+    throw Error(fmt::format(
+        "{}: {} has the unit \"{}\", and the model states \"{}\"; remove unit.{} from the [units] of the "
+        "model, or mend the units attribute of the file if that is wrong",
+        path().string(), name, own, stated, role));
+  return conversion;
+}
+
+void Flight::require_values(const std::string& name) const {
+  Variable& variable = implementation_->find_series(name);
+  std::vector<double>& values = implementation_->scratch;
+  for (const RecordBlock block : blocks_of(records())) {
+    values.resize(block.count * static_cast<std::size_t>(variable.info.rate));
+    implementation_->read(variable, block, values.data());
+    if (std::any_of(values.begin(), values.end(), [](double value) { return !std::isnan(value); })) return;
+  }
+  throw Error(fmt::format("{}: {} has no value, all {} records are missing; choose another variable",
+                          path().string(), name, records()));
+}
+
+void Flight::read(const std::string& name, RecordBlock block, const UnitConversion& conversion,
+                  double* out) const {
+  Variable& variable = implementation_->find_series(name);
+  implementation_->read(variable, block, out);
+  const std::size_t count = block.count * static_cast<std::size_t>(variable.info.rate);
+  for (std::size_t i = 0; i < count; ++i) out[i] = conversion(out[i]);
+}
+
+void Flight::read_at_rate(int rate, const std::string& name, RecordBlock block,
+                          const UnitConversion& conversion, double* out) const {
+  Variable& variable = implementation_->find_series(name);
+  const int own = variable.info.rate;
+  if (rate == own) return read(name, block, conversion, out);
+  if (rate < 1) throw Error(fmt::format("{}: {} samples a record are impossible", path().string(), rate));
+  if (rate % own != 0 && own % rate != 0)
+    throw Error(fmt::format(
+        "{}: {} has {} samples a record, which cannot be brought to {}; name a variable with {} samples a "
+        "record instead",
+        path().string(), name, own, rate, implementation_->rates_that_fit(rate)));
+  std::vector<double>& values = implementation_->scratch;
+  values.resize(block.count * static_cast<std::size_t>(own));
+  implementation_->read(variable, block, values.data());
+  const auto wanted = block.count * static_cast<std::size_t>(rate);
+  if (rate > own) {
+    const auto held = static_cast<std::size_t>(rate / own);
+    for (std::size_t i = 0; i < wanted; ++i) out[i] = conversion(values[i / held]);
+    return;
+  }
+  const int group = own / rate;
+  const auto& circle = variable.info.modulus_range;
+  for (std::size_t i = 0; i < wanted; ++i) {
+    const double* samples = values.data() + i * static_cast<std::size_t>(group);
+    out[i] = conversion(circle ? mean_on_circle(samples, group, *circle) : mean(samples, group));
+  }
+}
+
+void Flight::read_time_stamps(RecordBlock block, double* out) const {
+  implementation_->read_time(block, out);
+}
+
+void Flight::read_sample_times(RecordBlock block, int rate, double* out) const {
+  if (rate < 1) throw Error(fmt::format("{}: {} samples a record are impossible", path().string(), rate));
+  std::vector<double>& stamps = implementation_->scratch;
+  stamps.resize(block.count);
+  read_time_stamps(block, stamps.data());
+  const double step = time().step;
+  const double begin = time_stamp() == TimeStamp::begin ? 0 : -step / 2;
+  for (std::size_t i = 0; i < block.count; ++i)
+    for (int k = 0; k < rate; ++k) *out++ = stamps[i] + begin + (k + 0.5) / rate * step;
+}
+
+}  // namespace pcor

@@ -1,0 +1,228 @@
+#include "flight/netcdf_file.hpp"
+
+#include <fmt/format.h>
+#include <netcdf.h>
+#include <pcor/words/error.hpp>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <string_view>
+#include <utility>
+
+#include "flight/classic_netcdf.hpp"
+
+namespace pcor {
+namespace {
+
+constexpr int closed = -1;
+constexpr std::size_t chunk_cache_bytes = 1 << 18, chunk_cache_slots = 1009;
+
+enum class Content { classic, hdf5, other };
+
+Content content_of(const std::filesystem::path& path) {
+  char start[4] = {};
+  std::ifstream(path, std::ios::binary).read(start, sizeof start);
+  const std::string_view text(start, sizeof start);
+  if (text.substr(0, 3) == "CDF") return Content::classic;
+  if (text == "\211HDF") return Content::hdf5;
+  return Content::other;
+}
+
+std::string without_trailing_blanks(std::string text) {
+  const std::size_t end = text.find_last_not_of(std::string_view("\0 \t\r\n", 5));
+  text.resize(end == std::string::npos ? 0 : end + 1);
+  return text;
+}
+
+void check_size_of_classic(const std::filesystem::path& path) {
+  const auto promised = promised_size_of_classic(path);
+  if (!promised)
+    throw Error(path.string() +
+                " is truncated or damaged: its header cannot be read; fetch it again from its source");
+  const auto size = std::filesystem::file_size(path);
+  if (size < *promised)
+    throw Error(fmt::format(
+        "{} is truncated or damaged: its header promises {} bytes and it has {}; fetch it again from its "
+        "source",
+        path.string(), *promised, size));
+}
+
+}  // namespace
+
+std::string netcdf_reason(int status) { return status > 0 ? std::strerror(status) : nc_strerror(status); }
+
+NetcdfFile NetcdfFile::open(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  if (path.empty()) throw Error("the input has no name; name a netCDF file");
+  std::error_code code;
+  const auto status = std::filesystem::status(path, code);
+  if (!std::filesystem::exists(status)) throw Error(name + ": no such file; check the path");
+  if (std::filesystem::is_directory(status)) throw Error(name + " is a directory; name a netCDF file");
+  if (!std::filesystem::is_regular_file(status))
+    throw Error(name + " is not a regular file; name a netCDF file");
+  if (!std::ifstream(path))
+    throw Error(name + " cannot be read: " + std::strerror(errno) + "; check its permissions");
+
+  const Content content = content_of(path);
+  if (content == Content::other) throw Error(name + " is not a netCDF file; name one that `ncdump -k` knows");
+  if (content == Content::classic) check_size_of_classic(path);
+  // HDF5 keeps what it read of every variable; a file that is open twice shares what the first one asked for.
+  nc_set_chunk_cache(chunk_cache_bytes, chunk_cache_slots, 1);
+  int id = closed;
+  std::size_t buffer = classic_buffer_bytes;
+  const int opened = nc__open(name.c_str(), NC_NOWRITE, &buffer, &id);
+  if (opened != NC_NOERR)
+    throw Error(name + " is truncated or damaged (" + netcdf_reason(opened) +
+                "); fetch it again from its source");
+  return {id, path, Use::reading};
+}
+
+NetcdfFile NetcdfFile::create(const std::filesystem::path& path, const std::filesystem::path& shown_path,
+                              int mode) {
+  int id = closed;
+  std::size_t buffer = classic_buffer_bytes;
+  const int status = nc__create(path.c_str(), mode | NC_CLOBBER, 0, &buffer, &id);
+  NetcdfFile file(id, shown_path, Use::writing);
+  file.check(status, "cannot be created");
+  return file;
+}
+
+NetcdfFile::NetcdfFile(NetcdfFile&& other) noexcept
+    : id_(std::exchange(other.id_, closed)), path_(std::move(other.path_)), use_(other.use_) {}
+
+NetcdfFile::~NetcdfFile() {
+  if (id_ != closed) nc_close(id_);
+}
+
+void NetcdfFile::check(int status, const std::string& doing) const {
+  if (status == NC_NOERR) return;
+  std::string message = path_.string() + ": " + doing + ": " + netcdf_reason(status);
+  if (use_ == Use::reading) throw Error(message + "; fetch the file again from its source");
+  std::error_code code;
+  const auto space = std::filesystem::space(std::filesystem::absolute(path_).parent_path(), code);
+  constexpr std::uintmax_t little = 1 << 20;
+  const bool full = status == ENOSPC || (!code && space.available < little);
+  if (full && status != ENOSPC) message += " (the disk is full)";
+  throw Error(message + (full ? "; make room or choose another output"
+                              : "; check the space and the permissions there"));
+}
+
+void NetcdfFile::close() { check(nc_close(std::exchange(id_, closed)), "cannot be closed"); }
+
+void NetcdfFile::fit_chunk_cache(int variable) const {
+  int storage = NC_CONTIGUOUS;
+  std::vector<std::size_t> chunk(dimensions_of(variable).size());
+  if (chunk.empty() || nc_inq_var_chunking(id_, variable, &storage, chunk.data()) != NC_NOERR) return;
+  if (storage != NC_CHUNKED) return;
+  std::size_t bytes = 0;
+  check(nc_inq_type(id_, type_of(variable), nullptr, &bytes), "cannot read a variable's type");
+  for (const std::size_t length : chunk) bytes *= length;
+  if (2 * bytes > chunk_cache_bytes) nc_set_var_chunk_cache(id_, variable, 2 * bytes, chunk_cache_slots, 1);
+}
+
+std::optional<int> NetcdfFile::find_variable(const std::string& name) const {
+  int variable = 0;
+  if (nc_inq_varid(id_, name.c_str(), &variable) != NC_NOERR) return std::nullopt;
+  return variable;
+}
+
+std::string NetcdfFile::variable_name(int variable) const {
+  char name[NC_MAX_NAME + 1] = {};
+  check(nc_inq_varname(id_, variable, name), "cannot read a variable's name");
+  return name;
+}
+
+std::vector<int> NetcdfFile::dimensions_of(int variable) const {
+  int rank = 0;
+  check(nc_inq_varndims(id_, variable, &rank), "cannot read a variable's dimensions");
+  std::vector<int> dimensions(static_cast<std::size_t>(rank));
+  check(nc_inq_vardimid(id_, variable, dimensions.data()), "cannot read a variable's dimensions");
+  return dimensions;
+}
+
+std::string NetcdfFile::dimension_name(int dimension) const {
+  char name[NC_MAX_NAME + 1] = {};
+  check(nc_inq_dimname(id_, dimension, name), "cannot read a dimension's name");
+  return name;
+}
+
+std::size_t NetcdfFile::dimension_length(int dimension) const {
+  std::size_t length = 0;
+  check(nc_inq_dimlen(id_, dimension, &length), "cannot read a dimension's length");
+  return length;
+}
+
+int NetcdfFile::type_of(int variable) const {
+  nc_type type = NC_NAT;
+  check(nc_inq_vartype(id_, variable, &type), "cannot read a variable's type");
+  return type;
+}
+
+std::vector<std::string> NetcdfFile::attribute_names(int variable) const {
+  int count = 0;
+  check(nc_inq_varnatts(id_, variable, &count), "cannot count attributes");
+  std::vector<std::string> names;
+  for (int i = 0; i < count; ++i) {
+    char name[NC_MAX_NAME + 1] = {};
+    check(nc_inq_attname(id_, variable, i, name), "cannot read an attribute's name");
+    names.emplace_back(name);
+  }
+  return names;
+}
+
+std::string NetcdfFile::text_attribute(int variable, const std::string& name) const {
+  nc_type type = NC_NAT;
+  std::size_t length = 0;
+  if (nc_inq_att(id_, variable, name.c_str(), &type, &length) != NC_NOERR || length == 0) return {};
+  if (type == NC_CHAR) {
+    std::string text(length, '\0');
+    check(nc_get_att_text(id_, variable, name.c_str(), text.data()), "cannot read the attribute " + name);
+    return without_trailing_blanks(text);
+  }
+  if (type == NC_STRING) {
+    std::vector<char*> strings(length);
+    check(nc_get_att_string(id_, variable, name.c_str(), strings.data()),
+          "cannot read the attribute " + name);
+    std::string text;
+    for (const char* each : strings) text += (text.empty() ? "" : ", ") + std::string(each ? each : "");
+    nc_free_string(length, strings.data());
+    return without_trailing_blanks(text);
+  }
+  if (type > NC_STRING) return {};
+  std::string text;
+  for (const double number : number_attribute(variable, name)) {
+    if (!text.empty()) text += ", ";
+    text += type == NC_FLOAT ? fmt::format("{}", static_cast<float>(number)) : fmt::format("{}", number);
+  }
+  return text;
+}
+
+std::vector<double> NetcdfFile::number_attribute(int variable, const std::string& name) const {
+  nc_type type = NC_NAT;
+  std::size_t length = 0;
+  if (nc_inq_att(id_, variable, name.c_str(), &type, &length) != NC_NOERR || type > NC_STRING) return {};
+  std::vector<double> numbers;
+  if (type != NC_CHAR && type != NC_STRING) {
+    numbers.resize(length);
+    check(nc_get_att_double(id_, variable, name.c_str(), numbers.data()),
+          "cannot read the attribute " + name);
+    return numbers;
+  }
+  const std::string text = text_attribute(variable, name);
+  for (const char* at = text.c_str(); *at != '\0';) {
+    if (std::strchr(", \t", *at) != nullptr) {
+      ++at;
+      continue;
+    }
+    char* end = nullptr;
+    const double number = std::strtod(at, &end);
+    if (end == at) return {};
+    numbers.push_back(number);
+    at = *end == 'f' ? end + 1 : end;
+  }
+  return numbers;
+}
+
+}  // namespace pcor

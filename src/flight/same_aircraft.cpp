@@ -1,0 +1,35 @@
+#include <pcor/flight/same_aircraft.hpp>
+
+#include <fmt/format.h>
+
+#include <pcor/words/error.hpp>
+
+namespace pcor {
+
+void require_one_aircraft(const std::vector<std::pair<std::string, std::string>>& flight_and_aircraft) {
+  const std::pair<std::string, std::string>* first = nullptr;
+  for (const auto& each : flight_and_aircraft) {
+    if (each.second.empty()) continue;
+    if (first == nullptr) first = &each;
+    if (each.second == first->second) continue;
+    throw Error(fmt::format(
+        "{} is of the aircraft '{}' and {} of '{}': a model is of one aircraft; give the flights of one",
+        first->first, first->second, each.first, each.second));
+  }
+}
+
+void require_each_once(const std::vector<std::filesystem::path>& paths) {
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      std::error_code ignored;
+      if (std::filesystem::equivalent(paths[i], paths[j], ignored)) {
+        throw Error(fmt::format(
+            "{} is given twice: its samples are not new ones; give every flight once, to the fit or to "
+            "--holdout",
+            paths[i].string()));
+      }
+    }
+  }
+}
+
+}  // namespace pcor

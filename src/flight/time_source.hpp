@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "flight/netcdf_file.hpp"
+
+namespace pcor {
+
+/// How a file tells the time: seconds since 1970 UTC are `raw * scale + offset` of a variable over
+/// `dimension`.
+struct TimeSource {
+  int variable = 0;
+  int dimension = 0;
+  double scale = 1;
+  double offset = 0;
+  std::string words;
+};
+
+/// Finds it, see Flight. @throws Error if the file has no records or does not tell the time.
+TimeSource find_time(const NetcdfFile& file);
+
+}  // namespace pcor

@@ -1,0 +1,165 @@
+#include <pcor/improve/improvement_report.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pcor/words/error.hpp>
+
+#include "diagnose/diagnosis_panels.hpp"
+#include "diagnose/finding_page.hpp"
+
+namespace pcor {
+namespace {
+
+using namespace report;
+
+std::string rung_name(const ImproveStep& step) {
+  return step.added.empty() ? "as it was" : "+ " + step.added;
+}
+
+BarPanel ladder_bars(const Improvement& improvement) {
+  BarPanel bars;
+  bars.title = "The ladder";
+  bars.caption =
+      improvement.holdout_is_flights
+          ? "Rms residual on what was held out, after each effect that was added."
+          : "Rms residual on stretches that took no part in the fit, five parts in turn, after each "
+            "effect that was added.";
+  bars.axis = "rms";
+  bars.unit = "hPa";
+  for (const ImproveStep& step : improvement.steps) bars.bars.push_back({rung_name(step), step.rms_holdout});
+  bars.bars.push_back({"noise", improvement.steps.back().noise_rms});
+  return bars;
+}
+
+ReportTable ladder_table(const Improvement& improvement) {
+  ReportTable table;
+  table.title = "Rung by rung";
+  table.headers = {"model",
+                   "free coefficients",
+                   "rms in the fit, hPa",
+                   improvement.holdout_is_flights ? "rms held out, hPa" : "rms not in the fit, hPa",
+                   "noise, hPa",
+                   "not told from",
+                   "what it taught"};
+  for (const ImproveStep& step : improvement.steps) {
+    table.rows.push_back({rung_name(step), std::to_string(step.terms), cell(step.rms_train, 3),
+                          cell(step.rms_holdout, 3), cell(step.noise_rms, 3), list_text(step.aliases),
+                          sentence(step.learnt)});
+  }
+  return table;
+}
+
+void summarise(Report& report, const Improvement& improvement) {
+  const ImproveStep& first = improvement.steps.front();
+  const ImproveStep& last = improvement.steps.back();
+  report.summary.push_back(fmt::format(
+      "On {} the rms residual goes from {} to {} hPa; the noise is {} hPa.",
+      improvement.holdout_is_flights ? "what was held out" : "stretches that took no part in the fit",
+      hpa(first.rms_holdout), hpa(last.rms_holdout), hpa(last.noise_rms)));
+  for (const ImproveStep& step : improvement.steps) {
+    if (step.added.empty()) continue;
+    std::string text = fmt::format("Added: {}; the rms residual goes to {} hPa.",
+                                   name_with_id(step.title, step.added), hpa(step.rms_holdout));
+    if (!step.aliases.empty())
+      text += fmt::format(" These flights cannot tell it from {}.", list_text(step.aliases));
+    report.summary.push_back(std::move(text));
+  }
+  if (!improvement.why_stopped.empty()) report.summary.push_back(sentence(improvement.why_stopped));
+  std::string verdict = what_is_missing(last.diagnosis);
+  verdict.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(verdict.front())));
+  report.summary.push_back("At the top of the ladder: " + verdict + ".");
+  for (const Finding& finding : last.diagnosis.findings) report.summary.push_back(finding_summary(finding));
+  for (std::string& text : unexplained_text(last.diagnosis.unexplained))
+    report.summary.push_back(std::move(text));
+}
+
+/// The coefficients of an effect after the fit.
+std::vector<Estimate> fitted_of(const RefitResult& fit, const std::string& effect) {
+  std::vector<Estimate> estimates;
+  for (const FittedParameter& p : fit.parameters) {
+    if (p.name.rfind(effect + ".", 0) == 0)
+      estimates.push_back({p.name.substr(effect.size() + 1), p.unit, p.value, p.standard_error});
+  }
+  return estimates;
+}
+
+/// The page of the effect that a rung added, and its pictures.
+void add_rung(DiagnosisPanels& panels, const Improvement& improvement, std::size_t rung) {
+  using F = FlightDiagnosis;
+  const ImproveStep& step = improvement.steps[rung];
+  const Diagnosis& before = improvement.steps[rung - 1].diagnosis;
+  const std::string heading = fmt::format("Rung {}: {}", rung, step.added);
+  const std::string evidence = numbered("evidence", rung);
+  const std::string added = numbered("added", rung);
+  std::vector<std::string> inputs;
+  for (const ModelEffect& effect : improvement.model.model.effects) {
+    if (effect.id == step.added) inputs = inputs_of(effect);
+  }
+  inputs.push_back(added);
+  const auto finding = std::find_if(before.findings.begin(), before.findings.end(),
+                                    [&](const Finding& one) { return one.effect.id == step.added; });
+  ReportText page{heading, unexplained_text(before.unexplained)};
+  page.paragraphs.insert(page.paragraphs.begin(), "Added: " + name_with_id(step.title, step.added) + ".");
+  if (finding != before.findings.end()) {
+    page = finding_page(*finding, before.threshold, heading);
+    const auto number = static_cast<std::size_t>(finding - before.findings.begin());
+    panels.add_column(evidence, "evidence for " + step.added, "1/min", before.flights,
+                      [number](const F& f) { return one_of(f.evidence, number); });
+    panels.add_column(added, "added by " + step.added, "hPa", before.flights,
+                      [number](const F& f) { return one_of(f.added, number); });
+  }
+  if (const std::vector<Estimate> fitted = fitted_of(improvement.fit, step.added); !fitted.empty())
+    page.paragraphs.push_back(fmt::format("In the best model {}.", estimates_text(fitted)));
+  panels.add(std::move(page));
+  panels.add_binned("Residual without and with " + step.added + ", against what it depends on",
+                    effect_caption, {numbered("rung", rung - 1), numbered("rung", rung)}, inputs);
+  panels.add_plane("Evidence for " + step.added + ", over Mach number and pressure",
+                   "Orange speaks for the effect, blue against it.", evidence);
+}
+
+}  // namespace
+
+Report improvement_report(const Improvement& improvement, const ModelFile& start) {
+  if (improvement.steps.empty()) throw Error("report: the ladder has no rung; improve a model first");
+  const std::vector<ImproveStep>& steps = improvement.steps;
+  const Diagnosis& top = steps.back().diagnosis;
+  DiagnosisPanels panels(steps.front().diagnosis.flights);
+  Report& report = panels.report();
+  const std::size_t added = steps.size() - 1;
+  report.title = added == 0   ? "No effect makes the model better"
+                 : added == 1 ? "One effect makes the model better: " + steps.back().title
+                              : fmt::format("{} effects make the model better", added);
+  report.subtitle = fmt::format("Improvement of {} against {}", start.model.name, top.reference);
+  summarise(report, improvement);
+  add_facts(panels, top, start, {});
+
+  std::vector<std::string> rungs;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    add_traced(panels, steps[i].diagnosis);
+    std::string name = numbered("rung", i);
+    if (panels.add_column(name, "residual, " + rung_name(steps[i]), "hPa", steps[i].diagnosis.flights,
+                          [](const FlightDiagnosis& f) { return f.before; }))
+      rungs.push_back(std::move(name));
+  }
+  panels.measure_memory(top.flights, [](const FlightDiagnosis& f) -> const Series& { return f.before; });
+  panels.add(ladder_bars(improvement));
+  if (!rungs.empty())
+    panels.add_plane("What is left, over Mach number and pressure",
+                     "Residual at the top of the ladder: one colour over a region is a bias there.",
+                     rungs.back());
+  panels.add_table(ladder_table(improvement));
+  add_residual_panels(panels, rungs.size() < 2 ? rungs : std::vector{rungs.front(), rungs.back()});
+  for (std::size_t i = 1; i < steps.size(); ++i) add_rung(panels, improvement, i);
+  if (!rungs.empty()) add_unexplained(panels, top, rungs.back());
+  add_tables(panels, top);
+  return std::move(report);
+}
+
+}  // namespace pcor

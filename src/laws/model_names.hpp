@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string_view>
+
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/physics/recovery_factor.hpp>
+
+#include "words/quoting.hpp"
+
+namespace pcor {
+
+/// Names that the reader and the writer of model files share.
+
+inline constexpr std::string_view model_format = "pcor-model/1";
+
+Names names_of_parameters(const EffectFacts& facts);
+
+/// The published law of that name, or nothing.
+const PublishedRecoveryFactor* published_recovery_factor(std::string_view name);
+
+}  // namespace pcor

@@ -1,0 +1,793 @@
+#include "laws/model_reader.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <initializer_list>
+#include <limits>
+#include <locale>
+#include <sstream>
+
+#include <pcor/model/formula.hpp>
+#include <pcor/physics/lams.hpp>
+#include <pcor/units/units.hpp>
+#include <pcor/words/error.hpp>
+#include <pcor/words/suggest.hpp>
+
+#include "laws/model_names.hpp"
+#include "words/toml_reader.hpp"
+
+namespace pcor {
+namespace {
+
+constexpr double largest_recovery_factor = 1.2;
+
+Names role_names() {
+  Names names = names_of(quantity_facts, &QuantityFacts::name);
+  names.resize(role_count);
+  return names;
+}
+
+bool contains(const Names& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// What netCDF takes as the name of a variable, as far as this program should know.
+bool is_variable_name(std::string_view name) {
+  return !name.empty() && name.front() != ' ' && name.back() != ' ' &&
+         std::none_of(name.begin(), name.end(), [](char letter) {
+           const auto code = static_cast<unsigned char>(letter);
+           return code < 0x20 || code == 0x7f || letter == '/';
+         });
+}
+
+bool is_date(std::string_view text) {
+  constexpr std::string_view pattern = "dddd-dd-dd";
+  const auto fits = [](char letter, char wanted) {
+    return wanted == 'd' ? letter >= '0' && letter <= '9' : letter == wanted;
+  };
+  if (text.size() != pattern.size() || !std::equal(text.begin(), text.end(), pattern.begin(), fits)) {
+    return false;
+  }
+  const int year = std::stoi(std::string(text.substr(0, 4)));
+  const int month = std::stoi(std::string(text.substr(5, 2)));
+  const int day = std::stoi(std::string(text.substr(8, 2)));
+  if (month < 1 || month > 12) return false;
+  constexpr std::array<int, 12> days{31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
+  const bool leap = (year % 4 == 0 && year % 100 != 0) || year % 400 == 0;
+  const int last = month == 2 && leap ? 29 : days[static_cast<std::size_t>(month - 1)];
+  return day >= 1 && day <= last;
+}
+
+std::string_view kind_of(const toml::node& node) {
+  switch (node.type()) {
+    case toml::node_type::table:
+      return "a table";
+    case toml::node_type::array:
+      return "a list";
+    case toml::node_type::string:
+      return "a text";
+    case toml::node_type::integer:
+    case toml::node_type::floating_point:
+      return "a number";
+    case toml::node_type::boolean:
+      return "true or false";
+    default:
+      return "a date or time";
+  }
+}
+
+// Reads a parsed file into a model, and refuses what has no meaning with the place where it stands.
+class Reader final : TomlReader {
+ public:
+  explicit Reader(std::string_view name) : TomlReader(name) {}
+
+  ModelFile read(std::string_view text) {
+    const toml::table root = parse(text);
+    check_format(root);
+    read_root(root);
+    return std::move(file_);
+  }
+
+ private:
+  std::string unknown(const Entry& entry) const override {
+    return (entry.title.empty() && entry.node->is_table() ? "table " : "key ") + called(entry);
+  }
+
+  static std::string wrong_kind(const Entry& entry, const std::string& wanted) {
+    return fmt::format("{} is {}; give {}", called(entry), kind_of(*entry.node), wanted);
+  }
+
+  double finite(const toml::node& node, const std::string& what) const {
+    double value = std::numeric_limits<double>::quiet_NaN();
+    if (const auto* real = node.as_floating_point()) {
+      value = real->get();
+    } else if (const auto* whole = node.as_integer()) {
+      value = static_cast<double>(whole->get());
+    } else {
+      fail(node, fmt::format("{} is {}; give a number", what, kind_of(node)));
+    }
+    if (!std::isfinite(value)) fail(node, what + " is not finite; give a finite number");
+    return value;
+  }
+
+  double number(const Entry& entry) const { return finite(*entry.node, called(entry)); }
+
+  std::string text(const Entry& entry, const std::string& wanted = "a text in quotes") const {
+    return as<std::string>(*entry.node, wrong_kind(entry, wanted));
+  }
+
+  bool boolean(const Entry& entry) const { return as<bool>(*entry.node, wrong_kind(entry, "true or false")); }
+
+  const toml::table& table(const Entry& entry, const std::string& wanted) const {
+    return as<toml::table>(*entry.node, wrong_kind(entry, wanted));
+  }
+
+  const toml::table& section(const Entry& entry) const { return table(entry, "a table [" + entry.key + "]"); }
+
+  const toml::array& array(const Entry& entry, const std::string& wanted) const {
+    return as<toml::array>(*entry.node, wrong_kind(entry, wanted));
+  }
+
+  std::vector<double> numbers(const Entry& entry, const std::string& wanted) const {
+    std::vector<double> values;
+    for (const toml::node& node : array(entry, wanted)) {
+      values.push_back(finite(node, "a number of " + called(entry)));
+    }
+    return values;
+  }
+
+  Bounds range(const Entry& entry) const {
+    const std::string wanted = "[lower, upper]";
+    const std::vector<double> ends = numbers(entry, wanted);
+    if (ends.size() != 2) {
+      fail(entry, fmt::format("{} has {} numbers; give {}", called(entry), ends.size(), wanted));
+    }
+    if (!(ends[0] < ends[1])) {
+      fail(entry, fmt::format("{}: the lower end {} is not below the upper end {}; give {}", called(entry),
+                              ends[0], ends[1], wanted));
+    }
+    return {ends[0], ends[1]};
+  }
+
+  std::string variable_name(const Entry& entry) const {
+    std::string name = text(entry, "the name of a variable in quotes");
+    if (!is_variable_name(name)) {
+      fail(entry, fmt::format("{}: {} cannot be the name of a netCDF variable; give another", called(entry),
+                              in_quotes(name)));
+    }
+    return name;
+  }
+
+  Quantity role(const Entry& entry) const {
+    const Quantity quantity = quantity_named(entry.key);
+    if (quantity != Quantity::count && is_role(quantity)) return quantity;
+    if (quantity != Quantity::count) {
+      fail(entry.place, fmt::format("{} is computed, not recorded, so it is no role; remove it from {}",
+                                    in_quotes(entry.key), entry.title));
+    }
+    fail(entry.place,
+         fmt::format("there is no role {}; {}", in_quotes(entry.key), instead_of(entry.key, role_names())));
+  }
+
+  void check_format(const toml::table& root) const {
+    const Entry entry = format_of(root, "is a model file", model_format);
+    const std::string format = text(entry, in_quotes(model_format));
+    if (format == model_format) return;
+    const std::string wanted = fmt::format("format = \"{}\"", model_format);
+    if (format.rfind("pcor-model/", 0) == 0) {
+      fail(entry, fmt::format("the file has the format {}, this program reads {} only; use the pcor "
+                              "that wrote it, or write {}",
+                              in_quotes(format), in_quotes(model_format), wanted));
+    }
+    fail(entry, fmt::format("{} is not a format of model files; write {}", in_quotes(format), wanted));
+  }
+
+  void read_root(const toml::table& root) {
+    std::map<std::string, Entry> sections;
+    const Action keep = [&](const Entry& entry) { sections.emplace(entry.key, entry); };
+    each(root, "",
+         {{"format", [](const Entry&) {}},
+          {"name", [&](const Entry& entry) { file_.model.name = text(entry); }},
+          {"aircraft", [&](const Entry& entry) { file_.model.aircraft = text(entry); }},
+          {"variables", keep},
+          {"units", keep},
+          {"output", keep},
+          {"lams", keep},
+          {"temperature", keep},
+          {"humidity", keep},
+          {"radome", keep},
+          {"policy", keep},
+          {"domain", keep},
+          {"effect", keep},
+          {"law", keep},
+          {"covariance", keep},
+          {"provenance", keep}});
+    const auto with = [&](const std::string& key, void (Reader::*reader)(const Entry&)) {
+      const auto found = sections.find(key);
+      if (found != sections.end()) (this->*reader)(found->second);
+    };
+    with("variables", &Reader::read_variables);
+    const auto variables = sections.find("variables");
+    require_pressures(variables == sections.end() ? Place{1, 1} : variables->second.place);
+    with("units", &Reader::read_units);
+    with("output", &Reader::read_output);
+    with("lams", &Reader::read_lams);
+    check_variables();
+    with("temperature", &Reader::read_temperature);
+    with("humidity", &Reader::read_humidity);
+    with("radome", &Reader::read_radome);
+    with("policy", &Reader::read_policy);
+    with("domain", &Reader::read_domain);
+    with("effect", &Reader::read_effects);
+    with("law", &Reader::read_law);
+    with("covariance", &Reader::read_covariance);
+    with("provenance", &Reader::read_provenance);
+  }
+
+  void read_variables(const Entry& section_entry) {
+    for (const Entry& entry : entries_of(section(section_entry), "[variables]")) {
+      const Quantity quantity = role(entry);
+      file_.variables[quantity] = variable_name(entry);
+      variable_places_[quantity] = entry.place;
+    }
+  }
+
+  void require_pressures(Place place) const {
+    for (const Quantity quantity : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
+      if (file_.variables.count(quantity) != 0) continue;
+      const std::string_view name = facts_of(quantity).name;
+      fail(place, fmt::format("the role '{}' has no variable; add {} = \"...\" to [variables]", name, name));
+    }
+  }
+
+  // What the variables say together. The place of an error is that of the later one.
+  void check_variables() const {
+    const std::string& variable = file_.variables.at(Quantity::static_pressure);
+    if (variable == file_.variables.at(Quantity::dynamic_pressure)) {
+      fail(std::max(variable_places_.at(Quantity::static_pressure),
+                    variable_places_.at(Quantity::dynamic_pressure)),
+           fmt::format("'static_pressure' and 'dynamic_pressure' are both {}; give each its own variable",
+                       in_quotes(variable)));
+    }
+    give_one({Quantity::vapor_pressure, Quantity::dew_point, Quantity::frost_point}, "the humidity");
+    if (file_.model.lams.approach != LamsApproach::with_temperature) {
+      give_one({Quantity::recovery_temperature, Quantity::ambient_temperature},
+               "the temperature, except with [lams] approach = 3, which takes the ambient one");
+    }
+  }
+
+  // An error where more than one of `roles` has a variable.
+  void give_one(std::initializer_list<Quantity> roles, std::string_view what) const {
+    std::vector<Quantity> given;
+    for (const Quantity role : roles) {
+      if (file_.variables.count(role) != 0) given.push_back(role);
+    }
+    if (given.size() < 2) return;
+    std::stable_sort(given.begin(), given.end(), [this](Quantity a, Quantity b) {
+      return variable_places_.at(a) < variable_places_.at(b);
+    });
+    fail(variable_places_.at(given[1]),
+         fmt::format("the roles '{}' and '{}' both have a variable; give one for {}", facts_of(given[0]).name,
+                     facts_of(given[1]).name, what));
+  }
+
+  // Both `static_pressure = "mbar"` and `unit.static_pressure = "mbar"`.
+  void read_units(const Entry& section_entry) {
+    for (const Entry& entry : entries_of(section(section_entry), "[units]")) {
+      if (entry.key != "unit") {
+        read_unit(entry);
+        continue;
+      }
+      for (const Entry& spelled : entries_of(table(entry, "unit.<role> = \"...\""), "[units]")) {
+        read_unit(spelled);
+      }
+    }
+  }
+
+  void read_unit(const Entry& entry) {
+    const Quantity quantity = role(entry);
+    const std::string unit = text(entry, "a unit in quotes");
+    const std::string wanted(facts_of(quantity).unit);
+    if (file_.variables.count(quantity) == 0) {
+      fail(entry.place, fmt::format("the role {} has a unit but no variable; name its variable in "
+                                    "[variables], or remove it from [units]",
+                                    in_quotes(entry.key)));
+    }
+    if (!is_known_unit(unit)) {
+      fail(entry, fmt::format("{}: the unit {} is not known; give one that converts to {}", called(entry),
+                              in_quotes(unit), wanted));
+    }
+    try {
+      UnitConversion::between(unit, wanted, {});
+    } catch (const Error&) {
+      fail(entry, fmt::format("{}: the unit {} does not convert to {}; give one that does", called(entry),
+                              in_quotes(unit), wanted));
+    }
+    if (!file_.units.emplace(quantity, unit).second) {
+      fail(entry.place, fmt::format("the unit of {} is stated twice; remove one", in_quotes(entry.key)));
+    }
+  }
+
+  void read_output(const Entry& section_entry) {
+    const Names known(output_names.begin(), output_names.end());
+    const std::vector<Entry> entries = entries_of(section(section_entry), "[output]");
+    for (const Entry& entry : entries) {
+      if (!contains(known, entry.key)) {
+        fail(entry.place,
+             fmt::format("there is no output {}; {}", in_quotes(entry.key), instead_of(entry.key, known)));
+      }
+      file_.output[entry.key] = variable_name(entry);
+    }
+    for (const Entry& entry : entries) {
+      for (const std::string& other : known) {
+        if (other == entry.key || file_.output_name(other) != file_.output[entry.key]) continue;
+        fail(entry, fmt::format("{} and '{}' would both be written as {}; give one another name",
+                                in_quotes(entry.key), other, in_quotes(file_.output[entry.key])));
+      }
+    }
+  }
+
+  void read_lams(const Entry& section_entry) {
+    LamsMounting& lams = file_.model.lams;
+    each(section(section_entry), "[lams]",
+         {{"elevation", [&](const Entry& entry) { lams.elevation = number(entry); }},
+          {"azimuth", [&](const Entry& entry) { lams.azimuth = number(entry); }},
+          {"approach", [&](const Entry& entry) { lams.approach = approach(entry); }}});
+  }
+
+  LamsApproach approach(const Entry& entry) const {
+    const auto which = as<std::int64_t>(*entry.node, wrong_kind(entry, "a whole number: 1, 2 or 3"));
+    if (which == 4) fail(entry, std::string(approach_4_refusal));
+    if (which < 1 || which > 3) {
+      fail(entry, fmt::format("there is no approach {}; give 1, 2 or 3", which));
+    }
+    return static_cast<LamsApproach>(which);
+  }
+
+  void read_temperature(const Entry& section_entry) {
+    each(section(section_entry), "[temperature]",
+         {{"recovery_factor", [&](const Entry& entry) { read_recovery_factor(entry); }}});
+  }
+
+  void read_recovery_factor(const Entry& entry) {
+    RecoveryFactor& recovery = file_.model.recovery;
+    if (entry.node->is_string()) {
+      const std::string name = text(entry);
+      const PublishedRecoveryFactor* law = published_recovery_factor(name);
+      if (law == nullptr) {
+        const Names known = names_of(published_recovery_factors, &PublishedRecoveryFactor::name);
+        fail(entry, fmt::format("there is no published recovery factor {}; {}", in_quotes(name),
+                                instead_of(name, known)));
+      }
+      recovery = law->law;
+      file_.recovery_factor_name = name;
+      return;
+    }
+    const std::string wanted = "a number, the name of a published law, or [c0, c1, c2, c3]";
+    if (entry.node->is_array()) {
+      const std::vector<double> coefficients = numbers(entry, wanted);
+      if (coefficients.size() != recovery.coefficients.size()) {
+        fail(entry, fmt::format("{} has {} numbers; give {}", called(entry), coefficients.size(), wanted));
+      }
+      std::copy(coefficients.begin(), coefficients.end(), recovery.coefficients.begin());
+    } else if (entry.node->is_number()) {
+      recovery.coefficients = {number(entry), 0.0, 0.0, 0.0};
+    } else {
+      fail(entry, wrong_kind(entry, wanted));
+    }
+    const double constant = recovery.coefficients[0];
+    if (!(constant > 0.0 && constant <= largest_recovery_factor)) {
+      fail(entry, fmt::format("a recovery factor of {} is impossible; give one above 0, not above {}",
+                              constant, largest_recovery_factor));
+    }
+  }
+
+  void read_humidity(const Entry& section_entry) {
+    each(section(section_entry), "[humidity]",
+         {{"moist", [&](const Entry& entry) { file_.model.moist = boolean(entry); }}});
+  }
+
+  void read_radome(const Entry& section_entry) {
+    each(section(section_entry), "[radome]",
+         {{"attack", [&](const Entry& entry) { file_.model.attack_radome = radome(entry); }},
+          {"sideslip", [&](const Entry& entry) { file_.model.sideslip_radome = radome(entry); }}});
+  }
+
+  RadomeCalibration radome(const Entry& entry) const {
+    const std::string wanted = "[offset, slope] or [offset, slope, slope for a unit of Mach number]";
+    std::vector<double> values = numbers(entry, wanted);
+    if (values.size() != 2 && values.size() != 3) {
+      fail(entry, fmt::format("{} has {} numbers; give {}", called(entry), values.size(), wanted));
+    }
+    values.resize(3);
+    return {values[0], values[1], values[2]};
+  }
+
+  void read_policy(const Entry& section_entry) {
+    Policy& policy = file_.model.policy;
+    const auto not_negative = [&](const Entry& entry) {
+      const double value = number(entry);
+      if (value < 0.0) {
+        fail(entry, fmt::format("{} is negative; give a number of 0 or above", called(entry)));
+      }
+      return value;
+    };
+    each(section(section_entry), "[policy]",
+         {{"taper_below", [&](const Entry& entry) { policy.taper_below = not_negative(entry); }},
+          {"taper_power", [&](const Entry& entry) { policy.taper_power = not_negative(entry); }},
+          {"minimum", [&](const Entry& entry) { policy.minimum = number(entry); }}});
+  }
+
+  void read_domain(const Entry& section_entry) {
+    for (const Entry& entry : entries_of(section(section_entry), "[domain]")) {
+      if (quantity_named(entry.key) == Quantity::count) {
+        const Names known = names_of(quantity_facts, &QuantityFacts::name);
+        fail(entry.place,
+             fmt::format("there is no quantity {}; {}", in_quotes(entry.key), instead_of(entry.key, known)));
+      }
+      const Bounds ends = range(entry);
+      file_.model.domain.push_back({entry.key, ends.lower, ends.upper});
+    }
+  }
+
+  // The keys of one [[effect]] that were given.
+  struct EffectEntries {
+    std::optional<Entry> id, where, formula, parameters, unit, source, standard_errors, fixed, bounds;
+  };
+
+  void read_effects(const Entry& section_entry) {
+    const std::string wanted = "each effect under a heading [[effect]]";
+    for (const toml::node& node : array(section_entry, wanted)) {
+      read_effect(as<toml::table>(node, fmt::format("an effect is {}; give {}", kind_of(node), wanted)));
+    }
+  }
+
+  void read_effect(const toml::table& table) {
+    EffectEntries given;
+    const auto keep = [](std::optional<Entry>& place) {
+      return [&place](const Entry& entry) { place = entry; };
+    };
+    each(table, "[[effect]]",
+         {{"id", keep(given.id)},
+          {"where", keep(given.where)},
+          {"formula", keep(given.formula)},
+          {"parameters", keep(given.parameters)},
+          {"unit", keep(given.unit)},
+          {"source", keep(given.source)},
+          {"stderr", keep(given.standard_errors)},
+          {"fixed", keep(given.fixed)},
+          {"bounds", keep(given.bounds)}});
+    if (!given.id) fail(table, "an effect has no id; give id = \"...\"");
+    const std::string id = text(*given.id);
+    if (id.empty()) fail(*given.id->node, "the id of an effect is empty; give it a name");
+    check_new(id, *given.id);
+
+    ModelEffect effect = given.formula ? formula_effect(id, given) : catalogue_effect(id, given);
+    EffectFit fit = effect_fit(effect, given);
+    file_.model.effects.push_back(std::move(effect));
+    file_.fits.push_back(std::move(fit));
+  }
+
+  void check_new(const std::string& id, const Entry& entry) {
+    const auto [first, is_new] = effect_lines_.emplace(id, entry.place.line);
+    if (is_new) return;
+    fail(entry, fmt::format("effect {} is in the model already, at line {}; remove one", in_quotes(id),
+                            first->second));
+  }
+
+  ModelEffect catalogue_effect(const std::string& id, const EffectEntries& given) const {
+    if (effect_named(id) == catalogue_size) {
+      fail(*given.id->node,
+           fmt::format("there is no effect {} in the catalogue; {} Or give a formula for an "
+                       "effect of your own",
+                       in_quotes(id), full_stop(instead_of(id, names_of(effect_facts, &EffectFacts::id)))));
+    }
+    for (const std::optional<Entry>* entry : {&given.where, &given.unit, &given.source}) {
+      if (!*entry) continue;
+      fail((*entry)->place, fmt::format("effect {} of the catalogue takes no '{}'; remove it, or give a "
+                                        "formula and an id of your own",
+                                        in_quotes(id), (*entry)->key));
+    }
+    ModelEffect effect = neutral_effect(id);
+    if (given.parameters) {
+      const EffectFacts& facts = effect_facts[effect_named(id)];
+      each_parameter(*given.parameters, effect, [&](std::size_t i, const Entry& entry) {
+        effect.parameters[i] = possible(entry, facts.parameters[i]);
+      });
+    }
+    return effect;
+  }
+
+  // A value that physics allows.
+  double possible(const Entry& entry, const ParameterFacts& facts) const {
+    const double value = number(entry);
+    if (value < facts.lower || value > facts.upper) {
+      fail(entry,
+           fmt::format("{} = {} is outside the bounds of the catalogue; give a value within [{}, {}]{}",
+                       in_quotes(entry.key), value, facts.lower, facts.upper,
+                       facts.unit == "1" ? "" : fmt::format(" {}", facts.unit)));
+    }
+    return value;
+  }
+
+  static std::string full_stop(std::string text) {
+    if (text.back() != '?') text += '.';
+    return text;
+  }
+
+  ModelEffect formula_effect(const std::string& id, const EffectEntries& given) const {
+    if (effect_named(id) != catalogue_size) {
+      fail(given.formula->place, fmt::format("effect {} has its formula in the catalogue; drop 'formula', or "
+                                             "give an id of your own",
+                                             in_quotes(id)));
+    }
+    ModelEffect effect;
+    effect.id = id;
+    effect.formula = text(*given.formula, "a formula in quotes");
+    if (given.where) effect.where = place_of_action(*given.where);
+    if (given.unit) effect.unit = unit_of_action(*given.unit, effect.where);
+    if (given.source) effect.source = text(*given.source);
+    if (!given.parameters) {
+      fail(given.formula->place,
+           fmt::format("effect {} has a formula but no parameters; give parameters = {{ "
+                       "name = value }}, each with its first value",
+                       in_quotes(id)));
+    }
+    for (const Entry& entry : parameter_entries(*given.parameters)) {
+      effect.parameter_names.push_back(entry.key);
+      effect.parameters.push_back(number(entry));
+    }
+    check_formula(effect, given);
+    return effect;
+  }
+
+  void check_formula(const ModelEffect& effect, const EffectEntries& given) const {
+    FormulaError error;
+    const auto formula = Formula::parse(effect.formula, effect.parameter_names, &error);
+    if (!formula) {
+      const Entry& wrong = error.column == 0 ? *given.parameters : *given.formula;
+      fail(*wrong.node, fmt::format("the formula of effect {} cannot be read: {}; correct it",
+                                    in_quotes(effect.id), error.message));
+    }
+    if (formula->unused_parameters().empty()) return;
+    const std::string& unused = formula->unused_parameters().front();
+    const std::string meant = did_you_mean(unused, formula->variables());
+    fail(*given.parameters->node,
+         fmt::format("the formula of effect {} does not use its parameter {}; {}", in_quotes(effect.id),
+                     in_quotes(unused), meant.empty() ? "remove the parameter" : meant));
+  }
+
+  Where place_of_action(const Entry& entry) const {
+    const std::string name = text(entry);
+    const Where where = where_named(name);
+    if (where == Where::count) {
+      fail(entry, fmt::format("there is no place {} where an effect acts; {}", in_quotes(name),
+                              instead_of(name, names_of(where_facts, &WhereFacts::name))));
+    }
+    return where;
+  }
+
+  std::string unit_of_action(const Entry& entry, Where where) const {
+    std::string unit = text(entry, "a unit in quotes");
+    const std::string wanted(facts_of(where).unit);
+    if (standard_unit(unit) != standard_unit(wanted)) {
+      fail(entry, fmt::format("what acts at '{}' is in {}, not in {}; write the formula in {} and say "
+                              "unit = \"{}\"",
+                              facts_of(where).name, wanted, in_quotes(unit), wanted, wanted));
+    }
+    return unit;
+  }
+
+  std::vector<Entry> parameter_entries(const Entry& entry) const {
+    return entries_of(table(entry, "{ name = value }"), in_quotes(entry.key));
+  }
+
+  // Calls `action` with the number of each parameter that the table `entry` names.
+  template <class Handler>
+  void each_parameter(const Entry& entry, const ModelEffect& effect, const Handler& action) const {
+    for (const Entry& parameter : parameter_entries(entry)) {
+      action(parameter_number(parameter.key, parameter.place, effect), parameter);
+    }
+  }
+
+  std::size_t parameter_number(const std::string& name, Place place, const ModelEffect& effect) const {
+    const Names known = parameter_names(effect);
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found == known.end()) {
+      fail(place, fmt::format("effect {} has no parameter {}; {}", in_quotes(effect.id), in_quotes(name),
+                              known.empty() ? "it has none" : instead_of(name, known)));
+    }
+    return static_cast<std::size_t>(found - known.begin());
+  }
+
+  EffectFit effect_fit(const ModelEffect& effect, const EffectEntries& given) const {
+    EffectFit fit(effect.parameters.size());
+    if (given.standard_errors) {
+      each_parameter(*given.standard_errors, effect, [&](std::size_t i, const Entry& entry) {
+        const double value = number(entry);
+        if (value < 0.0) {
+          fail(entry, fmt::format("the standard error of {} is negative; give a number of 0 or above",
+                                  in_quotes(entry.key)));
+        }
+        fit[i].standard_error = value;
+      });
+    }
+    if (given.bounds) {
+      each_parameter(*given.bounds, effect, [&](std::size_t i, const Entry& entry) {
+        const Bounds bounds = range(entry);
+        const double value = effect.parameters[i];
+        if (value < bounds.lower || value > bounds.upper) {
+          fail(entry, fmt::format("the value {} of {} is outside its bounds; change one of them", value,
+                                  in_quotes(entry.key)));
+        }
+        check_bounds(bounds, effect, i, entry);
+        fit[i].bounds = bounds;
+      });
+    }
+    if (given.fixed) read_fixed(*given.fixed, effect, fit);
+    return fit;
+  }
+
+  // A refit must not find what the reader would refuse.
+  void check_bounds(const Bounds& bounds, const ModelEffect& effect, std::size_t number,
+                    const Entry& entry) const {
+    if (effect.is_formula()) return;
+    const ParameterFacts& facts = effect_facts[effect_named(effect.id)].parameters[number];
+    if (bounds.lower >= facts.lower && bounds.upper <= facts.upper) return;
+    fail(entry, fmt::format("the bounds of {} go beyond those of the catalogue; give bounds within [{}, {}]",
+                            in_quotes(entry.key), facts.lower, facts.upper));
+  }
+
+  void read_fixed(const Entry& entry, const ModelEffect& effect, EffectFit& fit) const {
+    for (const auto& [node, name] : texts(entry, "the names of parameters, such as [\"a0\"]")) {
+      ParameterFit& parameter = fit[parameter_number(name, node->source().begin, effect)];
+      if (parameter.fixed) fail(*node, fmt::format("{} is named twice; remove one", in_quotes(name)));
+      parameter.fixed = true;
+    }
+  }
+
+  std::vector<std::pair<const toml::node*, std::string>> texts(const Entry& entry,
+                                                               const std::string& wanted) const {
+    std::vector<std::pair<const toml::node*, std::string>> values;
+    for (const toml::node& node : array(entry, wanted)) {
+      const std::string otherwise = fmt::format("{} holds {}; give {}", called(entry), kind_of(node), wanted);
+      values.emplace_back(&node, as<std::string>(node, otherwise));
+    }
+    return values;
+  }
+
+  void read_law(const Entry& section_entry) {
+    LawFacts& law = file_.law;
+    const toml::node* last = nullptr;
+    each(section(section_entry), "[law]",
+         {{"source", [&](const Entry& entry) { law.source = text(entry); }},
+          {"valid_from", [&](const Entry& entry) { law.valid_from = date(entry); }},
+          {"valid_to",
+           [&](const Entry& entry) {
+             law.valid_to = date(entry);
+             last = entry.node;
+           }},
+          {"rms_hpa", [&](const Entry& entry) { law.rms_hpa = rms(entry); }},
+          {"note", [&](const Entry& entry) { law.note = text(entry); }}});
+    if (last != nullptr && law.valid_to < law.valid_from) {
+      fail(*last, fmt::format("the law ends on {}, before it begins on {}; change one of them", law.valid_to,
+                              law.valid_from));
+    }
+  }
+
+  double rms(const Entry& entry) const {
+    const double value = number(entry);
+    if (value < 0.0) fail(entry, called(entry) + " is negative; give a number of 0 or above");
+    return value;
+  }
+
+  std::string date(const Entry& entry) const {
+    if (const auto* value = entry.node->as_date()) {
+      const toml::date day = value->get();
+      return fmt::format("{:04}-{:02}-{:02}", day.year, day.month, day.day);
+    }
+    const std::string wanted = "a date like \"2011-11-02\"";
+    std::string value = text(entry, wanted);
+    if (!is_date(value)) {
+      fail(entry, fmt::format("{}: {} is not a date; give {}", called(entry), in_quotes(value), wanted));
+    }
+    return value;
+  }
+
+  void read_covariance(const Entry& section_entry) {
+    std::optional<Entry> parameters, matrix;
+    each(section(section_entry), "[covariance]",
+         {{"parameters", [&](const Entry& entry) { parameters = entry; }},
+          {"matrix", [&](const Entry& entry) { matrix = entry; }}});
+    if (!parameters || !matrix) {
+      fail(section_entry.place, fmt::format("[covariance] has no '{}'; give both parameters and matrix, or "
+                                            "remove the table",
+                                            parameters ? "matrix" : "parameters"));
+    }
+    read_covariance_parameters(*parameters);
+    read_matrix(*matrix);
+  }
+
+  void read_covariance_parameters(const Entry& entry) {
+    Names known;
+    for (const ModelEffect& effect : file_.model.effects) {
+      for (const std::string& name : parameter_names(effect)) known.push_back(effect.id + "." + name);
+    }
+    Names& names = file_.covariance.parameters;
+    for (const auto& [node, name] : texts(entry, "the names of parameters, such as [\"static-qp.a2\"]")) {
+      if (!contains(known, name)) {
+        fail(*node, fmt::format("the model has no parameter {}; {}", in_quotes(name),
+                                known.empty() ? "remove [covariance]" : instead_of(name, known)));
+      }
+      if (contains(names, name)) fail(*node, fmt::format("{} is named twice; remove one", in_quotes(name)));
+      names.push_back(name);
+    }
+  }
+
+  void read_matrix(const Entry& entry) {
+    const std::size_t size = file_.covariance.parameters.size();
+    const std::string wanted = fmt::format("{} rows of {} numbers, one for each parameter", size, size);
+    std::vector<std::vector<double>>& matrix = file_.covariance.matrix;
+    for (const toml::node& node : array(entry, wanted)) {
+      matrix.push_back(numbers({entry.key, entry.place, &node, entry.title}, wanted));
+      if (matrix.back().size() != size) {
+        fail(node, fmt::format("a row of the matrix has {} numbers; give {}", matrix.back().size(), wanted));
+      }
+    }
+    if (matrix.size() != size) {
+      fail(entry, fmt::format("the matrix has {} rows; give {}", matrix.size(), wanted));
+    }
+    for (std::size_t i = 0; i < size; ++i) {
+      if (matrix[i][i] < 0.0) fail(entry, "a variance of the matrix is negative; refit the model");
+      for (std::size_t j = 0; j < i; ++j) {
+        if (matrix[i][j] != matrix[j][i]) fail(entry, "the matrix is not symmetric; refit the model");
+      }
+    }
+  }
+
+  void read_provenance(const Entry& section_entry) {
+    file_.provenance = provenance(section(section_entry), "[provenance]");
+  }
+
+  Provenance provenance(const toml::table& table, const std::string& title) const {
+    Provenance values;
+    for (const Entry& entry : entries_of(table, title)) {
+      values.emplace_back(entry.key, provenance_value(*entry.node, title));
+    }
+    return values;
+  }
+
+  ProvenanceValue provenance_value(const toml::node& node, const std::string& title) const {
+    if (const auto* value = node.as_string()) return value->get();
+    if (const auto* value = node.as_integer()) return value->get();
+    if (const auto* value = node.as_boolean()) return value->get();
+    if (node.is_floating_point()) return finite(node, "a number of " + title);
+    if (const auto* table = node.as_table()) return provenance(*table, title);
+    if (const auto* list = node.as_array()) {
+      ProvenanceList values;
+      for (const toml::node& each_node : *list) values.push_back(provenance_value(each_node, title));
+      return values;
+    }
+    std::ostringstream moment;
+    moment.imbue(std::locale::classic());
+    if (const auto* date = node.as_date()) moment << date->get();
+    if (const auto* time = node.as_time()) moment << time->get();
+    if (const auto* both = node.as_date_time()) moment << both->get();
+    return moment.str();
+  }
+
+  ModelFile file_;
+  std::map<Quantity, Place> variable_places_;
+  std::map<std::string, toml::source_index> effect_lines_;
+};
+
+}  // namespace
+
+ModelFile read_model_text(std::string_view text, std::string_view name) { return Reader(name).read(text); }
+
+}  // namespace pcor

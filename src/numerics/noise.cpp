@@ -1,0 +1,243 @@
+#include <pcor/numerics/noise.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace pcor {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double deviation_of_median =
+    1.482602218505602;  // 1 / (the 0.75 quantile of the normal distribution)
+constexpr std::array<std::size_t, 7> lags{1, 2, 4, 8, 16, 32, 64};
+constexpr double plateau_growth = 1.15;
+constexpr double local_time = 300.0;  // s
+constexpr double local_share = 0.85;
+constexpr std::size_t fewest_differences = 30;
+constexpr std::size_t highest_order = 20;
+constexpr std::size_t orders_in_vain = 5;
+
+/// The differences over `lag` samples that begin in [first, last) of the series; `every` is the step from one
+/// to the next within a stretch.
+std::vector<double> differences(const std::vector<double>& values, const std::vector<Stretch>& stretches,
+                                std::size_t lag, std::size_t first, std::size_t last, std::size_t every = 1) {
+  std::vector<double> result;
+  for (const Stretch& stretch : stretches) {
+    const std::size_t end = stretch.first + stretch.count;
+    if (stretch.count <= lag) continue;
+    const std::size_t to = std::min(end - lag, last);
+    for (std::size_t i = std::max(stretch.first, first); i < to; i += every)
+      result.push_back(values[i + lag] - values[i]);
+  }
+  return result;
+}
+
+/// The variances of the differences over 1, 2, 4 ... samples, up to the lag at which they level off: the
+/// noise has forgotten itself. NaN where there are too few.
+std::vector<double> difference_variances(const std::vector<double>& values,
+                                         const std::vector<Stretch>& stretches) {
+  // So many tell the variance to 2 %.
+  constexpr std::size_t enough = 8192;
+  const std::size_t every = 1 + values.size() / enough;
+  std::vector<double> result;
+  for (const std::size_t lag : lags) {
+    std::vector<double> change = differences(values, stretches, lag, 0, values.size(), every);
+    // Stretches that are shorter than the lag have none: what there is up to it has to do.
+    if (change.size() < fewest_differences) break;
+    const double deviation = robust_deviation(std::move(change));
+    result.push_back(deviation * deviation);
+    if (result.size() > 1 && !(result.back() > plateau_growth * result[result.size() - 2])) break;
+  }
+  if (result.empty()) result.push_back(nan);
+  return result;
+}
+
+}  // namespace
+
+std::vector<Stretch> stretches_of(const std::vector<double>& values, const std::vector<double>& time,
+                                  double step) {
+  std::vector<Stretch> result;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isnan(values[i])) continue;
+    const bool goes_on = i > 0 && !std::isnan(values[i - 1]) && time[i] - time[i - 1] <= 1.5 * step;
+    if (!goes_on) result.push_back({i, 0});
+    ++result.back().count;
+  }
+  return result;
+}
+
+double robust_deviation(std::vector<double> values) {
+  values.erase(std::remove_if(values.begin(), values.end(), [](double x) { return std::isnan(x); }),
+               values.end());
+  if (values.empty()) return nan;
+  for (double& value : values) value = std::abs(value);
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return deviation_of_median * *middle;
+}
+
+NoiseFloor noise_floor(const std::vector<double>& values, const std::vector<Stretch>& stretches,
+                       double step) {
+  NoiseFloor floor;
+  floor.local_rms.assign(values.size(), nan);
+  const std::vector<double> whole_variance = difference_variances(values, stretches);
+  const std::size_t plateau = lags[whole_variance.size() - 1];
+  const double whole = std::sqrt(0.5 * whole_variance.back());
+  floor.rms = whole;
+  if (!(whole > 0.0)) {
+    for (const Stretch& stretch : stretches)
+      std::fill_n(floor.local_rms.begin() + static_cast<std::ptrdiff_t>(stretch.first), stretch.count, whole);
+    return floor;
+  }
+  const std::size_t block = std::max<std::size_t>(1, static_cast<std::size_t>(local_time / step));
+  std::vector<double> normal(values.size(), nan);
+  double square_sum = 0.0;
+  std::size_t count = 0;
+  for (std::size_t first = 0; first < values.size(); first += block) {
+    const std::size_t last = std::min(first + block, values.size());
+    std::vector<double> change = differences(values, stretches, plateau, first, last);
+    double here = whole;
+    if (change.size() >= fewest_differences) here = std::sqrt(0.5) * robust_deviation(std::move(change));
+    if (!(here > 0.0)) here = whole;
+    const double level = std::exp(local_share * std::log(here) + (1.0 - local_share) * std::log(whole));
+    for (std::size_t i = first; i < last; ++i) {
+      if (std::isnan(values[i])) continue;
+      floor.local_rms[i] = level;
+      normal[i] = values[i] / level;
+      square_sum += here * here;
+      ++count;
+    }
+  }
+  floor.rms = std::sqrt(square_sum / static_cast<double>(count));
+
+  // rho_k = 1 - D(k)/D(plateau) at the lags, and straight lines between them.
+  const std::vector<double> variance = difference_variances(normal, stretches);
+  double before = 1.0;
+  double sum = 0.0;
+  std::size_t lag_before = 0;
+  for (std::size_t i = 0; i < variance.size(); ++i) {
+    const double correlation = std::clamp(1.0 - variance[i] / variance.back(), 0.0, 1.0);
+    const auto width = static_cast<double>(lags[i] - lag_before);
+    // The lags above lag_before up to and with lags[i].
+    sum += 0.5 * (width - 1.0) * before + 0.5 * (width + 1.0) * correlation;
+    before = correlation;
+    lag_before = lags[i];
+  }
+  floor.samples_per_independent = 1.0 + 2.0 * sum;
+  return floor;
+}
+
+double Autoregression::samples_per_independent(double rms) const {
+  const double gain = 1.0 - std::accumulate(coefficients.begin(), coefficients.end(), 0.0);
+  const double level = innovation_rms / (gain * rms);
+  return level * level;
+}
+
+Autoregression autoregression(const std::vector<double>& values, const std::vector<Stretch>& stretches,
+                              double limit) {
+  std::vector<double> kept;
+  for (const Stretch& stretch : stretches)
+    for (std::size_t i = 0; i < stretch.count; ++i) kept.push_back(values[stretch.first + i]);
+  const double bound = limit * robust_deviation(kept);
+  double power = 0.0;
+  for (double& value : kept) {
+    if (bound > 0.0) value = std::clamp(value, -bound, bound);
+    power += value * value;
+  }
+  Autoregression best;
+  if (kept.empty()) return best;
+  const auto count = static_cast<double>(kept.size());
+  power /= count;
+  best.innovation_rms = std::sqrt(power);
+  if (!(power > 0.0)) return best;
+
+  // Burg: forward and backward prediction errors of each order, over all stretches together.
+  std::vector<double> forward = kept;
+  std::vector<double> backward = kept;
+  std::vector<double> coefficients;
+  double best_criterion = count * std::log(power);
+  for (std::size_t order = 1; order <= highest_order; ++order) {
+    double across = 0.0;
+    double total = 0.0;
+    std::size_t begin = 0;
+    for (const Stretch& stretch : stretches) {
+      for (std::size_t i = begin + order; i < begin + stretch.count; ++i) {
+        across += forward[i] * backward[i - 1];
+        total += forward[i] * forward[i] + backward[i - 1] * backward[i - 1];
+      }
+      begin += stretch.count;
+    }
+    if (!(total > 0.0)) break;
+    const double reflection = 2.0 * across / total;
+    begin = 0;
+    for (const Stretch& stretch : stretches) {
+      for (std::size_t i = begin + stretch.count; i-- > begin + order;) {
+        const double ahead = forward[i];
+        forward[i] = ahead - reflection * backward[i - 1];
+        backward[i] = backward[i - 1] - reflection * ahead;
+      }
+      begin += stretch.count;
+    }
+    const std::vector<double> lower = coefficients;
+    coefficients.push_back(reflection);
+    for (std::size_t i = 0; i < lower.size(); ++i)
+      coefficients[i] = lower[i] - reflection * lower[lower.size() - 1 - i];
+    power *= 1.0 - reflection * reflection;
+    if (!(power > 0.0)) break;
+    const double criterion = count * std::log(power) + static_cast<double>(order) * std::log(count);
+    if (criterion < best_criterion) {
+      best_criterion = criterion;
+      best.coefficients = coefficients;
+      best.innovation_rms = std::sqrt(power);
+    }
+    if (order >= best.coefficients.size() + orders_in_vain) break;
+  }
+  return best;
+}
+
+std::vector<double> covariance_of_sums(const Autoregression& noise, const std::vector<const double*>& columns,
+                                       const std::vector<Stretch>& segments) {
+  // The noise is its innovations put through a recursive filter, so a sum (column . noise) is a sum over the
+  // innovations of the column put through the same filter backwards in time. Innovations before the first
+  // sample matter as long as the filter remembers.
+  constexpr std::size_t run_out = 300;
+  const std::size_t count = columns.size();
+  const std::size_t order = noise.coefficients.size();
+  const double variance = noise.innovation_rms * noise.innovation_rms;
+  std::vector<double> matrix(count * count, 0.0);
+  std::vector<double> state(count * std::max<std::size_t>(order, 1), 0.0);
+  std::vector<double> now(count);
+  for (const Stretch& segment : segments) {
+    std::fill(state.begin(), state.end(), 0.0);
+    std::size_t newest = 0;
+    const std::size_t steps = segment.count + (order > 0 ? run_out : 0);
+    for (std::size_t step = 0; step < steps; ++step) {
+      for (std::size_t c = 0; c < count; ++c) {
+        double value = step < segment.count ? columns[c][segment.first + segment.count - 1 - step] : 0.0;
+        for (std::size_t k = 0; k < order; ++k) {
+          value += noise.coefficients[k] * state[c * order + (newest + order - k) % order];
+        }
+        now[c] = value;
+      }
+      if (order > 0) {
+        newest = (newest + 1) % order;
+        for (std::size_t c = 0; c < count; ++c) state[c * order + newest] = now[c];
+      }
+      for (std::size_t a = 0; a < count; ++a) {
+        for (std::size_t b = 0; b <= a; ++b) matrix[a * count + b] += now[a] * now[b];
+      }
+    }
+  }
+  for (std::size_t a = 0; a < count; ++a) {
+    for (std::size_t b = 0; b <= a; ++b) {
+      matrix[a * count + b] *= variance;
+      matrix[b * count + a] = matrix[a * count + b];
+    }
+  }
+  return matrix;
+}
+
+}  // namespace pcor

@@ -1,0 +1,127 @@
+#include <pcor/regimes/regimes.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include <pcor/words/utc.hpp>
+
+namespace pcor {
+namespace {
+
+constexpr double day = 86400.0;  // s
+
+bool is_time_of_day(double time) { return time < day; }
+
+// How far a moment is from a flight; zero within it.
+double distance(double time, double first_time, double last_time) {
+  return std::max({first_time - time, time - last_time, 0.0});
+}
+
+// The moment of that time of the day which is in the flight or nearest to it.
+double nearest_moment(double time_of_day, double first_time, double last_time) {
+  double moment = midnight_before(first_time) - day + time_of_day;
+  for (double next = moment + day; next - day <= last_time; next += day) {
+    if (distance(next, first_time, last_time) < distance(moment, first_time, last_time)) moment = next;
+  }
+  return moment;
+}
+
+template <class Span>
+void place(Span& span, double first_time, double last_time) {
+  if (is_time_of_day(span.begin)) span.begin = nearest_moment(span.begin, first_time, last_time);
+  if (is_time_of_day(span.end)) {
+    span.end += midnight_before(span.begin);
+    if (span.end <= span.begin) span.end += day;
+  }
+}
+
+bool overlap(const Interval& interval, double begin, double end) {
+  return interval.begin < end && begin < interval.end;
+}
+
+// Takes [begin, end) out of an interval; what remains of it, if it is worth anything, goes to `kept`.
+void keep_outside(const Interval& interval, double begin, double end, std::vector<Interval>& kept) {
+  if (!overlap(interval, begin, end)) {
+    kept.push_back(interval);
+    return;
+  }
+  if (is_manoeuvre(interval.regime)) return;
+  if (interval.begin < begin) {
+    kept.push_back(interval);
+    kept.back().end = begin;
+  }
+  if (end < interval.end) {
+    kept.push_back(interval);
+    kept.back().begin = end;
+  }
+}
+
+// Removes the intervals that `concerns` from [begin, end), and the other leg of a pair with the one.
+template <class Concerns>
+void remove(std::vector<Interval>& intervals, double begin, double end, Concerns concerns) {
+  std::vector<int> pairs;
+  std::vector<Interval> kept;
+  for (const Interval& interval : intervals) {
+    if (!concerns(interval)) {
+      kept.push_back(interval);
+      continue;
+    }
+    if (interval.pair != 0 && overlap(interval, begin, end)) pairs.push_back(interval.pair);
+    keep_outside(interval, begin, end, kept);
+  }
+  const auto lost_its_partner = [&](const Interval& interval) {
+    return std::find(pairs.begin(), pairs.end(), interval.pair) != pairs.end();
+  };
+  kept.erase(std::remove_if(kept.begin(), kept.end(), lost_its_partner), kept.end());
+  intervals = std::move(kept);
+}
+
+}  // namespace
+
+bool UserIntervals::is_for(const std::filesystem::path& flight_file) const {
+  return flight.empty() || flight_file.filename() == flight;
+}
+
+UserIntervals placed(const UserIntervals& user, double first_time, double last_time) {
+  UserIntervals result = user;
+  for (Interval& interval : result.add) place(interval, first_time, last_time);
+  for (Veto& veto : result.veto) place(veto, first_time, last_time);
+  for (Exclusion& exclusion : result.exclude) place(exclusion, first_time, last_time);
+  return result;
+}
+
+std::vector<Interval> apply(const UserIntervals& user, std::vector<Interval> found, double first_time,
+                            double last_time) {
+  const UserIntervals moments = placed(user, first_time, last_time);
+  for (const Veto& veto : moments.veto) {
+    remove(found, veto.begin, veto.end,
+           [&](const Interval& interval) { return !veto.regime || interval.regime == *veto.regime; });
+  }
+  int pairs = 0;
+  double end_of_flight = std::nextafter(last_time, last_time + 1.0);
+  for (const Interval& interval : found) {
+    pairs = std::max(pairs, interval.pair);
+    end_of_flight = std::max(end_of_flight, interval.end);
+  }
+  std::vector<Interval> added;
+  for (Interval interval : moments.add) {
+    interval.begin = std::max(interval.begin, first_time);
+    interval.end = std::min(interval.end, end_of_flight);
+    if (!(interval.begin < interval.end)) continue;
+    const auto replaced = [&](const Interval& other) {
+      return other.regime == interval.regime || (is_phase(other.regime) && is_phase(interval.regime));
+    };
+    remove(found, interval.begin, interval.end, replaced);
+    if (is_phase(interval.regime)) remove(added, interval.begin, interval.end, replaced);
+    if (interval.pair != 0) interval.pair += pairs;
+    added.push_back(interval);
+  }
+  found.insert(found.end(), added.begin(), added.end());
+  std::sort(found.begin(), found.end(), [](const Interval& a, const Interval& b) {
+    return std::tie(a.begin, a.regime, a.end) < std::tie(b.begin, b.regime, b.end);
+  });
+  return found;
+}
+
+}  // namespace pcor

@@ -1,0 +1,208 @@
+#include <pcor/regimes/regimes.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <system_error>
+
+#include <pcor/words/error.hpp>
+
+#include "words/quoting.hpp"
+#include "words/toml_reader.hpp"
+
+namespace pcor {
+namespace {
+
+constexpr std::string_view intervals_format = "pcor-intervals/1";
+constexpr double day = 86400.0;               // s
+constexpr double longest_of_day = day / 2.0;  // s between two times of the day; more is a mistake
+constexpr const char* wanted_time =
+    "a date and time such as 2011-11-17T20:10:00Z, or a time of the day such as \"20:10:00\"";
+
+// "20:10" or "20:10:00.5" as seconds of the day; negative if it is neither.
+double time_of_day(const std::string& text) {
+  static const std::regex pattern(R"(([01]\d|2[0-3]):([0-5]\d)(?::([0-5]\d)(\.\d+)?)?)");
+  std::smatch parts;
+  if (!std::regex_match(text, parts, pattern)) return -1.0;
+  const auto whole = [&](std::size_t part) {
+    return parts[part].matched ? static_cast<double>(std::stoi(parts[part])) : 0.0;
+  };
+  double fraction = 0.0, scale = 0.1;
+  for (const char digit : parts[4].str()) {
+    if (digit == '.') continue;
+    fraction += scale * (digit - '0');
+    scale /= 10.0;
+  }
+  return whole(1) * 3600.0 + whole(2) * 60.0 + whole(3) + fraction;
+}
+
+Names names_of_regimes() { return names_of(regime_facts, &RegimeFacts::name); }
+
+// Reads a parsed file, and refuses what has no meaning with the place where it stands.
+class Reader final : TomlReader {
+ public:
+  explicit Reader(std::string_view name) : TomlReader(name) {}
+
+  UserIntervals read(std::string_view text) {
+    const toml::table root = parse(text);
+    check_format(root);
+    refuse_unknown(root, "", {"format", "flight", "add", "veto", "exclude"});
+    if (const toml::node* flight = root.get("flight")) user_.flight = text_of(*flight, "'flight'");
+    each(root, "add", {"regime", "begin", "end", "note", "pair"}, &Reader::add);
+    each(root, "veto", {"regime", "begin", "end"}, &Reader::veto);
+    each(root, "exclude", {"begin", "end", "reason"}, &Reader::exclude);
+    return std::move(user_);
+  }
+
+ private:
+  struct Span {
+    double begin;
+    double end;
+  };
+
+  void check_format(const toml::table& root) const {
+    const Entry format = format_of(root, "holds intervals", intervals_format);
+    if (format.node->value<std::string_view>() == intervals_format) return;
+    fail(format, fmt::format("this is not a format of interval files that this program reads; write "
+                             "format = \"{}\"",
+                             intervals_format));
+  }
+
+  // An error at the first key, in the order of the text, that is not `known`.
+  void refuse_unknown(const toml::table& table, const std::string& title, const Names& known) const {
+    for (const Entry& entry : entries_of(table, title)) {
+      if (std::find(known.begin(), known.end(), entry.key) == known.end()) refuse(entry, known);
+    }
+  }
+
+  void each(const toml::table& root, const std::string& key, const Names& known,
+            void (Reader::*read_one)(const toml::table&, const std::string&)) {
+    const toml::node* node = root.get(key);
+    if (node == nullptr) return;
+    const std::string title = "[[" + key + "]]";
+    const std::string otherwise = fmt::format("'{}' is no list of tables; write {}", key, title);
+    for (const toml::node& element : as<toml::array>(*node, otherwise)) {
+      const auto& table = as<toml::table>(element, otherwise);
+      refuse_unknown(table, title, known);
+      (this->*read_one)(table, title);
+    }
+  }
+
+  void add(const toml::table& table, const std::string& title) {
+    const Span span = span_of(table, title);
+    Interval interval{regime_of(required(table, "regime", title)), span.begin, span.end, 0, "", true};
+    if (const toml::node* note = table.get("note")) interval.note = text_of(*note, "'note' in " + title);
+    if (const toml::node* pair = table.get("pair")) interval.pair = pair_of(*pair, interval.regime);
+    user_.add.push_back(interval);
+  }
+
+  void veto(const toml::table& table, const std::string& title) {
+    const Span span = span_of(table, title);
+    Veto veto{{}, span.begin, span.end};
+    if (const toml::node* regime = table.get("regime")) veto.regime = regime_of(*regime);
+    user_.veto.push_back(veto);
+  }
+
+  void exclude(const toml::table& table, const std::string& title) {
+    const Span span = span_of(table, title);
+    const std::string reason = text_of(required(table, "reason", title), "'reason' in " + title);
+    user_.exclude.push_back({span.begin, span.end, reason});
+  }
+
+  const toml::node& required(const toml::table& table, std::string_view key, const std::string& title) const {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) fail(table, fmt::format("{} has no '{}'; add {} = ...", title, key, key));
+    return *node;
+  }
+
+  std::string text_of(const toml::node& node, const std::string& what) const {
+    return as<std::string>(node, what + " is not a text; give a text in quotes");
+  }
+
+  Regime regime_of(const toml::node& node) const {
+    const std::string name = text_of(node, "'regime'");
+    const Regime regime = regime_named(name);
+    if (regime == Regime::count) {
+      fail(node,
+           fmt::format("there is no regime {}; {}", in_quotes(name), instead_of(name, names_of_regimes())));
+    }
+    return regime;
+  }
+
+  int pair_of(const toml::node& node, Regime regime) const {
+    constexpr std::int64_t most = 10000;
+    const auto* number = node.as_integer();
+    if (number == nullptr || number->get() < 1 || number->get() > most) {
+      fail(node, fmt::format("'pair' is not a whole number from 1 to {}; give one to both legs", most));
+    }
+    if (regime != Regime::reverse_heading) {
+      fail(node, "'pair' is for the regime 'reverse heading' only; remove it");
+    }
+    return static_cast<int>(number->get());
+  }
+
+  Span span_of(const toml::table& table, const std::string& title) const {
+    const toml::node& begin_node = required(table, "begin", title);
+    const toml::node& end_node = required(table, "end", title);
+    const Span span{time_of(begin_node), time_of(end_node)};
+    const bool of_day = span.begin < day;
+    if (of_day != (span.end < day)) {
+      fail(end_node,
+           "one of 'begin' and 'end' is a time of the day and the other has a date; give both alike");
+    }
+    if (of_day && span.end != span.begin) {
+      const double duration = span.end - span.begin + (span.end < span.begin ? day : 0.0);
+      if (duration > longest_of_day) {
+        fail(end_node,
+             "'end' is before 'begin', or more than 12 h after it; correct it, or give both with dates");
+      }
+    } else if (!(span.begin < span.end)) {
+      fail(end_node, "'end' is not after 'begin'; correct one of them");
+    }
+    return span;
+  }
+
+  // Seconds since 1970 UTC, or of the day, which are fewer than a day.
+  double time_of(const toml::node& node) const {
+    if (const auto* moment = node.as_date_time()) {
+      const toml::date_time& value = moment->get();
+      const double minutes_east = value.offset ? value.offset->minutes : 0;
+      const double seconds = seconds_of(value) - minutes_east * 60.0;
+      if (seconds < day) fail(node, "the time is before 1970-01-02; correct the date");
+      return seconds;
+    }
+    if (const auto* time = node.as_time()) return seconds_of(time->get());
+    const auto* text = node.as_string();
+    const double seconds = text == nullptr ? -1.0 : time_of_day(text->get());
+    if (seconds < 0.0) fail(node, fmt::format("this is not a time; give {}", wanted_time));
+    return seconds;
+  }
+
+  UserIntervals user_;
+};
+
+}  // namespace
+
+UserIntervals read_intervals_text(std::string_view text, std::string_view name) {
+  return Reader(name).read(text);
+}
+
+UserIntervals read_intervals(const std::filesystem::path& path) {
+  std::error_code code;
+  if (!std::filesystem::exists(path, code)) {
+    throw Error(one_line(path.string() + ": there is no such file; give the path of a file of intervals"));
+  }
+  if (std::filesystem::is_directory(path, code)) {
+    throw Error(one_line(path.string() + ": is a directory; give the path of a file of intervals"));
+  }
+  std::ifstream stream(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream) throw Error(one_line(path.string() + ": cannot be read; check its permissions"));
+  return read_intervals_text(text, path.string());
+}
+
+}  // namespace pcor

@@ -1,0 +1,251 @@
+#include "residuals/flight_air.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <pcor/batch/batch.hpp>
+#include <pcor/numerics/line_fit.hpp>
+#include <pcor/physics/geodesy.hpp>
+#include <pcor/physics/moist_air.hpp>
+#include <pcor/physics/standard_atmosphere.hpp>
+#include <pcor/words/error.hpp>
+#include "roles/usual_variables.hpp"
+
+namespace pcor {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+struct Series {
+  std::string variable{};
+  std::vector<double> values{};
+  std::string without_unit{};  ///< the first that was passed over because the file gives it no unit
+};
+
+/// The unit that the model states for a variable: it goes before the file's own.
+struct StatedUnit {
+  std::string variable{};
+  std::string unit{};
+};
+
+/// The first of the variables that is there, has values and a unit that fits.
+Series read_first(const Flight& flight, const std::vector<std::string>& names, const std::string& unit,
+                  const StatedUnit& stated = {}) {
+  Series series;
+  for (const std::string& name : names) {
+    if (!flight.has(name) || !flight.variable(name).is_series) continue;
+    try {
+      const bool is_stated = name == stated.variable && !stated.unit.empty();
+      const std::string& own = is_stated ? stated.unit : flight.variable(name).units;
+      if (own.empty() && series.without_unit.empty()) series.without_unit = name;
+      const UnitConversion conversion =
+          UnitConversion::between(own, unit, {name, flight.path().string(), ""});
+      std::vector<double> values(flight.records());
+      for (const RecordBlock block : blocks_of(flight.records()))
+        flight.read_at_rate(1, name, block, conversion, values.data() + block.first);
+      if (std::any_of(values.begin(), values.end(), [](double x) { return !std::isnan(x); })) {
+        series.variable = name;
+        series.values = std::move(values);
+        return series;
+      }
+    } catch (const Error&) {
+      continue;  // a variable of that name with another unit is not the one that is meant
+    }
+  }
+  return series;
+}
+
+/// The series of a role: the model's variable in the unit that the model states, else the usual ones.
+Series read_role(const Flight& flight, const ModelFile& model, Quantity role,
+                 std::vector<std::string> usual) {
+  StatedUnit stated;
+  if (const auto given = model.variables.find(role); given != model.variables.end()) {
+    usual.insert(usual.begin(), given->second);
+    stated.variable = given->second;
+  }
+  if (const auto unit = model.units.find(role); unit != model.units.end()) stated.unit = unit->second;
+  return read_first(flight, usual, std::string(facts_of(role).unit), stated);
+}
+
+std::vector<bool> find_flying(const FlightSamples& samples, const MaskOptions& options) {
+  const std::vector<RegimeSet> regimes = regimes_of_samples(samples.time, samples.intervals);
+  std::vector<bool> flying(samples.time.size());
+  for (std::size_t i = 0; i < flying.size(); ++i) {
+    const auto is = [&](Regime regime) { return regimes[i][static_cast<std::size_t>(regime)]; };
+    flying[i] = !is(Regime::ground) && samples.motion.airspeed[i] >= options.least_airspeed &&
+                (samples.flaps.empty() || !(samples.flaps[i] > options.most_flaps)) &&
+                std::none_of(options.exclude.begin(), options.exclude.end(), is);
+  }
+  if (!options.intervals || samples.time.empty() || !options.intervals->is_for(samples.name)) return flying;
+  for (const Exclusion& exclusion :
+       placed(*options.intervals, samples.time.front(), samples.time.back()).exclude) {
+    for (std::size_t i = 0; i < flying.size(); ++i) {
+      if (samples.time[i] >= exclusion.begin && samples.time[i] < exclusion.end) flying[i] = false;
+    }
+  }
+  return flying;
+}
+
+void run_chain(const FlightSamples& samples, const Model& model, FlightAir& air) {
+  const Batch batch(model, samples.model.roles);
+  std::vector<Batch::Input> inputs;
+  for (const Quantity input : batch.chain().inputs())
+    inputs.push_back({input, samples.model.find(input)->data()});
+  const std::size_t count = samples.time.size();
+  std::vector<Batch::Output> outputs;
+  const auto wanted = [&](Quantity quantity, std::vector<double>& values) {
+    values.resize(count);
+    outputs.push_back({quantity, values.data()});
+  };
+  const auto if_there = [&](Quantity quantity, std::vector<double>& values) {
+    if (batch.chain().needs(quantity) && !batch.chain().recorded(quantity)) wanted(quantity, values);
+    if (batch.chain().recorded(quantity)) values = *samples.model.find(quantity);
+  };
+  std::vector<double> humidity;
+  wanted(Quantity::static_defect, air.static_defect);
+  wanted(Quantity::corrected_static_pressure, air.pressure);
+  wanted(Quantity::corrected_dynamic_pressure, air.dynamic);
+  wanted(Quantity::corrected_mach, air.mach);
+  wanted(Quantity::humidity, humidity);
+  if (batch.chain().has_temperature()) {
+    wanted(Quantity::ambient_temperature, air.temperature);
+    wanted(Quantity::corrected_airspeed, air.airspeed);
+  }
+  if_there(Quantity::attack, air.attack);
+  if_there(Quantity::sideslip, air.sideslip);
+  if_there(Quantity::attack_ratio, air.attack_ratio);
+  if_there(Quantity::sideslip_ratio, air.sideslip_ratio);
+  if (batch.chain().has_lams()) {
+    air.laser.emplace();
+    wanted(Quantity::lams_static_defect, air.laser->static_defect);
+    wanted(Quantity::lams_temperature, air.laser->temperature);
+  }
+  batch.run(inputs, outputs, count);
+  air.gas_constant.resize(count);
+  for (std::size_t i = 0; i < count; ++i) air.gas_constant[i] = moist_air(humidity[i]).gas_constant;
+  if (!air.laser) return;
+  // Eq. 12 turned round: v = M (gamma R_a T)^(1/2) with the laser's temperature is the laser's airspeed.
+  air.laser->airspeed.resize(count);
+  for (std::size_t i = 0; i < count; ++i)
+    air.laser->airspeed[i] = true_airspeed(air.mach[i], air.laser->temperature[i], moist_air(humidity[i]));
+}
+
+void find_heights(const Flight& flight, const ModelFile& model, FlightAir& air) {
+  Series height = read_role(flight, model, Quantity::altitude, {"GGALT", "GGALTC", "ALTV"});
+  air.height_variable = height.values.empty() ? height.without_unit : height.variable;
+  air.height = std::move(height.values);
+  air.latitude = read_role(flight, model, Quantity::latitude, usual_variables(Quantity::latitude)).values;
+  air.pressure_altitude.resize(air.size());
+  for (std::size_t i = 0; i < air.size(); ++i) air.pressure_altitude[i] = pressure_altitude(air.pressure[i]);
+  if (air.height.empty() || air.latitude.empty()) return;
+  air.geopotential_height.resize(air.size());
+  air.d_value.resize(air.size());
+  for (std::size_t i = 0; i < air.size(); ++i) {
+    air.geopotential_height[i] = geopotential_height(air.latitude[i], air.height[i]);
+    air.d_value[i] = air.geopotential_height[i] - air.pressure_altitude[i];
+  }
+}
+
+void find_ground_velocity(const Flight& flight, FlightAir& air) {
+  const FlightMotion& motion = air.samples->motion;
+  if (!motion.ground_speed.empty() && !motion.ground_track.empty()) {
+    air.east_speed.resize(air.size());
+    air.north_speed.resize(air.size());
+    for (std::size_t i = 0; i < air.size(); ++i) {
+      const double track = motion.ground_track[i] * constants::radians_per_degree;
+      air.east_speed[i] = motion.ground_speed[i] * std::sin(track);
+      air.north_speed[i] = motion.ground_speed[i] * std::cos(track);
+    }
+  } else {
+    const GroundVelocityVariables usual;
+    air.east_speed = read_first(flight, usual.east, "m/s").values;
+    air.north_speed = read_first(flight, usual.north, "m/s").values;
+    if (air.north_speed.empty()) air.east_speed.clear();
+    if (air.east_speed.empty()) air.north_speed.clear();
+  }
+}
+
+void find_tail_wind(FlightAir& air) {
+  const std::vector<double>& heading = air.samples->motion.heading;
+  if (heading.empty() || air.east_speed.empty() || air.airspeed.empty()) return;
+  air.tail_wind.resize(air.size());
+  for (std::size_t i = 0; i < air.size(); ++i) {
+    const double angle = heading[i] * constants::radians_per_degree;
+    air.tail_wind[i] =
+        air.east_speed[i] * std::sin(angle) + air.north_speed[i] * std::cos(angle) - air.airspeed[i];
+  }
+}
+
+}  // namespace
+
+FlightAir read_flight_air(const Flight& flight, const ModelFile& model, const MaskOptions& options) {
+  const auto laser = model.variables.find(Quantity::lams_airspeed);
+  const bool with_laser = laser != model.variables.end() && flight.has(laser->second);
+  Reference reference;
+  if (!with_laser) {
+    reference.kind = Reference::Kind::pressure;
+    reference.variable = model.variables.at(Quantity::static_pressure);
+  }
+  auto samples = std::make_shared<FlightSamples>(read_samples(flight, model, reference, options));
+  FlightAir air;
+  air.notes = samples->notes;
+  air.flying = find_flying(*samples, options);
+  air.measured_static = *samples->model.find(Quantity::static_pressure);
+  air.measured_dynamic = *samples->model.find(Quantity::dynamic_pressure);
+  run_chain(*samples, model.model, air);
+  air.samples = std::move(samples);
+  find_heights(flight, model, air);
+  find_ground_velocity(flight, air);
+  find_tail_wind(air);
+  return air;
+}
+
+std::string trouble_with_height(const FlightAir& air) {
+  // A height that the model names and gives a unit to.
+  const auto told = [&air](const char* unit) {
+    return fmt::format(R"([variables] altitude = "{}" and [units] altitude = "{}" in the model)",
+                       air.height_variable, unit);
+  };
+  if (air.height.empty() && !air.height_variable.empty())
+    return fmt::format("{} has no unit in the file; say it with {}, or give the file a units attribute",
+                       air.height_variable, told("m"));
+  if (air.height.empty())
+    return "the flight records no GPS height (GGALT; [variables] altitude names another)";
+  if (air.latitude.empty())
+    return "the flight records no latitude (GGLAT, LATC; [variables] latitude names another), so gravity is "
+           "not known";
+  std::vector<double> height(air.size(), nan);
+  for (std::size_t i = 0; i < air.size(); ++i) {
+    if (air.flying[i]) height[i] = air.geopotential_height[i];
+  }
+  const LineFit line = ordinary_fit(air.pressure_altitude, height);
+  constexpr double least_range = 300.0;  // m: with less the slope says little
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -lowest;
+  for (std::size_t i = 0; i < air.size(); ++i) {
+    if (std::isnan(height[i]) || std::isnan(air.pressure_altitude[i])) continue;
+    lowest = std::min(lowest, air.pressure_altitude[i]);
+    highest = std::max(highest, air.pressure_altitude[i]);
+  }
+  if (!(highest - lowest > least_range)) return "";
+  if (line.slope > 2.9 && line.slope < 3.7) {
+    return fmt::format(
+        "{} rises {:.2f} times as fast as the pressure altitude: it is in feet, whatever its unit says; {} "
+        "mend it, or correct its unit in the file",
+        air.height_variable, line.slope, told("ft"));
+  }
+  // Real air is within 20 % of the standard atmosphere.
+  if (!(line.slope > 0.75 && line.slope < 1.25)) {
+    return fmt::format(
+        "{} rises {:.2f} times as fast as the pressure altitude, which no atmosphere does; check both "
+        "variables",
+        air.height_variable, line.slope);
+  }
+  return "";
+}
+
+}  // namespace pcor

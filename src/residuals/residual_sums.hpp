@@ -1,0 +1,21 @@
+#pragma once
+
+#include <pcor/residuals/statistics.hpp>
+
+#include <cstddef>
+
+namespace pcor {
+
+/// Sums of residuals, from which statistics follow; those of flights add up.
+struct ResidualSums {
+  std::size_t samples = 0;
+  double sum = 0.0;
+  double squares = 0.0;
+  double noise_squares = 0.0;
+  double independent = 0.0;  ///< samples that count as independent
+
+  void add(double residual, double noise, double samples_per_independent);
+  Statistics statistics() const;
+};
+
+}  // namespace pcor

@@ -1,0 +1,74 @@
+#include "roles/model_inputs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include <pcor/words/error.hpp>
+#include <pcor/words/suggest.hpp>
+#include <pcor/words/utc.hpp>
+
+namespace pcor {
+
+std::vector<ModelInput> model_inputs(const Flight& flight, const ModelFile& file, const Chain& chain,
+                                     const std::vector<Quantity>& roles, std::vector<std::string>& notes) {
+  const auto conversion_of = [&](Quantity role) {
+    const QuantityFacts& facts = facts_of(role);
+    const auto stated = file.units.find(role);
+    return flight.conversion(file.variables.at(role), std::string(facts.unit), std::string(facts.name),
+                             stated == file.units.end() ? std::string() : stated->second);
+  };
+  std::vector<ModelInput> inputs;
+  const auto always = {Quantity::recovery_temperature, Quantity::ambient_temperature,
+                       Quantity::vapor_pressure,       Quantity::dew_point,
+                       Quantity::frost_point,          Quantity::lams_airspeed};
+  for (const Quantity role : roles) {
+    if (!chain.needs(role) && std::find(always.begin(), always.end(), role) == always.end()) continue;
+    inputs.push_back({file.variables.at(role), role, conversion_of(role)});
+  }
+  // A formula that names the variable of a role means that role; other variables it takes as the file has
+  // them.
+  const std::vector<std::string>& extras = chain.extra_names();
+  for (std::size_t i = 0; i < extras.size(); ++i) {
+    const std::string& name = extras[i];
+    const auto role = std::find_if(file.variables.begin(), file.variables.end(),
+                                   [&name](const auto& entry) { return entry.second == name; });
+    if (role != file.variables.end()) {
+      inputs.push_back({name, extra_quantity(i), conversion_of(role->first)});
+      continue;
+    }
+    if (!flight.has(name)) {
+      const std::string meant = did_you_mean(name, flight.variables());
+      throw Error(fmt::format(
+          "{}: {}, which a formula of the model names, is neither a variable of this file nor a quantity{}",
+          flight.path().string(), name, meant.empty() ? "" : "; " + meant));
+    }
+    const std::string unit = flight.variable(name).units;
+    notes.push_back(
+        fmt::format("a formula takes {} in {}", name, unit.empty() ? "no unit: the file gives none" : unit));
+    inputs.push_back({name, extra_quantity(i), UnitConversion()});
+  }
+  for (const ModelInput& input : inputs) flight.require_values(input.variable);
+  return inputs;
+}
+
+std::vector<std::string> notes_on_law(const Flight& flight, const ModelFile& file) {
+  std::vector<std::string> notes;
+  const std::string day = utc_text(flight.time().first, "%Y-%m-%d");
+  const LawFacts& law = file.law;
+  const bool early = !law.valid_from.empty() && day < law.valid_from;
+  const bool late = !law.valid_to.empty() && day > law.valid_to;
+  if (early || late) {
+    notes.push_back(
+        fmt::format("the law holds {} {}, the flight is of {}; look for a model of its time in data/models",
+                    early ? "from" : "until", early ? law.valid_from : law.valid_to, day));
+  }
+  const std::string& expected = file.model.aircraft;
+  const std::string actual = flight.aircraft();
+  if (!expected.empty() && !actual.empty() && expected.find(actual) == std::string::npos) {
+    notes.push_back(fmt::format("the model is of the aircraft '{}', the flight of '{}'", expected, actual));
+  }
+  return notes;
+}
+
+}  // namespace pcor

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <pcor/flight/flight.hpp>
+#include <pcor/laws/model_file.hpp>
+#include <pcor/realtime/chain.hpp>
+
+namespace pcor {
+
+/// A variable of a flight that a model reads, and the quantity that it is.
+struct ModelInput {
+  std::string variable;
+  Quantity quantity = Quantity::count;
+  UnitConversion conversion;
+};
+
+/// What `chain`, which was built for the roles `roles` of `file`, reads of `flight`: the variables of the
+/// roles, and those that formulas name. Adds to `notes` what a user should know, a sentence each.
+/// @throws Error if a variable is absent or has no value, or its unit does not fit.
+std::vector<ModelInput> model_inputs(const Flight& flight, const ModelFile& file, const Chain& chain,
+                                     const std::vector<Quantity>& roles, std::vector<std::string>& notes);
+
+/// What a user should know of a law that was made for another time or aircraft than the flight's.
+std::vector<std::string> notes_on_law(const Flight& flight, const ModelFile& file);
+
+}  // namespace pcor

@@ -1,0 +1,102 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/realtime/chain.hpp>
+#include <pcor/roles/with_effects.hpp>
+#include <pcor/words/error.hpp>
+#include "laws/model_names.hpp"
+#include "roles/usual_variables.hpp"
+
+namespace pcor {
+namespace {
+
+/// The role that a message of `Chain::build` says is needed.
+std::optional<Quantity> needed_role(const std::string& message) {
+  const std::string before = "needs the role '";
+  const std::size_t found = message.find(before);
+  if (found == std::string::npos) return std::nullopt;
+  const std::size_t begin = found + before.size();
+  const Quantity role = quantity_named(message.substr(begin, message.find('\'', begin) - begin));
+  return role == Quantity::count ? std::nullopt : std::optional<Quantity>(role);
+}
+
+/// The first of the usual names among `variables`, be it with the suffix of an instrument as in PLWCD_LWOI.
+std::optional<std::string> usual_variable(const std::vector<std::string>& usual,
+                                          const std::vector<std::string>& variables) {
+  if (variables.empty() && !usual.empty()) return usual.front();
+  for (const char* const suffix : {"", "_"}) {
+    for (const std::string& name : usual) {
+      const std::string wanted = name + suffix;
+      for (const std::string& variable : variables) {
+        if (*suffix == '\0' ? variable == wanted : variable.rfind(wanted, 0) == 0) return variable;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+/// Parameters that only shape an effect are held until someone frees them.
+EffectFit fit_of(const ModelEffect& effect) {
+  EffectFit fit(effect.parameters.size());
+  if (effect.is_formula()) return fit;
+  const EffectFacts& facts = effect_facts[effect_named(effect.id)];
+  for (std::size_t i = 0; i < fit.size(); ++i) fit[i].fixed = facts.parameters[i].shape;
+  return fit;
+}
+
+void add(ModelFile& file, ModelEffect effect) {
+  std::vector<ModelEffect>& effects = file.model.effects;
+  const bool known = std::any_of(effects.begin(), effects.end(),
+                                 [&effect](const ModelEffect& each) { return each.id == effect.id; });
+  if (known) {
+    throw Error(fmt::format("model '{}' has the effect {} already; refit it, or add another",
+                            one_line(file.model.name), in_quotes(effect.id)));
+  }
+  if (effect.is_formula()) {
+    if (effect_named(effect.id) != catalogue_size) {
+      throw Error(fmt::format("effect {} has its formula in the catalogue; give the formula an id of its own",
+                              in_quotes(effect.id)));
+    }
+  } else {
+    const ModelEffect neutral = neutral_effect(effect.id);
+    if (effect.parameters.empty()) effect.parameters = neutral.parameters;
+    if (effect.parameters.size() != neutral.parameters.size()) {
+      throw Error(fmt::format("effect {} takes {} parameter(s), not {}; give one value for each",
+                              in_quotes(effect.id), neutral.parameters.size(), effect.parameters.size()));
+    }
+  }
+  file.fits.resize(effects.size());
+  file.fits.push_back(fit_of(effect));
+  effects.push_back(std::move(effect));
+}
+
+}  // namespace
+
+ModelFile with_effects(const ModelFile& model, const std::vector<ModelEffect>& effects,
+                       const std::vector<std::string>& variables) {
+  ModelFile file = model;
+  for (const ModelEffect& effect : effects) add(file, effect);
+  std::string why;
+  while (!Chain::build(file.model, file.roles(), &why)) {
+    const std::optional<Quantity> role = needed_role(why);
+    if (!role) throw Error(fmt::format("model '{}': {}", one_line(model.model.name), one_line(why)));
+    const std::vector<std::string> usual = usual_variables(*role);
+    const std::optional<std::string> variable = usual_variable(usual, variables);
+    if (!variable) {
+      throw Error(fmt::format("model '{}': {}{}", one_line(model.model.name), one_line(why),
+                              usual.empty() ? fmt::format(" as {} = \"...\"", facts_of(*role).name)
+                                            : fmt::format("; the flight has none of its usual names {}",
+                                                          fmt::join(usual, ", "))));
+    }
+    file.variables[*role] = *variable;
+  }
+  return file;
+}
+
+}  // namespace pcor

@@ -1,0 +1,197 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <pcor/temperature/temperature.hpp>
+#include <pcor/words/utc.hpp>
+
+namespace pcor {
+namespace {
+
+std::vector<double> joined(const TemperatureResult& result, std::vector<double> FlightHeights::*series) {
+  std::vector<double> values;
+  for (const FlightHeights& flight : result.flights)
+    values.insert(values.end(), (flight.*series).begin(), (flight.*series).end());
+  return values;
+}
+
+ReportTable coefficient_table(const TemperatureResult& result) {
+  ReportTable table;
+  table.title = "Coefficients";
+  table.caption =
+      "T corrected = T + a0 + a1 t + a2 t², t in °C. The standard error comes from the curvature of the "
+      "likelihood, averaged over the noises that are likely; the interval is where the likelihood has fallen "
+      "by e^(-1/2), with the noise at its best for each value. Least squares on height, as the memo states "
+      "it, takes heights for independent and isobars for level or known: its errors are too small. " +
+      pressure_error_text(result) + ".";
+  table.headers = {"",
+                   "likelihood",
+                   result.pressure_error > 0.0 ? "std. error" : "std. error, noise only",
+                   "interval",
+                   "least squares",
+                   "its error",
+                   "per 1 hPa of static pressure",
+                   "unit"};
+  for (std::size_t k = 0; k < result.likelihood.coefficients.size(); ++k) {
+    table.rows.push_back({fmt::format("a{}", k), fmt::format("{:+.5g}", result.likelihood.coefficients[k]),
+                          fmt::format("{:.2g}", result.likelihood.standard_errors[k]),
+                          profile_text(result.profile[k]),
+                          fmt::format("{:+.5g}", result.least_squares.coefficients[k]),
+                          fmt::format("{:.2g}", result.least_squares.standard_errors[k]),
+                          fmt::format("{:+.3g}", result.per_hpa[k]), coefficient_unit(k)});
+  }
+  return table;
+}
+
+ReportTable degree_table(const TemperatureResult& result) {
+  ReportTable table;
+  table.title = "Which degree";
+  table.caption =
+      "-2 ln L, less that without correction: of all flights, and of each flight with the coefficients of "
+      "the others. A further coefficient is kept where flights that took no part are foretold better, by "
+      "more than 4 and two standard errors of the gain.";
+  table.headers = {"correction", "all flights", "held-out flights", "std. error"};
+  const auto number = [](double x) { return std::isnan(x) ? std::string("-") : fmt::format("{:.1f}", x); };
+  for (const DegreeChoice& choice : result.degrees)
+    table.rows.push_back({degree_name(choice.degree), number(choice.deviance), number(choice.held_out),
+                          number(choice.held_out_error)});
+  return table;
+}
+
+ReportTable flight_table(const TemperatureResult& result) {
+  ReportTable table;
+  table.title = "Flights";
+  table.caption =
+      "Rms of the height by GPS less the integral, about its mean in each stretch and an estimate of the "
+      "slope of isobars: what remains with the correction is noise and the drift of the integral.";
+  table.headers = {"flight",      "samples",       "stretches",    "coldest, °C",
+                   "warmest, °C", "rms before, m", "rms after, m", ""};
+  for (const FlightHeights& flight : result.flights) {
+    if (!flight.left_out.empty()) {
+      table.rows.push_back({flight.flight, "", "", "", "", "", "", "left out: " + flight.left_out});
+      continue;
+    }
+    table.rows.push_back(
+        {flight.flight, std::to_string(flight.samples), std::to_string(flight.stretches),
+         fmt::format("{:.1f}", flight.least_temperature), fmt::format("{:.1f}", flight.greatest_temperature),
+         fmt::format("{:.2f}", flight.rms_before), fmt::format("{:.2f}", flight.rms_after), ""});
+  }
+  return table;
+}
+
+BarPanel correction_bars(const TemperatureResult& result) {
+  BarPanel panel;
+  panel.title = "The correction";
+  panel.caption = "What is added to the temperature, with its standard error, over the range of the flights.";
+  panel.axis = "correction";
+  panel.unit = "K";
+  for (const TemperatureCorrection& at : result.corrections)
+    panel.bars.push_back({fmt::format("{:.0f} °C", at.temperature), at.correction, at.standard_error});
+  return panel;
+}
+
+}  // namespace
+
+std::string degree_name(int degree) {
+  constexpr std::array<const char*, 4> names{"none", "constant", "linear", "quadratic"};
+  return names.at(static_cast<std::size_t>(degree) + 1);
+}
+
+std::string coefficient_unit(std::size_t power) {
+  constexpr std::array<const char*, 3> units{"K", "1", "1/K"};
+  return units.at(power);
+}
+
+std::string with_error(double value, double error, std::string_view plus_minus) {
+  if (!(error > 0.0) || !std::isfinite(error))
+    return fmt::format("{:+.3g} {} {:g}", value, plus_minus, error);
+  // The first digit is that after rounding to two, so that 0.0996 is 0.10.
+  const double rounded = std::stod(fmt::format("{:.1e}", error));
+  const int decimals = std::max(0, 1 - static_cast<int>(std::floor(std::log10(rounded) + 1e-9)));
+  return fmt::format("{:+.{}f} {} {:.{}f}", value, decimals, plus_minus, error, decimals);
+}
+
+std::string pressure_error_text(const TemperatureResult& result) {
+  if (result.pressure_error > 0.0) {
+    return fmt::format("Errors have in them one of the static pressure of {:g} hPa that lasts for a flight",
+                       result.pressure_error);
+  }
+  constexpr double usual = 0.3;  // hPa, the rms of the memo's fits (R47)
+  std::string moved;
+  for (std::size_t k = 0; k < result.per_hpa.size(); ++k) {
+    moved += fmt::format("{}a{} by {:.2g}{}", k == 0 ? "" : ", ", k, std::abs(usual * result.per_hpa[k]),
+                         k == 1 ? "" : " " + coefficient_unit(k));
+  }
+  return fmt::format(
+      "Errors are those of the noise only: one of the static pressure of {:g} hPa in all flights, as the "
+      "fits of laws have, would move {}; --pressure-error {:g} takes one of each flight into the errors",
+      usual, moved, usual);
+}
+
+std::string profile_text(const std::array<double, 2>& ends) {
+  const auto end = [](double value) {
+    return std::isnan(value) ? std::string("open") : fmt::format("{:+.4g}", value);
+  };
+  return fmt::format("{} to {}", end(ends[0]), end(ends[1]));
+}
+
+Report temperature_report(const TemperatureResult& result) {
+  Report report;
+  report.title = "Calibration of the temperature by the height";
+  report.subtitle = result.model.model.name;
+  const TemperatureCorrection& middle = result.corrections[result.corrections.size() / 2];
+  report.summary.push_back(fmt::format("At {:.0f} °C the temperature is corrected by {} K.",
+                                       middle.temperature,
+                                       with_error(middle.correction, middle.standard_error, "±")));
+  for (const std::string& note : result.notes) report.summary.push_back("Note: " + note + ".");
+  report.facts = {
+      {"Samples", std::to_string(result.samples)},
+      {"Noise of the GPS height", fmt::format("{:.2f} m in a sample, {:.2f} m with a memory of {:.0f} s",
+                                              result.gps_noise, result.gps_wander, result.gps_wander_time)},
+      {"Drift of the integral", fmt::format("{:.3f} m in a minute", result.drift)},
+      {"Innovations", fmt::format("variance {:.2f} (1 where the noise is as described), correlation {:+.2f}",
+                                  result.innovation_variance, result.innovation_correlation)}};
+
+  for (const FlightHeights& flight : result.flights) {
+    if (flight.time.empty()) continue;
+    report.flight_starts.push_back(report.time.size());
+    report.flight_names.push_back(flight.flight);
+    report.time.insert(report.time.end(), flight.time.begin(), flight.time.end());
+  }
+  report.columns = {
+      {"before", "without correction", "m", joined(result, &FlightHeights::before)},
+      {"after", "with the correction", "m", joined(result, &FlightHeights::after)},
+      {"height", "geopotential height by GPS", "m", joined(result, &FlightHeights::height)},
+      {"temperature", "temperature", "°C", joined(result, &FlightHeights::temperature)},
+      {"innovation", "innovation", "std. deviations", joined(result, &FlightHeights::innovation)}};
+
+  report.items.emplace_back(correction_bars(result));
+  report.items.emplace_back(coefficient_table(result));
+  TimePanel difference;
+  difference.title = "Height by GPS less the integral of the hydrostatic equation";
+  difference.caption =
+      "Means over 10 s, about the mean of each stretch, with an estimate of the slope of isobars taken off. "
+      "A thermometer that errs makes the difference follow the height.";
+  difference.columns = {"before", "after"};
+  difference.axis = "height difference";
+  report.items.emplace_back(difference);
+  TimePanel height;
+  height.title = "Height";
+  height.caption = "Geopotential height by GPS.";
+  height.columns = {"height"};
+  report.items.emplace_back(height);
+  BinnedPanel binned;
+  binned.title = "What the likelihood did not foresee";
+  binned.caption =
+      "Innovations of the filter in standard deviations. A mean that goes with a variable is something the "
+      "correction lacks.";
+  binned.y = {"innovation"};
+  binned.x_choices = {"temperature", "height"};
+  report.items.emplace_back(binned);
+  report.items.emplace_back(degree_table(result));
+  report.items.emplace_back(flight_table(result));
+  return report;
+}
+
+}  // namespace pcor

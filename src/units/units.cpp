@@ -1,0 +1,172 @@
+#include <udunits2.h>
+#include <pcor/units/units.hpp>
+#include <pcor/words/error.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <string_view>
+#include <utility>
+
+namespace pcor {
+namespace {
+
+struct Alias {
+  std::string_view seen;      // in real files
+  std::string_view standard;  // for UDUNITS
+};
+
+// What files hold that UDUNITS does not know, or takes for something else: "C" would be coulomb, "mb"
+// millibarn, "cnt" centinit, "N/cm3" newton per cubic centimetre. Ordered by `seen`.
+constexpr std::array aliases{
+    Alias{"#", "1"},
+    Alias{"#/L", "L-1"},
+    Alias{"#/cc", "cm-3"},
+    Alias{"#/cm3", "cm-3"},
+    Alias{"#/l", "L-1"},
+    Alias{"#/liter", "L-1"},
+    Alias{"#/m3", "m-3"},
+    Alias{"C", "degC"},
+    Alias{"Deg", "degree"},
+    Alias{"Deg_C", "degC"},
+    Alias{"HPa", "hPa"},
+    Alias{"KPa", "kPa"},
+    Alias{"Lpm", "L/min"},
+    Alias{"M", "m"},
+    Alias{"M-1", "m-1"},
+    Alias{"M/S", "m/s"},
+    Alias{"M/s", "m/s"},
+    Alias{"M/s2", "m/s2"},
+    Alias{"MB", "mbar"},
+    Alias{"MBAR", "mbar"},
+    Alias{"Mb", "mbar"},
+    Alias{"N/L", "L-1"},
+    Alias{"N/cM3", "cm-3"},
+    Alias{"N/cm3", "cm-3"},
+    Alias{"RPM", "rpm"},
+    Alias{"VDC", "V"},
+    Alias{"Vdc", "V"},
+    Alias{"W/M2", "W/m2"},
+    Alias{"cnt", "1"},
+    Alias{"cnts", "1"},
+    Alias{"deg", "degree"},
+    Alias{"deg C", "degC"},
+    Alias{"deg K", "K"},
+    Alias{"deg. C", "degC"},
+    Alias{"deg/S", "degree/s"},
+    Alias{"deg/s", "degree/s"},
+    Alias{"deg_T", "degree"},
+    Alias{"degree_T", "degree"},
+    Alias{"degrees C", "degC"},
+    Alias{"degrees_T", "degree"},
+    Alias{"degs", "degree"},
+    Alias{"degs C", "degC"},
+    Alias{"dimensionless", "1"},
+    Alias{"g/M3", "g/m3"},
+    Alias{"gm/kg", "g/kg"},
+    Alias{"gm/m3", "g/m3"},
+    Alias{"hpa", "hPa"},
+    Alias{"lpm", "L/min"},
+    Alias{"mb", "mbar"},
+    Alias{"mb/s", "mbar/s"},
+    Alias{"mps", "m/s"},
+    Alias{"nondimensional", "1"},
+    Alias{"none", "1"},
+    Alias{"slpm", "L/min"},
+    Alias{"splm", "L/min"},
+    Alias{"std cm3/s", "cm3/s"},
+    Alias{"uM", "um"},
+    Alias{"unitless", "1"},
+    Alias{"vdc", "V"},
+    Alias{"vlpm", "L/min"},
+    Alias{"vol cm3/s", "cm3/s"},
+};
+
+constexpr bool aliases_are_ordered() {
+  for (std::size_t i = 1; i < aliases.size(); ++i)
+    if (!(aliases[i - 1].seen < aliases[i].seen)) return false;
+  return true;
+}
+static_assert(aliases_are_ordered());
+
+struct Deleter {
+  void operator()(ut_system* system) const { ut_free_system(system); }
+  void operator()(ut_unit* unit) const { ut_free(unit); }
+  void operator()(cv_converter* converter) const { cv_free(converter); }
+};
+using Unit = std::unique_ptr<ut_unit, Deleter>;
+using Converter = std::unique_ptr<cv_converter, Deleter>;
+
+// UDUNITS parses with global state, so every use holds this lock.
+std::mutex& udunits_lock() {
+  static std::mutex lock;
+  return lock;
+}
+
+ut_system* udunits() {
+  static const std::unique_ptr<ut_system, Deleter> system = [] {
+    ut_set_error_message_handler(ut_ignore);
+    return std::unique_ptr<ut_system, Deleter>(ut_read_xml(nullptr));
+  }();
+  if (!system)
+    throw Error(
+        "the unit database of UDUNITS cannot be read; install udunits2-data or set UDUNITS2_XML_PATH");
+  return system.get();
+}
+
+Unit parse(const std::string& unit) {
+  if (unit.empty()) return nullptr;
+  return Unit(ut_parse(udunits(), standard_unit(unit).c_str(), UT_UTF8));
+}
+
+std::string how_to_state(const UnitOwner& owner, const std::string& to) {
+  if (owner.role.empty()) return "state the unit it is in, e.g. \"" + to + "\"";
+  return "add unit." + owner.role + " = \"" + to +
+         "\", or the unit it is in, to the [units] table of the model file";
+}
+
+}  // namespace
+
+std::string standard_unit(const std::string& unit) {
+  const auto alias =
+      std::lower_bound(aliases.begin(), aliases.end(), std::string_view(unit),
+                       [](const Alias& each, std::string_view wanted) { return each.seen < wanted; });
+  return alias != aliases.end() && alias->seen == unit ? std::string(alias->standard) : unit;
+}
+
+bool is_known_unit(const std::string& unit) {
+  const std::lock_guard guard(udunits_lock());
+  return parse(unit) != nullptr;
+}
+
+UnitConversion UnitConversion::between(const std::string& from, const std::string& to,
+                                       const UnitOwner& owner) {
+  const std::lock_guard guard(udunits_lock());
+  const std::string whose = (owner.file.empty() ? "" : owner.file + ": ") + owner.variable;
+  if (from.empty()) throw Error(whose + " has no unit; " + how_to_state(owner, to));
+  const Unit target = parse(to);
+  if (!target) throw Error(whose + ": the wanted unit \"" + to + "\" is not known to UDUNITS");
+  const Unit source = parse(from);
+  if (!source)
+    throw Error(whose + " has the unit \"" + from + "\", which is not known; " + how_to_state(owner, to));
+  if (!ut_are_convertible(source.get(), target.get()))
+    throw Error(whose + " has the unit \"" + from + "\", which cannot be converted to " + to +
+                "; choose another variable, or " + how_to_state(owner, to));
+
+  const Converter converter(ut_get_converter(source.get(), target.get()));
+  const auto convert = [&](double value) { return cv_convert_double(converter.get(), value); };
+  // A wide span keeps the rounding of an offset (273.15) out of the scale.
+  constexpr double span = 1 << 20;
+  const double offset = convert(0);
+  double scale = (convert(span) - convert(-span)) / (2 * span);
+  if (std::abs(scale - 1) < 1e-12) scale = 1;
+  const double middle = convert(span / 4);
+  if (!(std::abs(middle - (scale * span / 4 + offset)) <= 1e-9 * (std::abs(middle) + std::abs(offset))))
+    throw Error(whose + " has the unit \"" + from + "\", which is not proportional to " + to + "; " +
+                how_to_state(owner, to));
+  return {scale, offset};
+}
+
+}  // namespace pcor

@@ -1,0 +1,153 @@
+#include <pcor/words/replacement_file.hpp>
+
+#include <fcntl.h>
+#include <unistd.h>
+#include <pcor/words/error.hpp>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <climits>
+#include <cstddef>
+#include <cstring>
+#include <random>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+namespace pcor {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Where a symbolic link leads, also if nothing is there yet. A circle of links ends where it began.
+fs::path behind_links(fs::path path) {
+  constexpr int most_links = 40;
+  std::error_code code;
+  for (int i = 0; i < most_links && fs::is_symlink(path, code); ++i)
+    path = path.parent_path() / fs::read_symlink(path, code);
+  return path;
+}
+
+// The paths of the files that are not finished, for a signal handler: no memory is asked for or given back.
+struct Unfinished {
+  enum State : int { free, changing, listed };
+
+  std::atomic<int> state{free};
+  char path[PATH_MAX] = {};
+};
+static_assert(std::atomic<int>::is_always_lock_free);
+
+std::array<Unfinished, 16> unfinished_files;
+
+// One that finds no room is not listed; only a signal would leave it behind.
+void list_as_unfinished(const std::string& path) {
+  if (path.size() >= sizeof Unfinished::path) return;
+  for (Unfinished& entry : unfinished_files) {
+    int expected = Unfinished::free;
+    if (!entry.state.compare_exchange_strong(expected, Unfinished::changing)) continue;
+    std::memcpy(entry.path, path.c_str(), path.size() + 1);
+    entry.state = Unfinished::listed;
+    return;
+  }
+}
+
+void take_from_list(const std::string& path) {
+  for (Unfinished& entry : unfinished_files)
+    if (entry.state == Unfinished::listed && path == entry.path) entry.state = Unfinished::free;
+}
+
+// A new file ".NAME.XXXXXX.part" that no other program has, also not one on another host or one that was
+// killed. Unlike mkstemp it has the permissions of any new file. It is listed before it is there, so a signal
+// at any moment finds it. Empty if it cannot be made; errno says why.
+fs::path make_hidden_file(const fs::path& directory, const std::string& name) {
+  constexpr const char* letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
+  constexpr std::size_t most_of_name = NAME_MAX - std::string_view("..XXXXXX.part").size();
+  constexpr int tries = 100;
+  std::random_device random;
+  std::uniform_int_distribution<std::size_t> letter(0, std::strlen(letters) - 1);
+  for (int i = 0; i < tries; ++i) {
+    std::string chosen = "." + name.substr(0, most_of_name) + ".";
+    for (int j = 0; j < 6; ++j) chosen += letters[letter(random)];
+    fs::path path = directory / (chosen + ".part");
+    list_as_unfinished(path.string());
+    const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file >= 0) {
+      ::close(file);
+      return path;
+    }
+    const int reason = errno;
+    take_from_list(path.string());
+    errno = reason;
+    if (reason != EEXIST) break;
+  }
+  return {};
+}
+
+// Has the disk hold what was written; false if it cannot, errno says why.
+bool settle(const fs::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return false;
+  const bool settled = ::fsync(file) == 0;
+  const int reason = errno;
+  ::close(file);
+  errno = reason;
+  return settled;
+}
+
+}  // namespace
+
+void remove_unfinished_files() noexcept {
+  const int before = errno;
+  for (const Unfinished& entry : unfinished_files)
+    if (entry.state == Unfinished::listed) ::unlink(entry.path);
+  errno = before;
+}
+
+ReplacementFile::ReplacementFile(const fs::path& target) : shown_(target) {
+  if (target.empty()) throw Error("the output has no name; name a file");
+  std::error_code code;
+  target_ = fs::weakly_canonical(behind_links(fs::absolute(target)), code);
+  if (code)
+    throw Error(shown_.string() + " cannot be written: " + code.message() + "; choose another output");
+  const fs::file_status status = fs::status(target_, code);
+  if (fs::is_directory(status)) throw Error(shown_.string() + " is a directory; name a file");
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    throw Error(shown_.string() + " is not a regular file; choose another output");
+  const fs::path directory = target_.parent_path();
+  if (!fs::is_directory(directory, code))
+    throw Error(shown_.string() + " cannot be written: there is no directory " + directory.string() +
+                "; make it first");
+  if (access(directory.c_str(), W_OK | X_OK) != 0)
+    throw Error(shown_.string() + " cannot be written: " + directory.string() + ": " + std::strerror(errno) +
+                "; choose another output");
+  path_ = make_hidden_file(directory, target_.filename().string());
+  if (path_.empty())
+    throw Error(shown_.string() + " cannot be written: " + directory.string() + ": " + std::strerror(errno) +
+                "; check the space and the permissions there, or choose another output");
+}
+
+ReplacementFile::~ReplacementFile() {
+  if (committed_) return;
+  std::error_code ignored;
+  // HDF5 keeps a file open that it could not complete: emptied first, it gives its space back all the same.
+  fs::resize_file(path_, 0, ignored);
+  fs::remove(path_, ignored);
+  take_from_list(path_.string());
+}
+
+void ReplacementFile::commit() {
+  std::error_code code;
+  if (fs::exists(target_, code)) fs::permissions(path_, fs::status(target_).permissions(), code);
+  if (!settle(path_))
+    throw Error(shown_.string() + " cannot be written: " + std::strerror(errno) +
+                "; check the space and the permissions there, or choose another output");
+  fs::rename(path_, target_, code);
+  if (code)
+    throw Error(shown_.string() + " cannot be put in place: " + code.message() + "; choose another output");
+  committed_ = true;
+  take_from_list(path_.string());
+}
+
+}  // namespace pcor

@@ -1,0 +1,95 @@
+#pragma once
+
+// Only for the sources of readers, which alone shall know toml++.
+// An assertion of toml++ ends the program on input such as `[ = "x`. Without it the same line is refused.
+#ifndef NDEBUG
+#define NDEBUG
+#endif
+#include <toml++/toml.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "words/quoting.hpp"
+
+namespace pcor {
+
+/// A key of a table with its value.
+struct Entry {
+  std::string key;
+  toml::source_position place;  // of the key
+  const toml::node* node;
+  std::string title;  // of the table
+};
+
+/// The entries of a table in the order of the text; toml++ sorts them by name.
+std::vector<Entry> entries_of(const toml::table& table, const std::string& title = "");
+
+/// The entry of that key, if the table has it.
+std::optional<Entry> entry_of(const toml::table& table, std::string_view key);
+
+/// A key as messages call it: in quotes, with the title of its table.
+std::string called(const Entry& entry);
+
+/// Seconds since midnight.
+double seconds_of(const toml::time& time);
+
+/// Seconds since 1970 of a date and time without regard to its offset.
+double seconds_of(const toml::date_time& moment);
+
+/// What the readers of TOML files share: they refuse what has no meaning with the place where it stands.
+class TomlReader {
+ protected:
+  using Place = toml::source_position;
+  using Action = std::function<void(const Entry&)>;
+  using Actions = std::vector<std::pair<std::string, Action>>;
+
+  /// Messages call the file `name`.
+  explicit TomlReader(std::string_view name) : name_(name) {}
+  ~TomlReader() = default;
+
+  /// The tables of a text; a syntax error is refused.
+  toml::table parse(std::string_view text) const;
+
+  /// "file:line:column"; the beginning of the file for a place that is not known.
+  std::string place_of(Place place) const;
+
+  [[noreturn]] void fail(Place place, const std::string& what) const;
+  [[noreturn]] void fail(const toml::node& node, const std::string& what) const;
+
+  /// An error at the value of `entry`; for one at the key see its place.
+  [[noreturn]] void fail(const Entry& entry, const std::string& what) const;
+
+  /// An error at a key that is not among the `known` ones.
+  [[noreturn]] void refuse(const Entry& entry, const Names& known) const;
+
+  /// What `refuse` calls the key.
+  virtual std::string unknown(const Entry& entry) const { return "key " + called(entry); }
+
+  /// Does for each key what `actions` say; a key that they do not know is an error.
+  void each(const toml::table& table, const std::string& title, const Actions& actions) const;
+
+  /// The entry `format` of a file, which must say that it `is` of that format.
+  Entry format_of(const toml::table& root, std::string_view is, std::string_view format) const;
+
+  /// What a node holds: a table, an array, a text and the like. Any other kind is the error `otherwise`.
+  template <class Value>
+  const Value& as(const toml::node& node, const std::string& otherwise) const {
+    const auto* value = node.as<Value>();
+    if (value == nullptr) fail(node, otherwise);
+    if constexpr (toml::is_container<Value>) {
+      return *value;
+    } else {
+      return value->get();
+    }
+  }
+
+ private:
+  std::string name_;
+};
+
+}  // namespace pcor

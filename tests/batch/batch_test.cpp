@@ -1,0 +1,321 @@
+#include <pcor/batch/batch.hpp>
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <pcor/realtime/loop.hpp>
+#include <pcor/words/error.hpp>
+#include "batch/batch_kernel.hpp"
+
+namespace pcor {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsNan;
+using testing::ThrowsMessage;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Recorded values, an array for each quantity.
+using Arrays = std::map<Quantity, std::vector<double>>;
+
+const std::vector<Quantity> derived{Quantity::static_defect,
+                                    Quantity::corrected_static_pressure,
+                                    Quantity::corrected_dynamic_pressure,
+                                    Quantity::humidity,
+                                    Quantity::corrected_mach,
+                                    Quantity::ambient_temperature,
+                                    Quantity::corrected_airspeed,
+                                    Quantity::lams_static_defect,
+                                    Quantity::lams_temperature,
+                                    Quantity::lams_dynamic_pressure};
+
+/// Samples over the envelopes of the C-130 and GV and beyond, each value missing now and then.
+Arrays random_samples(std::size_t count, const std::vector<Quantity>& recorded) {
+  std::mt19937_64 random(20141014);
+  const auto between = [&random](double lower, double upper) {
+    return std::uniform_real_distribution<double>(lower, upper)(random);
+  };
+  Arrays arrays;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double p = between(120.0, 1050.0);
+    const double mach = between(0.08, 0.9);
+    const double temperature = between(200.0, 310.0);
+    const MoistAir<double> air = dry_air<double>();
+    const double q = dynamic_pressure_from_mach(p, mach, air);
+    std::map<Quantity, double> sample{
+        {Quantity::static_pressure, p},
+        {Quantity::dynamic_pressure, q},
+        {Quantity::recovery_temperature, recovery_temperature(temperature, mach, 0.97, air)},
+        {Quantity::ambient_temperature, temperature},
+        {Quantity::vapor_pressure, between(-0.05, 1.3) * vapor_pressure_over_water(temperature)},
+        {Quantity::dew_point, temperature + between(-30.0, 3.0)},
+        {Quantity::radome_dynamic_pressure, q * between(0.9, 1.1)},
+        {Quantity::attack_differential_pressure, q * between(-0.3, 0.3)},
+        {Quantity::sideslip_differential_pressure, q * between(-0.1, 0.1)},
+        {Quantity::attack, between(-3.0, 10.0)},
+        {Quantity::sideslip, between(-5.0, 5.0)},
+        {Quantity::lams_airspeed, true_airspeed(mach, temperature, air) + between(-2.0, 2.0)},
+        {Quantity::static_pressure_rate, between(-2.0, 2.0)},
+        {extra_quantity(0), between(-1.0, 1.0)}};
+    for (const Quantity quantity : recorded) {
+      double value = sample.at(quantity);
+      const double chance = between(0.0, 1.0);
+      if (chance < 0.01) value = nan;
+      if (chance > 0.99) value = -value;
+      if (chance > 0.998) value = 0.0;
+      if (chance > 0.999) value = std::numeric_limits<double>::infinity();
+      arrays[quantity].push_back(value);
+    }
+  }
+  return arrays;
+}
+
+std::vector<Batch::Input> inputs_of(const Arrays& arrays) {
+  std::vector<Batch::Input> inputs;
+  for (const auto& [quantity, values] : arrays) inputs.push_back({quantity, values.data()});
+  return inputs;
+}
+
+std::vector<Batch::Output> outputs_of(Arrays& arrays) {
+  std::vector<Batch::Output> outputs;
+  for (auto& [quantity, values] : arrays) outputs.push_back({quantity, values.data()});
+  return outputs;
+}
+
+Arrays in_batch(const Batch& batch, const Arrays& recorded, std::size_t count) {
+  Arrays result;
+  for (const Quantity quantity : derived) result[quantity].resize(count);
+  batch.run(inputs_of(recorded), outputs_of(result), count);
+  return result;
+}
+
+Arrays in_loop(const Model& model, const std::vector<Quantity>& roles, const Arrays& recorded,
+               std::size_t count, CorrectWith with) {
+  std::string error;
+  std::optional<Loop> loop = Loop::build(model, roles, 1.0, &error, with);
+  EXPECT_TRUE(loop) << error;
+  Arrays result;
+  for (std::size_t i = 0; loop && i < count; ++i) {
+    for (const auto& [quantity, values] : recorded) loop->state()[quantity] = values[i];
+    loop->run(static_cast<double>(i));
+    for (const Quantity quantity : derived) result[quantity].push_back(loop->state()[quantity]);
+  }
+  return result;
+}
+
+/// Rounding: 1e-13 of a value, and more at low speed for what comes from the Mach number, the difference of
+/// nearly equal pressures.
+double rounding(Quantity quantity, double value, double mach) {
+  switch (quantity) {
+    case Quantity::static_defect:
+    case Quantity::lams_static_defect:
+      return 2e-12;
+    case Quantity::corrected_mach:
+    case Quantity::corrected_airspeed:
+    case Quantity::lams_temperature:
+      return std::abs(value) * (1e-13 + 1e-14 / std::max(mach * mach, 1e-8));
+    default:
+      return std::abs(value) * 1e-13;
+  }
+}
+
+/// `iteration` is how far from the end an iteration may stop, as a part of the value.
+void expect_equal(const Arrays& found, const Arrays& expected, double iteration = 0.0) {
+  for (const auto& [quantity, values] : expected) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double value = found.at(quantity)[i];
+      if (std::isnan(value) && std::isnan(values[i])) continue;
+      const double mach = expected.at(Quantity::corrected_mach)[i];
+      const double allowed =
+          rounding(quantity, values[i], mach) + iteration * std::max(1.0, std::abs(values[i]));
+      ASSERT_NEAR(value, values[i], allowed) << facts_of(quantity).name << " of sample " << i;
+    }
+  }
+}
+
+std::size_t values_in(const std::vector<double>& values) {
+  return static_cast<std::size_t>(
+      std::count_if(values.begin(), values.end(), [](double value) { return !std::isnan(value); }));
+}
+
+void expect_as_in_loop(const Model& model, const std::vector<Quantity>& roles,
+                       CorrectWith with = CorrectWith::model) {
+  constexpr std::size_t count = 10000;
+  Arrays recorded = random_samples(count, roles);
+  const Batch batch(model, roles, with);
+  if (!batch.chain().extra_names().empty()) {
+    recorded.merge(random_samples(count, {extra_quantity(0)}));
+  }
+  const Arrays expected = in_loop(model, roles, recorded, count, with);
+  const Arrays found = in_batch(batch, recorded, count);
+  // All lanes of a pack iterate until the last of them has arrived.
+  const bool iterates = batch.chain().has_lams() && model.lams.approach == LamsApproach::iterated;
+  expect_equal(found, expected, iterates ? 1e-7 : 0.0);
+  EXPECT_GT(values_in(expected.at(Quantity::static_defect)), count / 2);
+  if (batch.chain().has_lams()) {
+    EXPECT_GT(values_in(expected.at(Quantity::lams_dynamic_pressure)), count / 2);
+  }
+}
+
+const std::vector<Quantity> gv_roles{Quantity::static_pressure, Quantity::dynamic_pressure,
+                                     Quantity::recovery_temperature, Quantity::vapor_pressure,
+                                     Quantity::attack};
+
+Model gv() {
+  Model model;
+  model.name = "gv";
+  model.effects = {{"static-constant", {-0.012255}},
+                   {"static-qp", {0.075372}},
+                   {"static-mach3", {-0.087508}},
+                   {"static-attack", {0.002148}}};
+  model.recovery = {{0.9959, 0.0283, 0.0374, 0.0762}};
+  model.policy.taper_below = 40.0;
+  return model;
+}
+
+std::vector<Quantity> with_lams(std::vector<Quantity> roles) {
+  roles.push_back(Quantity::lams_airspeed);
+  return roles;
+}
+
+TEST(Batch, IsTheLoopForALawWithTaper) { expect_as_in_loop(gv(), gv_roles); }
+
+TEST(Batch, IsTheLoopForRadomeAnglesDewPointAndAMinimum) {
+  Model model;
+  model.effects = {{"static-constant", {0.0041}}, {"static-alpha", {0.0213}}, {"static-qp", {0.0308}}};
+  model.sideslip_radome = {0.1, 12.0, 0.5};
+  model.attack_radome = {5.8, 15.0, 1.0};
+  model.policy.minimum = 0.5;
+  model.recovery = {{0.95}};
+  expect_as_in_loop(model,
+                    {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::radome_dynamic_pressure,
+                     Quantity::attack_differential_pressure, Quantity::sideslip_differential_pressure,
+                     Quantity::recovery_temperature, Quantity::dew_point});
+}
+
+TEST(Batch, IsTheLoopForAFormulaWithAVariableOfTheUser) {
+  Model model = gv();
+  ModelEffect effect;
+  effect.id = "fairing";
+  effect.formula =
+      "k * static_pressure * tanh(if(mach < 0.5, mach, 0.5 + sin(probe))) ^ 1.5 + pow(attack, m) * "
+      "log10(mach)";
+  effect.parameter_names = {"k", "m"};
+  effect.parameters = {0.01, 2.0};
+  model.effects.push_back(effect);
+  expect_as_in_loop(model, gv_roles);
+}
+
+TEST(Batch, IsTheLoopInDryAirWithoutAnyTemperature) {
+  Model model = gv();
+  model.moist = false;
+  expect_as_in_loop(model, {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::attack});
+}
+
+TEST(Batch, IsTheLoopForEveryApproachOfLams) {
+  for (const LamsApproach approach : {LamsApproach::simultaneous, LamsApproach::iterated}) {
+    Model model = gv();
+    model.lams = {1.2, -0.4, approach};
+    model.effects.push_back({"lams-elevation", {0.1}});
+    model.effects.push_back({"recovery-factor", {0.003}});
+    expect_as_in_loop(model, with_lams(gv_roles));
+    expect_as_in_loop(model, with_lams(gv_roles), CorrectWith::lams);
+    model.effects.push_back({"temp-calibration", {0.55, 0.01, -0.0001}});
+    expect_as_in_loop(model, with_lams(gv_roles));
+  }
+  Model model = gv();
+  model.lams.approach = LamsApproach::with_temperature;
+  model.effects.push_back({"temp-calibration", {0.55, 0.01, -0.0001}});
+  expect_as_in_loop(model, {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::attack,
+                            Quantity::sideslip, Quantity::ambient_temperature, Quantity::lams_airspeed});
+}
+
+TEST(Batch, TakesRatesOfChangeAsArrays) {
+  Model model = gv();
+  model.effects.push_back({"static-lag", {0.1}});
+  EXPECT_THAT([&] { Batch(model, gv_roles); },
+              ThrowsMessage<Error>(HasSubstr("needs 'static_pressure_rate' among them")));
+  std::vector<Quantity> roles = gv_roles;
+  roles.push_back(Quantity::static_pressure_rate);
+  expect_as_in_loop(model, roles);
+}
+
+TEST(Batch, WritesEverySampleAndNotOneMore) {
+  const Batch batch(gv(), gv_roles);
+  constexpr std::size_t most = 40;
+  const Arrays recorded = random_samples(most, gv_roles);
+  const Arrays whole = in_batch(batch, recorded, most);
+  for (std::size_t count = 0; count < most; ++count) {
+    std::vector<double> found(most + 1, 12345.0);
+    batch.run(inputs_of(recorded), {{Quantity::corrected_airspeed, found.data()}}, count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const double expected = whole.at(Quantity::corrected_airspeed)[i];
+      // A compiler may fuse operations otherwise in the last turns of a loop: units in the last place.
+      EXPECT_TRUE(std::abs(found[i] - expected) <= 1e-13 * std::abs(expected) ||
+                  (std::isnan(found[i]) && std::isnan(expected)))
+          << i;
+    }
+    EXPECT_EQ(found[count], 12345.0);
+  }
+}
+
+TEST(Batch, TakesOtherCoefficients) {
+  Model other = gv();
+  other.effects[1].parameters = {0.08};
+  const Batch batch(gv(), gv_roles);
+  const Arrays recorded = random_samples(100, gv_roles);
+  std::vector<double> found(100);
+  std::vector<double> ordered = batch.chain().parameters();
+  std::replace(ordered.begin(), ordered.end(), 0.075372, 0.08);
+  batch.run(inputs_of(recorded), {{Quantity::static_defect, found.data()}}, 100, ordered.data());
+  const Arrays expected = in_batch(Batch(other, gv_roles), recorded, 100);
+  EXPECT_THAT(found,
+              testing::Pointwise(testing::NanSensitiveDoubleEq(), expected.at(Quantity::static_defect)));
+}
+
+// Processors with wider registers have a kernel of their own.
+TEST(Batch, IsTheSameInTheKernelForEveryProcessor) {
+  const std::vector<Quantity> roles = with_lams(gv_roles);
+  const Batch batch(gv(), roles);
+  constexpr std::size_t count = 1001;
+  const Arrays recorded = random_samples(count, roles);
+  const Arrays expected = in_batch(batch, recorded, count);
+  Arrays found;
+  for (const Quantity quantity : derived) found[quantity].resize(count);
+  const std::vector<Batch::Input> inputs = inputs_of(recorded);
+  const std::vector<Batch::Output> outputs = outputs_of(found);
+  detail::BatchJob job;
+  job.chain = &batch.chain();
+  job.parameters = batch.chain().parameters().data();
+  job.finds_lams = job.finds_air = true;
+  job.inputs = inputs.data();
+  job.input_count = inputs.size();
+  job.outputs = outputs.data();
+  job.output_count = outputs.size();
+  job.samples = count;
+  detail::run_batch(job);
+  expect_equal(found, expected);
+}
+
+TEST(Batch, SaysWhichValuesAreMissing) {
+  const Batch batch(gv(), gv_roles);
+  Arrays recorded = random_samples(10, gv_roles);
+  recorded.erase(Quantity::attack);
+  EXPECT_THAT([&] { in_batch(batch, recorded, 10); },
+              ThrowsMessage<Error>(HasSubstr("'attack' are missing")));
+  EXPECT_THAT([] { Batch(gv(), {Quantity::static_pressure}); },
+              ThrowsMessage<Error>(HasSubstr("'dynamic_pressure'")));
+  EXPECT_THAT([] { Batch(gv(), gv_roles, CorrectWith::lams); },
+              ThrowsMessage<Error>(HasSubstr("'lams_airspeed'")));
+}
+
+}  // namespace
+}  // namespace pcor

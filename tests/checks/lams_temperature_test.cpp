@@ -1,0 +1,115 @@
+// The laser's temperature against the thermometer, on simulated flights.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+#include <pcor/simulate/simulate.hpp>
+#include "checks/checks.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace pcor {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+const std::filesystem::path data = std::filesystem::path(PCOR_SOURCE_DIR) / "data";
+
+CheckedFlights fly(const std::string& more, bool with_laser = true) {
+  const std::string text = R"(
+format = "pcor-scenario/1"
+name = "laser"
+aircraft = "C-130"
+start = 2011-11-17T20:00:00Z
+seed = 5
+[[system]]
+static = "PSFD"
+dynamic = "QCF"
+law = { static-constant = 0.004127875, static-alpha = 0.021279816, static-qp = 0.030849643 }
+[[leg]]
+kind = "take-off"
+altitude = 600
+speed = 110
+[[leg]]
+kind = "level"
+duration = 400
+[[leg]]
+kind = "climb"
+altitude = 3000
+[[leg]]
+kind = "level"
+duration = 900
+)" + more;
+  const test::TemporaryDirectory directory;
+  simulate_flight(parse_scenario(text, "laser.toml"), directory / "flight.nc");
+  ModelFile model = read_model(data / "scenarios" / "models" / "c130-psfd-eq18.toml");
+  if (!with_laser) model.variables.erase(Quantity::lams_airspeed);
+  CheckedFlights flights(1);
+  flights[0].air = read_flight_air(Flight(directory / "flight.nc"), model);
+  return flights;
+}
+
+std::map<std::string, double> numbers_of(const CheckResult& result) {
+  return {result.numbers.begin(), result.numbers.end()};
+}
+
+const std::string too_warm = "[[effect]]\nid = \"temp-offset\"\noffset = 1.5\n";
+const std::string cloud =
+    "[[atmosphere.cloud]]\nbase = 2500\ntop = 3500\ncover = 0.4\n"
+    "[[effect]]\nid = \"temp-wetting\"\nerror = -2.0\n";
+
+TEST(LamsTemperatureCheck, AgreesWhereNothingIsWrong) {
+  const CheckResult result = check_lams_temperature(fly(""));
+  EXPECT_EQ(result.name, "lams-temperature");
+  ASSERT_TRUE(result.ran) << result.reason;
+  const auto numbers = numbers_of(result);
+  EXPECT_NEAR(numbers.at("offset_k"), 0.0, 3.0 * numbers.at("offset_stderr_k"));
+  EXPECT_EQ(result.verdict, CheckVerdict::consistent);
+  EXPECT_THAT(result.cannot_see, HasSubstr("sample by sample"));
+}
+
+TEST(LamsTemperatureCheck, FindsAThermometerThatIsTooWarm) {
+  const CheckResult result = check_lams_temperature(fly(too_warm));
+  ASSERT_TRUE(result.ran);
+  // 1.5 K of recovery temperature are 1.5/(1 + 0.2 r M^2) K of ambient, with M = 0.33.
+  const auto numbers = numbers_of(result);
+  EXPECT_NEAR(numbers.at("offset_k"), -1.47, 3.0 * numbers.at("offset_stderr_k") + 0.01);
+  EXPECT_EQ(result.verdict, CheckVerdict::inconsistent);
+}
+
+TEST(LamsTemperatureCheck, KeepsCloudsApart) {
+  const CheckResult result = check_lams_temperature(fly(cloud));
+  ASSERT_TRUE(result.ran);
+  const auto numbers = numbers_of(result);
+  ASSERT_EQ(numbers.count("cloud_offset_k"), 1U);
+  // A thermometer that reads 2 K low when wet, and dries within 10 s.
+  EXPECT_GT(numbers.at("cloud_offset_k"), 1.2);
+  EXPECT_LT(std::abs(numbers.at("offset_k")), 0.5);
+  EXPECT_THAT(result.notes, Contains(HasSubstr("suspect")));
+}
+
+TEST(LamsTemperatureCheck, IsNoisierInTheBoundaryLayer) {
+  const CheckResult result = check_lams_temperature(fly(""));
+  for (const ReportTable& table : result.tables) {
+    if (table.title != "Noise of the difference by period") continue;
+    ASSERT_FALSE(table.rows.empty());
+    EXPECT_GT(std::stod(table.rows[0][1]), 1.2 * std::stod(table.rows[0][2]));
+    // Beyond the memory of the air between laser and pitot, 2 s, means over longer have less of it.
+    EXPECT_LT(std::stod(table.rows[4][1]), std::stod(table.rows[2][1]));
+    return;
+  }
+  FAIL() << "no table by period";
+}
+
+TEST(LamsTemperatureCheck, NeedsALaser) {
+  const CheckResult result = check_lams_temperature(fly("", false));
+  EXPECT_FALSE(result.ran);
+  EXPECT_THAT(result.reason, HasSubstr("laser"));
+}
+
+}  // namespace
+}  // namespace pcor

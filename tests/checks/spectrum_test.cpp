@@ -1,0 +1,111 @@
+// The spectrum of delta-p, on series whose spectrum is known.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "checks/checks.hpp"
+
+namespace pcor {
+namespace {
+
+using testing::HasSubstr;
+
+CheckedFlight made(std::vector<double> defect) {
+  CheckedFlight flight;
+  FlightAir& air = flight.air;
+  auto samples = std::make_shared<FlightSamples>();
+  samples->name = "made.nc";
+  const std::size_t count = defect.size();
+  for (std::size_t i = 0; i < count; ++i) samples->time.push_back(1e9 + static_cast<double>(i));
+  air.samples = std::move(samples);
+  air.flying.assign(count, true);
+  air.pressure.assign(count, 700.0);
+  air.mach.assign(count, 0.36);
+  air.airspeed.assign(count, 120.0);
+  for (std::size_t i = 0; i < count; ++i) air.measured_static.push_back(i % 2 == 0 ? 700.0 : 700.02);
+  air.laser.emplace();
+  air.laser->static_defect = std::move(defect);
+  return flight;
+}
+
+std::vector<double> white(std::size_t count, double rms, unsigned seed) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal(0.0, rms);
+  std::vector<double> values(count);
+  for (double& value : values) value = normal(engine);
+  return values;
+}
+
+std::map<std::string, double> numbers_of(const CheckResult& result) {
+  return {result.numbers.begin(), result.numbers.end()};
+}
+
+TEST(SpectrumCheck, FindsTheFloorOfWhiteNoise) {
+  const CheckResult result = check_spectrum({made(white(8000, 0.2, 1))});
+  EXPECT_EQ(result.name, "spectrum");
+  ASSERT_TRUE(result.ran) << result.reason;
+  auto numbers = numbers_of(result);
+  // Three standard errors as stated, which must themselves be small: a thousand independent values and more.
+  EXPECT_NEAR(numbers.at("floor_hpa"), 0.2, 3.0 * numbers.at("floor_stderr_hpa"));
+  EXPECT_LT(numbers.at("floor_stderr_hpa"), 0.01);
+  EXPECT_NEAR(numbers.at("slope"), 0.0, 3.0 * numbers.at("slope_stderr"));
+  EXPECT_LT(numbers.at("slope_stderr"), 0.15);
+  // gamma M^2 p/((1 + 0.2 M^2) v) is 1.03 hPa for 1 m/s here.
+  EXPECT_NEAR(numbers.at("floor_m_s"), numbers.at("floor_hpa") / 1.03, 0.002);
+  EXPECT_THAT(result.finding, HasSubstr("flattens"));
+  EXPECT_EQ(result.verdict, CheckVerdict::consistent);
+}
+
+TEST(SpectrumCheck, ObjectsToNoiseBeyondTheFits) {
+  EXPECT_EQ(check_spectrum({made(white(4000, 0.6, 2))}).verdict, CheckVerdict::inconsistent);
+}
+
+TEST(SpectrumCheck, SeesThatTurbulenceStillFalls) {
+  // A random walk, smoothed over two samples: frequency to the -2 and steeper.
+  const std::vector<double> steps = white(8000, 0.02, 3);
+  std::vector<double> walk(steps.size());
+  double place = 0.0;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const double before = place;
+    place = 0.99 * place + steps[i];
+    walk[i] = 0.5 * (before + place);
+  }
+  const CheckResult result = check_spectrum({made(walk)});
+  ASSERT_TRUE(result.ran);
+  EXPECT_LT(numbers_of(result).at("slope"), -1.5);
+  EXPECT_THAT(result.finding, HasSubstr("still falls"));
+}
+
+TEST(SpectrumCheck, OctavesHaveTheVarianceOfTheSeries) {
+  // White noise: every octave has half the variance of the next shorter one, and together they have all but
+  // that of periods beyond 256 s and of the line, 1 %.
+  const CheckResult result = check_spectrum({made(white(20000, 0.3, 4))});
+  const auto& bars = std::get<BarPanel>(result.pictures.front()).bars;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < bars.size(); ++i) {
+    sum += bars[i].value * bars[i].value;
+    if (i == 0) continue;
+    const double ratio = bars[i - 1].value / bars[i].value;
+    EXPECT_NEAR(ratio, std::sqrt(2.0), 4.0 * std::hypot(bars[i].error / bars[i].value, 0.01) * ratio) << i;
+  }
+  EXPECT_NEAR(sum / 0.09, 1.0, 0.05);
+}
+
+TEST(SpectrumCheck, TellsWhyItCannotRun) {
+  EXPECT_FALSE(check_spectrum({}).ran);
+  std::vector<double> holes = white(4000, 0.2, 5);
+  for (std::size_t i = 0; i < holes.size(); i += 200) holes[i] = std::numeric_limits<double>::quiet_NaN();
+  const CheckResult result = check_spectrum({made(holes)});
+  EXPECT_FALSE(result.ran);
+  EXPECT_THAT(result.reason, HasSubstr("without a gap"));
+}
+
+}  // namespace
+}  // namespace pcor

@@ -1,0 +1,241 @@
+#include <gmock/gmock.h>
+#include <pcor/compare/compare.hpp>
+#include <pcor/compare/comparison_report.hpp>
+#include <pcor/fit/refit.hpp>
+#include <pcor/simulate/simulate.hpp>
+#include <pcor/words/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "support/temporary_directory.hpp"
+
+using pcor::CompareOptions;
+using pcor::Comparison;
+using pcor::Contender;
+using pcor::Mask;
+using pcor::ModelFile;
+using pcor::Reference;
+using testing::HasSubstr;
+
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path data = fs::path(PCOR_SOURCE_DIR) / "data";
+
+/// The two-hour flight of the C-130 with all manoeuvres, the same for all tests.
+const fs::path& flight_file() {
+  static const pcor::test::TemporaryDirectory directory;
+  static const fs::path path = [] {
+    pcor::simulate_flight(pcor::read_scenario(data / "scenarios" / "c130-eq18.toml"),
+                          directory / "flight.nc");
+    return directory / "flight.nc";
+  }();
+  return path;
+}
+
+Contender laser_contender(double added_to_a0 = 0.0) {
+  ModelFile model = pcor::read_model(data / "scenarios" / "models" / "c130-psfd-eq18.toml");
+  model.model.effects[0].parameters[0] += added_to_a0;
+  return {added_to_a0 == 0.0 ? "true law" : "shifted law", model, Reference{}};
+}
+
+Reference static_reference(const ModelFile& system) {
+  Reference reference;
+  reference.kind = Reference::Kind::static_system;
+  reference.system = system;
+  return reference;
+}
+
+Contender pair_contender() {
+  return {"pair", pcor::read_model(data / "models" / "c130-psfd-eq18.toml"),
+          static_reference(pcor::read_model(data / "models" / "c130-psfrd-eq18.toml"))};
+}
+
+const pcor::PartStatistics* part_named(const std::vector<pcor::PartStatistics>& parts,
+                                       const std::string& name) {
+  const auto found =
+      std::find_if(parts.begin(), parts.end(), [&](const auto& part) { return part.name == name; });
+  return found == parts.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+TEST(Compare, OfTheTrueLawLeavesTheNoise) {
+  const Comparison result = pcor::compare({flight_file()}, {laser_contender()});
+  const pcor::ModelComparison& model = result.models.front();
+  // The floor is robust, the rms is not, and turbulence has bursts: 10 % or so between them.
+  EXPECT_NEAR(model.all.rms_over_noise(), 1.1, 0.15);
+  EXPECT_LT(std::abs(model.all.bias), 4.0 * model.all.bias_error);
+  EXPECT_GT(model.samples_per_independent, 2.0) << "the air ahead is not the pitot's for seconds";
+}
+
+TEST(Compare, ShowsAShiftAsABias) {
+  const Comparison result = pcor::compare({flight_file()}, {laser_contender(), laser_contender(1e-3)});
+  ASSERT_EQ(result.models.size(), 2U);
+  // Delta-p of the second is larger by a thousandth of the static pressure, 0.5 to 0.95 hPa.
+  double mean = 0.0;
+  const pcor::FlightResiduals& flight = result.flights.front();
+  const double shift = result.models[0].all.bias - result.models[1].all.bias;
+  for (std::size_t i = 0; i < flight.mask.size(); ++i) {
+    if (flight.mask[i] == Mask::none) mean += 1e-3 * flight.static_pressure[i];
+  }
+  mean /= static_cast<double>(result.models[0].all.samples);
+  EXPECT_NEAR(shift, mean, 1e-9);
+  EXPECT_GT(result.models[1].all.rms, result.models[0].all.rms);
+  EXPECT_LT(result.models[1].r_squared, result.models[0].r_squared);
+}
+
+TEST(Compare, FindsWhatTheScenarioFlew) {
+  const Comparison result = pcor::compare({flight_file()}, {laser_contender()});
+  const std::vector<pcor::PartStatistics>& regimes = result.models.front().regimes;
+  for (const char* name : {"take-off", "climb", "descent", "level", "turn", "pitch manoeuvre",
+                           "yaw manoeuvre", "speed run", "reverse heading", "circle"}) {
+    EXPECT_NE(part_named(regimes, name), nullptr) << name;
+  }
+  // Phases share out the samples; the ground is masked.
+  std::size_t sum = 0;
+  for (const char* name : {"take-off", "climb", "descent", "level"})
+    sum += part_named(regimes, name)->statistics.samples;
+  EXPECT_EQ(sum, result.masks[0]);
+}
+
+TEST(Compare, FindsBothSpeedRunsWhateverTheSeed) {
+  const pcor::test::TemporaryDirectory directory;
+  pcor::Scenario scenario = pcor::read_scenario(data / "scenarios" / "c130-eq18.toml");
+  for (std::uint64_t seed = 301; seed < 305; ++seed) {
+    scenario.seed = seed;
+    pcor::simulate_flight(scenario, directory / "flight.nc");
+    const Comparison result = pcor::compare({directory / "flight.nc"}, {laser_contender()});
+    const std::vector<pcor::Interval>& intervals = result.flights.front().samples->intervals;
+    const auto runs = std::count_if(intervals.begin(), intervals.end(), [](const pcor::Interval& interval) {
+      return interval.regime == pcor::Regime::speed_run;
+    });
+    EXPECT_EQ(runs, 2) << seed;
+  }
+}
+
+TEST(Compare, GivesEveryModelItsOwnReference) {
+  // Models of two systems side by side: each has the R2 that it has alone.
+  Contender other = laser_contender();
+  other.model = pcor::read_model(data / "models" / "c130-psfrd-eq18.toml");
+  for (const auto& [role, variable] : laser_contender().model.variables)
+    other.model.variables.emplace(role, variable);
+  const double alone = pcor::compare({flight_file()}, {other}).models.front().r_squared;
+  const Comparison both = pcor::compare({flight_file()}, {laser_contender(), other});
+  EXPECT_NEAR(both.models[1].r_squared, alone, 1e-3);
+  EXPECT_EQ(both.models[0].all.noise_rms, both.models[1].all.noise_rms) << "a flight has one noise";
+}
+
+TEST(Compare, SumsOfBandsAndFlightsAreThatOfTheWhole) {
+  const Comparison result = pcor::compare({flight_file(), flight_file()}, {laser_contender()});
+  const pcor::ModelComparison& model = result.models.front();
+  ASSERT_EQ(model.flights.size(), 2U);
+  EXPECT_EQ(model.flights[0].statistics.samples + model.flights[1].statistics.samples, model.all.samples);
+  EXPECT_DOUBLE_EQ(model.flights[0].statistics.rms, model.flights[1].statistics.rms);
+  EXPECT_NEAR(model.all.rms, model.flights[0].statistics.rms, 1e-12);
+  EXPECT_EQ(std::accumulate(result.masks.begin(), result.masks.end(), std::size_t{0}),
+            2 * result.flights.front().mask.size());
+}
+
+TEST(Compare, PointsToTheWorstMinutes) {
+  const Comparison result = pcor::compare({flight_file()}, {laser_contender()});
+  const std::vector<pcor::WorstInterval>& worst = result.models.front().worst;
+  ASSERT_EQ(worst.size(), 5U);
+  for (std::size_t i = 1; i < worst.size(); ++i)
+    EXPECT_FALSE(pcor::fails_more(worst[i].statistics, worst[i - 1].statistics));
+  EXPECT_NEAR(worst[0].end - worst[0].begin, 60.0, 1.0);
+  EXPECT_GT(worst[0].statistics.rms, result.models.front().all.rms);
+}
+
+TEST(Compare, OfTwoSystemsGivesTheFiguresOfTheMemo) {
+  const Comparison result = pcor::compare({flight_file()}, {pair_contender()});
+  ASSERT_TRUE(result.total_pressure);
+  // Figure 1 of the memo, R6: slope 1.0000, offset 0.10 hPa, rms 0.04. The simulated systems have no offset.
+  EXPECT_NEAR(result.total_pressure->slope, 1.0, 1e-4);
+  EXPECT_NEAR(result.total_pressure->rms, 0.04, 0.01);
+  EXPECT_LT(std::abs(result.total_pressure->mean_difference), 0.01);
+  // Figure 2, R54: slope 0.99985, rms 0.15 hPa; here the law is true, so only the sensors' noise is left.
+  EXPECT_NEAR(result.static_pressure.slope, 1.0, 1e-4);
+  EXPECT_LT(result.static_pressure.rms, 0.05);
+}
+
+TEST(Compare, RefusesWhatCannotBeCompared) {
+  const auto message_of = [](const std::vector<fs::path>& flights, const Contender& contender,
+                             const CompareOptions& options = {}) -> std::string {
+    try {
+      pcor::compare(flights, {contender}, options);
+    } catch (const pcor::Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  CompareOptions fast;
+  fast.mask.least_airspeed = 500.0;
+  EXPECT_THAT(message_of({flight_file()}, laser_contender(), fast),
+              testing::AllOf(HasSubstr("slower than the least airspeed"), HasSubstr("on the ground")));
+  Contender absent = laser_contender();
+  absent.reference.kind = Reference::Kind::pressure;
+  absent.reference.variable = "PS_B";
+  EXPECT_THAT(message_of({flight_file()}, absent), testing::AllOf(HasSubstr("PS_B"), HasSubstr("PS_A")));
+  EXPECT_THAT(message_of({}, laser_contender()), HasSubstr("at least one flight"));
+}
+
+TEST(ComparisonReport, HasTheFiguresAndStaysSmall) {
+  const std::string one =
+      pcor::report_html(pcor::comparison_report(pcor::compare({flight_file()}, {laser_contender()})));
+  EXPECT_THAT(one, HasSubstr("Residual in time"));
+  EXPECT_THAT(one, HasSubstr("Delta-p of the reference and of the model"));
+  const std::string pair =
+      pcor::report_html(pcor::comparison_report(pcor::compare({flight_file()}, {pair_contender()})));
+  EXPECT_THAT(pair, HasSubstr("Total pressures of the two systems"));
+  EXPECT_THAT(pair, HasSubstr("Corrected static pressures"));
+  // 1.5 MB for five hours; this flight has two.
+  EXPECT_LT(pair.size(), std::size_t{1500000} * 2 / 5);
+}
+
+class RealFlight : public testing::Test {
+ protected:
+  void SetUp() override {
+    const char* const folder = std::getenv("PCOR_FLIGHTS");
+    if (folder != nullptr) path_ = fs::path(folder) / "GOTEX-rf06-C130-2004.nc";
+    if (!fs::exists(path_)) GTEST_SKIP() << "no GOTEX-rf06-C130-2004.nc in $PCOR_FLIGHTS";
+  }
+  fs::path path_;
+};
+
+// The corrections of 2011 on a flight of 2004: 0.51 +- 0.46 hPa between the systems while flying; total
+// pressures with slope 0.99989, offset -0.05 and rms 0.088 hPa.
+TEST_F(RealFlight, SaysWhereEquation18Fails) {
+  const Comparison result = pcor::compare({path_}, {pair_contender()});
+  const pcor::Statistics& all = result.models.front().all;
+  EXPECT_NEAR(all.bias, 0.51, 0.02);
+  EXPECT_NEAR(all.scatter(), 0.46, 0.02);
+  EXPECT_GT(all.rms_over_noise(), 5.0);
+  const pcor::PartStatistics* const descent = part_named(result.models.front().regimes, "descent");
+  ASSERT_NE(descent, nullptr);
+  EXPECT_GT(descent->statistics.rms, all.rms) << "it is worst in the approach";
+  EXPECT_NEAR(result.total_pressure->slope, 0.99989, 0.00002);
+  EXPECT_NEAR(result.total_pressure->offset, -0.05, 0.02);
+  EXPECT_NEAR(result.total_pressure->rms, 0.088, 0.005);
+}
+
+TEST_F(RealFlight, IsMendedByARefitOfBothSystems) {
+  const Contender pair = pair_contender();
+  pcor::RefitOptions options;
+  options.fit_reference = true;
+  options.training_share = 0.5;
+  options.mask.least_airspeed = 80.0;  // slower, flaps and gear are out, which no variable of the file tells
+  const pcor::RefitResult fit = pcor::refit({path_}, pair.model, pair.reference, options);
+  ASSERT_EQ(fit.flights.size(), 2U);
+  const pcor::FlightFit& second_half = fit.flights[1];
+  ASSERT_TRUE(second_half.holdout);
+  EXPECT_GT(second_half.before.scatter(), 0.35);
+  EXPECT_LT(second_half.after.scatter(), 0.25);
+  EXPECT_LT(second_half.after.rms, 0.5 * second_half.before.rms);
+  ASSERT_TRUE(fit.reference);
+}

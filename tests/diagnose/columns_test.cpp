@@ -1,0 +1,416 @@
+// Columns of a diagnosis against differences of residuals through the whole chain, and what can be tested.
+#include "diagnose/columns.hpp"
+
+#include <gmock/gmock.h>
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/realtime/chain.hpp>
+#include <pcor/residuals/residuals.hpp>
+#include <pcor/simulate/simulate.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "support/temporary_directory.hpp"
+
+using pcor::Candidate;
+using pcor::CandidateSet;
+using pcor::FlightColumns;
+using pcor::FlightSamples;
+using pcor::ModelEffect;
+using pcor::ModelFile;
+using pcor::NotTestable;
+using pcor::Quantity;
+using pcor::Reference;
+using pcor::Residuals;
+using testing::HasSubstr;
+using testing::StrEq;
+
+namespace {
+
+const std::filesystem::path scenarios = std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
+
+ModelFile laser_model() { return pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
+
+/// Where a made series lies, and how far it swings.
+struct Swing {
+  double middle = 0.0;
+  double size = 0.0;
+};
+
+/// Some of each quantity, so that every effect acts.
+Swing swing_of(Quantity quantity) {
+  static const std::map<Quantity, Swing> swings{{Quantity::static_pressure, {600.0, 150.0}},
+                                                {Quantity::dynamic_pressure, {70.0, 20.0}},
+                                                {Quantity::recovery_temperature, {275.0, 10.0}},
+                                                {Quantity::vapor_pressure, {0.5, 0.3}},
+                                                {Quantity::radome_dynamic_pressure, {75.0, 15.0}},
+                                                {Quantity::attack_differential_pressure, {-12.0, 10.0}},
+                                                {Quantity::sideslip_differential_pressure, {1.0, 8.0}},
+                                                {Quantity::attack, {2.0, 3.0}},
+                                                {Quantity::sideslip, {0.3, 3.0}},
+                                                {Quantity::mach, {0.4, 0.1}},
+                                                {Quantity::true_airspeed, {120.0, 20.0}},
+                                                {Quantity::altitude, {3000.0, 2000.0}},
+                                                {Quantity::latitude, {40.0, 1.0}},
+                                                {Quantity::pitch, {2.0, 3.0}},
+                                                {Quantity::roll, {0.0, 20.0}},
+                                                {Quantity::heading, {90.0, 60.0}},
+                                                {Quantity::ground_speed, {120.0, 20.0}},
+                                                {Quantity::ground_track, {90.0, 60.0}},
+                                                {Quantity::flaps, {2.0, 2.0}},
+                                                {Quantity::height_above_ground, {300.0, 290.0}},
+                                                {Quantity::liquid_water, {0.1, 0.1}},
+                                                {Quantity::transducer_temperature, {288.0, 6.0}},
+                                                {Quantity::cabin_pressure, {850.0, 40.0}},
+                                                {Quantity::time, {3600.0, 3600.0}},
+                                                {Quantity::static_pressure_rate, {0.1, 1.0}},
+                                                {Quantity::dynamic_pressure_rate, {0.1, 1.0}},
+                                                {Quantity::recovery_temperature_rate, {0.01, 0.1}}};
+  const auto found = swings.find(quantity);
+  return found == swings.end() ? Swing{0.5, 2.0} : found->second;
+}
+
+/// Samples of everything that a model can read; the laser shows the speed of the pressures and noise.
+FlightSamples made_flight(const std::vector<Quantity>& roles, double laser_noise) {
+  constexpr std::size_t count = 400;
+  FlightSamples samples;
+  samples.name = "made";
+  std::vector<Quantity> recorded = roles;
+  for (const Quantity further : {Quantity::time, Quantity::static_pressure_rate,
+                                 Quantity::dynamic_pressure_rate, Quantity::recovery_temperature_rate})
+    recorded.push_back(further);
+  for (std::size_t i = 0; i < count; ++i) samples.time.push_back(1321560000.0 + static_cast<double>(i));
+  samples.motion.time = samples.time;
+  double frequency = 0.05;
+  for (const Quantity quantity : recorded) {
+    const Swing swing = swing_of(quantity);
+    std::vector<double> values;
+    // Frequencies that have no ratio in common.
+    frequency = 0.02 + std::fmod(frequency + 0.0618034, 0.3);
+    for (std::size_t i = 0; i < count; ++i)
+      values.push_back(swing.middle + swing.size * std::sin(frequency * static_cast<double>(i)));
+    samples.model.columns.emplace_back(quantity, std::move(values));
+  }
+  samples.model.roles = recorded;
+  std::mt19937_64 engine(1);
+  std::normal_distribution<double> normal;
+  for (auto& [quantity, values] : samples.model.columns) {
+    if (quantity != Quantity::lams_airspeed) continue;
+    const std::vector<double>& p = *samples.model.find(Quantity::static_pressure);
+    const std::vector<double>& q = *samples.model.find(Quantity::dynamic_pressure);
+    for (std::size_t i = 0; i < count; ++i) {
+      // Mach number and speed of sound of dry air, within what the mask allows of the laser.
+      const double mach = std::sqrt(5.0 * (std::pow(q[i] / p[i] + 1.0, 2.0 / 7.0) - 1.0));
+      const double recovery = (*samples.model.find(Quantity::recovery_temperature))[i];
+      const double speed = mach * std::sqrt(1.4 * 287.0 * recovery / (1.0 + 0.19 * mach * mach));
+      values[i] = speed + laser_noise * normal(engine);
+    }
+  }
+  return samples;
+}
+
+/// A formula beside the catalogue, at another place than the ports and nonlinear in a quantity.
+ModelEffect formula() {
+  ModelEffect effect;
+  effect.id = "try-1";
+  effect.formula = "k * sin(roll / 10) + c * attack * mach";
+  effect.parameter_names = {"k", "c"};
+  effect.parameters = {0.0, 0.0};
+  effect.where = pcor::Where::total_line;
+  return effect;
+}
+
+struct Made {
+  ModelFile model = laser_model();
+  Reference reference{};
+  CandidateSet set = pcor::find_candidates(model, {formula()}, {});
+  std::shared_ptr<const FlightSamples> samples;
+  FlightColumns columns;
+
+  explicit Made(double laser_noise = 0.3)
+      : samples(std::make_shared<const FlightSamples>(made_flight(set.extended.roles(), laser_noise))),
+        columns(pcor::find_columns(samples, model, set, reference, {}, 1.0)) {}
+};
+
+/// The same samples with the laser where the model says that the air is.
+std::shared_ptr<const FlightSamples> without_laser_noise(const Made& made) {
+  const Residuals residuals(made.samples, made.model, made.reference);
+  auto samples = std::make_shared<FlightSamples>(*made.samples);
+  for (auto& [quantity, values] : samples->model.columns) {
+    if (quantity == Quantity::lams_airspeed)
+      values = residuals.predicted_beam_speed(residuals.parameters().data());
+  }
+  return samples;
+}
+
+std::vector<double> residual_of(const std::shared_ptr<const FlightSamples>& samples, const ModelFile& model,
+                                const std::vector<double>& parameters) {
+  const Residuals residuals(samples, model, Reference{});
+  std::vector<std::size_t> all(samples->time.size());
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<double> values(all.size());
+  residuals.evaluate_speed(all.data(), all.size(), parameters.data(), {}, values.data(), nullptr);
+  return values;
+}
+
+const NotTestable* reason_for(const CandidateSet& set, const std::string& effect) {
+  for (const NotTestable& each : set.not_testable) {
+    if (each.effect == effect) return &each;
+  }
+  return nullptr;
+}
+
+bool has_candidate(const CandidateSet& set, const std::string& effect) {
+  return std::any_of(set.candidates.begin(), set.candidates.end(),
+                     [&](const Candidate& candidate) { return candidate.effect.id == effect; });
+}
+
+/// A simulated flight with a few minutes of everything.
+const std::filesystem::path& flight_file() {
+  static const pcor::test::TemporaryDirectory directory;
+  static const std::filesystem::path path = [] {
+    pcor::simulate_flight(pcor::read_scenario(scenarios / "c130-short.toml"), directory / "short.nc");
+    return directory / "short.nc";
+  }();
+  return path;
+}
+
+CandidateSet candidates_of_file(const ModelFile& model, const std::vector<ModelEffect>& formulas = {}) {
+  const pcor::Flight flight(flight_file());
+  return pcor::find_candidates(model, formulas, {&flight});
+}
+
+}  // namespace
+
+TEST(Columns, OfEveryCandidateAreDifferencesThroughTheWholeChain) {
+  const Made made;
+  const std::shared_ptr<const FlightSamples> quiet = without_laser_noise(made);
+  const std::size_t count = made.samples->time.size();
+  ASSERT_EQ(std::count(made.columns.mask.begin(), made.columns.mask.end(), pcor::Mask::none),
+            static_cast<std::ptrdiff_t>(count));
+  ASSERT_GT(made.set.candidates.size(), 35U);
+  Eigen::Index column = 0;
+  for (const Candidate& candidate : made.set.candidates) {
+    ModelFile with = made.model;
+    with.model.effects.push_back(candidate.effect);
+    with.fits.clear();
+    for (const auto& [role, variable] : made.set.extended.variables) with.variables[role] = variable;
+    std::vector<double> parameters;
+    for (const ModelEffect& effect : with.model.effects)
+      parameters.insert(parameters.end(), effect.parameters.begin(), effect.parameters.end());
+    const std::size_t first = parameters.size() - candidate.effect.parameters.size();
+    for (std::size_t k = 0; k < candidate.tested.size(); ++k, ++column) {
+      const Eigen::VectorXd found = made.columns.candidates.col(column).cast<double>();
+      const double largest = found.cwiseAbs().maxCoeff();
+      if (largest == 0.0) {
+        // Of all effects only one has nothing to act on here: there are no transonic speeds.
+        EXPECT_EQ(candidate.effect.id, "static-transonic");
+        continue;
+      }
+      // A centred difference over 0.01 hPa: curvature below 1e-6 of the derivative, rounding below 1e-9.
+      const double size = 0.01 / largest;
+      const std::size_t place = first + candidate.tested[k].place;
+      std::vector<double> moved = parameters;
+      moved[place] += size;
+      const std::vector<double> above = residual_of(quiet, with, moved);
+      moved[place] = parameters[place] - size;
+      const std::vector<double> below = residual_of(quiet, with, moved);
+      for (std::size_t i = 0; i < count; i += 3) {
+        const double difference = -(above[i] - below[i]) / (2.0 * size);
+        // Columns have the precision of a float, 6e-8.
+        EXPECT_NEAR(found[static_cast<Eigen::Index>(i)], difference, 2e-5 * largest)
+            << candidate.effect.id << "." << candidate.tested[k].name << " at " << i;
+      }
+    }
+  }
+  EXPECT_EQ(column, made.columns.candidates.cols());
+}
+
+TEST(Columns, OfTheBaseAreDifferencesToo) {
+  const Made made;
+  const std::shared_ptr<const FlightSamples> quiet = without_laser_noise(made);
+  const std::vector<double> parameters = Residuals(made.samples, made.model, made.reference).parameters();
+  ASSERT_EQ(made.columns.base.cols(), 3);
+  EXPECT_THAT(pcor::base_names(made.model),
+              testing::ElementsAre("static-constant.a0", "static-alpha.a1", "static-qp.a2"));
+  for (Eigen::Index column = 0; column < 3; ++column) {
+    const Eigen::VectorXd found = made.columns.base.col(column).cast<double>();
+    const double largest = found.cwiseAbs().maxCoeff();
+    const double size = 0.01 / largest;
+    std::vector<double> moved = parameters;
+    moved[static_cast<std::size_t>(column)] += size;
+    const std::vector<double> above = residual_of(quiet, made.model, moved);
+    moved[static_cast<std::size_t>(column)] -= 2.0 * size;
+    const std::vector<double> below = residual_of(quiet, made.model, moved);
+    for (std::size_t i = 0; i < above.size(); i += 3)
+      EXPECT_NEAR(found[static_cast<Eigen::Index>(i)], -(above[i] - below[i]) / (2.0 * size), 2e-5 * largest);
+  }
+}
+
+TEST(Columns, OfFixedCoefficientsAreNotThere) {
+  Made made;
+  made.model.fits.resize(3);
+  for (pcor::EffectFit& fit : made.model.fits) fit.resize(1);
+  made.model.fits[1][0].fixed = true;
+  const FlightColumns columns =
+      pcor::find_columns(made.samples, made.model, made.set, made.reference, {}, 1.0);
+  EXPECT_EQ(columns.base.cols(), 2);
+  EXPECT_TRUE(columns.base.col(1).isApprox(made.columns.base.col(2)));
+}
+
+// Or else noise of the laser would be explained by columns that hold it.
+TEST(Columns, HoldNothingOfTheNoiseOfTheLaser) {
+  const Made quiet(0.0);
+  const Made noisy(0.5);
+  double change = 0.0;
+  for (std::size_t i = 0; i < quiet.columns.given.size(); ++i)
+    change = std::max(change, std::abs(quiet.columns.given[i] - noisy.columns.given[i]));
+  EXPECT_GT(change, 0.5);
+  ASSERT_EQ(quiet.columns.candidates.cols(), noisy.columns.candidates.cols());
+  for (Eigen::Index c = 0; c < quiet.columns.candidates.cols(); ++c) {
+    // The precision of floats, and of the speed that the model predicts.
+    EXPECT_LE((quiet.columns.candidates.col(c) - noisy.columns.candidates.col(c)).cwiseAbs().maxCoeff(),
+              1e-6F * quiet.columns.candidates.col(c).cwiseAbs().maxCoeff())
+        << c;
+  }
+  EXPECT_TRUE(quiet.columns.base.isApprox(noisy.columns.base, 1e-6F));
+}
+
+TEST(Columns, ResidualsAreThoseOfTheModel) {
+  const Made made;
+  const std::vector<double> expected =
+      residual_of(made.samples, made.model, Residuals(made.samples, made.model, made.reference).parameters());
+  EXPECT_EQ(made.columns.given, expected);
+  // The pressure of the model is that of its chain.
+  const Residuals residuals(made.samples, made.model, made.reference);
+  EXPECT_EQ(made.columns.corrected_pressure,
+            residuals.quantity(Quantity::corrected_static_pressure, residuals.parameters().data()));
+  EXPECT_EQ(made.columns.quantity(Quantity::attack), *made.samples->model.find(Quantity::attack));
+  EXPECT_TRUE(made.columns.quantity(Quantity::cabin_pressure).empty());
+}
+
+TEST(Columns, OfTheFirstPartEndWithIt) {
+  Made made;
+  const FlightColumns half = pcor::find_columns(made.samples, made.model, made.set, made.reference, {}, 0.5);
+  for (std::size_t i = 0; i < half.given.size(); ++i) {
+    EXPECT_EQ(std::isnan(half.given[i]), i >= 200) << i;
+  }
+  EXPECT_TRUE(half.candidates.topRows(200).isApprox(made.columns.candidates.topRows(200), 1e-6F));
+}
+
+TEST(Columns, FewMissingValuesAreBridgedAndManyAreNot) {
+  Made made;
+  const auto with_gap = [&](std::size_t gap) {
+    auto samples = std::make_shared<FlightSamples>(*made.samples);
+    for (auto& [quantity, values] : samples->model.columns) {
+      if (quantity == Quantity::cabin_pressure)
+        std::fill(values.begin() + 100, values.begin() + 100 + static_cast<std::ptrdiff_t>(gap),
+                  std::nan(""));
+    }
+    const FlightColumns columns = pcor::find_columns(samples, made.model, made.set, made.reference, {}, 1.0);
+    // The model itself does not need the cabin.
+    EXPECT_EQ(std::count(columns.mask.begin(), columns.mask.end(), pcor::Mask::none), 400);
+    Eigen::Index column = 0;
+    for (const Candidate& candidate : made.set.candidates) {
+      if (candidate.effect.id == "static-leak") break;
+      column += static_cast<Eigen::Index>(candidate.tested.size());
+    }
+    return Eigen::VectorXf(columns.candidates.col(column));
+  };
+  const Eigen::VectorXf few = with_gap(30);
+  EXPECT_TRUE(few.allFinite());
+  EXPECT_EQ(few[115], few[99]);
+  EXPECT_FALSE(with_gap(60).allFinite());
+}
+
+TEST(Candidates, AreTheCatalogueThatTheModelLacks) {
+  const CandidateSet set = candidates_of_file(laser_model());
+  for (const char* own : {"static-constant", "static-alpha", "static-qp"}) {
+    EXPECT_FALSE(has_candidate(set, own));
+    EXPECT_EQ(reason_for(set, own), nullptr);
+  }
+  std::size_t effects = 0;
+  for (const Candidate& candidate : set.candidates) effects += candidate.is_variant ? 0 : 1;
+  EXPECT_EQ(effects + set.not_testable.size() + 3, pcor::catalogue_size);
+  for (const Candidate& candidate : set.candidates) {
+    const pcor::EffectFacts& facts = pcor::effect_facts[pcor::effect_named(candidate.effect.id)];
+    EXPECT_FALSE(candidate.tested.empty());
+    for (const pcor::CandidateParameter& parameter : candidate.tested) {
+      EXPECT_FALSE(facts.parameters[parameter.place].shape);
+      EXPECT_EQ(candidate.effect.parameters[parameter.place], facts.parameters[parameter.place].neutral);
+      EXPECT_LE(parameter.bounds.lower, 0.0) << candidate.effect.id;
+      EXPECT_GE(parameter.bounds.upper, 0.0) << candidate.effect.id;
+    }
+  }
+}
+
+TEST(Candidates, WithAShapeAreTriedInSeveral) {
+  const CandidateSet set = candidates_of_file(laser_model());
+  std::vector<double> onsets;
+  for (const Candidate& candidate : set.candidates) {
+    if (candidate.effect.id != "static-transonic") continue;
+    EXPECT_EQ(candidate.is_variant, !onsets.empty());
+    onsets.push_back(candidate.effect.parameters[1]);
+  }
+  ASSERT_GE(onsets.size(), 3U);
+  EXPECT_EQ(onsets.front(), 0.82);
+  for (const double onset : onsets) {
+    EXPECT_GT(onset, 0.7);
+    EXPECT_LT(onset, 0.95);
+  }
+}
+
+TEST(Candidates, ReadTheUsualVariables) {
+  const CandidateSet set = candidates_of_file(laser_model());
+  const std::map<Quantity, std::string>& variables = set.extended.variables;
+  EXPECT_EQ(variables.at(Quantity::cabin_pressure), "PCAB");
+  EXPECT_EQ(variables.at(Quantity::transducer_temperature), "TBAY");
+  EXPECT_EQ(variables.at(Quantity::sideslip_differential_pressure), "BDIFR");
+  // What the model has named stays.
+  EXPECT_EQ(variables.at(Quantity::static_pressure), "PSFD");
+  EXPECT_EQ(variables.at(Quantity::recovery_temperature), "TTRR");
+}
+
+TEST(Candidates, WithoutTheirInputsAreNotTestable) {
+  const CandidateSet set = candidates_of_file(laser_model());
+  const NotTestable* torque = reason_for(set, "speedbrake-thrust");
+  ASSERT_NE(torque, nullptr);
+  EXPECT_THAT(torque->reason, HasSubstr("engine_torque"));
+  ModelFile named = laser_model();
+  named.variables[Quantity::engine_torque] = "ENGTRQ";
+  EXPECT_TRUE(has_candidate(candidates_of_file(named), "speedbrake-thrust"));
+}
+
+TEST(Candidates, OfHumidityFollowTheGasConstants) {
+  const CandidateSet moist = candidates_of_file(laser_model());
+  ASSERT_NE(reason_for(moist, "humidity-neglected"), nullptr);
+  EXPECT_THAT(reason_for(moist, "humidity-neglected")->reason, HasSubstr("moist"));
+  EXPECT_TRUE(has_candidate(moist, "humidity-error"));
+  ModelFile model = laser_model();
+  model.model.moist = false;
+  const CandidateSet dry = candidates_of_file(model);
+  ASSERT_NE(reason_for(dry, "humidity-error"), nullptr);
+  EXPECT_THAT(reason_for(dry, "humidity-error")->reason, HasSubstr("dry"));
+  EXPECT_TRUE(has_candidate(dry, "humidity-neglected"));
+}
+
+TEST(Candidates, OfFormulasNeedTheirVariables) {
+  ModelEffect good = formula();
+  ModelEffect bad = formula();
+  bad.id = "try-2";
+  bad.formula = "k * NO_SUCH_VARIABLE + c";
+  const CandidateSet set = candidates_of_file(laser_model(), {good, bad});
+  EXPECT_TRUE(has_candidate(set, "try-1"));
+  ASSERT_NE(reason_for(set, "try-2"), nullptr);
+  EXPECT_THAT(reason_for(set, "try-2")->reason, HasSubstr("has no variable NO_SUCH_VARIABLE"));
+  // One that the model has is part of the model.
+  ModelFile with = laser_model();
+  with.model.effects.push_back(good);
+  EXPECT_FALSE(has_candidate(candidates_of_file(with, {good}), "try-1"));
+}

@@ -1,0 +1,373 @@
+// Diagnoses of simulated flights whose missing effect is known.
+#include <gmock/gmock.h>
+#include <pcor/diagnose/diagnose.hpp>
+#include <pcor/simulate/simulate.hpp>
+#include <pcor/words/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "support/temporary_directory.hpp"
+
+using pcor::Alias;
+using pcor::DiagnoseOptions;
+using pcor::Diagnosis;
+using pcor::Finding;
+using pcor::ModelEffect;
+using pcor::ModelFile;
+using pcor::Reference;
+using pcor::Verdict;
+using testing::AnyOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+namespace {
+
+using Paths = std::vector<std::filesystem::path>;
+
+const std::filesystem::path scenarios = std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
+
+const std::string static_lag = "id = \"static-lag\"\ntau = 0.4\n";
+const std::string beta_odd = "id = \"static-beta-odd\"\nb1 = -0.006\n";
+const std::string engine_torque = R"(id = "unknown"
+where = "static"
+on = "PSFD"
+of = "ENGTRQ"
+strength = 3.0
+centre = 50
+scale = 100
+)";
+const std::string hidden_wave = R"(id = "unknown"
+where = "static"
+of = "hidden"
+strength = 0.6
+centre = 0
+scale = 1
+)";
+
+/// A flight of a scenario with another seed and an effect; each is simulated once.
+std::filesystem::path flight(const std::string& scenario, unsigned seed, const std::string& effect = "") {
+  static const pcor::test::TemporaryDirectory directory;
+  static std::map<std::string, std::filesystem::path> made;
+  const std::string key = scenario + std::to_string(seed) + effect;
+  if (const auto found = made.find(key); found != made.end()) return found->second;
+  std::ifstream file(scenarios / (scenario + ".toml"));
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (!effect.empty()) text += "\n[[effect]]\n" + effect;
+  pcor::Scenario read = pcor::parse_scenario(text, scenario);
+  read.seed = seed;
+  const std::filesystem::path path = directory / ("flight-" + std::to_string(made.size()) + ".nc");
+  pcor::simulate_flight(read, path);
+  return made[key] = path;
+}
+
+ModelFile model() { return pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
+
+Diagnosis diagnose(const Paths& flights, const DiagnoseOptions& options = {}) {
+  return pcor::diagnose(flights, model(), Reference{}, options);
+}
+
+/// A formula at the static ports with a coefficient k.
+DiagnoseOptions with_formula(const std::string& text) {
+  ModelEffect effect;
+  effect.id = "try-1";
+  effect.formula = text;
+  effect.parameter_names = {"k"};
+  effect.parameters = {0.0};
+  DiagnoseOptions options;
+  options.formulas = {effect};
+  return options;
+}
+
+std::vector<std::string> names_of(const Diagnosis& diagnosis) {
+  std::vector<std::string> names;
+  for (const Finding& finding : diagnosis.findings) names.push_back(finding.effect.id);
+  return names;
+}
+
+/// The one that is found and those that cannot be told from it.
+std::vector<std::string> family_of(const Finding& finding) {
+  std::vector<std::string> names{finding.effect.id};
+  for (const Alias& alias : finding.aliases) names.push_back(alias.effect);
+  return names;
+}
+
+void expect_coefficient(const Finding& finding, double truth) {
+  ASSERT_THAT(finding.estimates, SizeIs(1));
+  const pcor::Estimate& estimate = finding.estimates[0];
+  // A normal estimate is beyond four of its errors once in 16,000 times.
+  EXPECT_NEAR(estimate.value, truth, 4.0 * estimate.standard_error);
+  EXPECT_LT(estimate.standard_error, 0.3 * std::abs(truth));
+  EXPECT_EQ(finding.effect.parameters[0], estimate.value);
+}
+
+}  // namespace
+
+// A claim is allowed in 0.3 % of such flights, structure in 0.2 %: of four none.
+TEST(Diagnose, IsSilentWhereNothingIsMissing) {
+  for (unsigned seed = 301; seed <= 304; ++seed) {
+    const Diagnosis diagnosis = diagnose({flight("c130-eq18", seed)});
+    EXPECT_EQ(diagnosis.verdict, Verdict::silent) << seed;
+    EXPECT_THAT(diagnosis.findings, IsEmpty());
+    EXPECT_FALSE(diagnosis.unexplained.significant);
+    EXPECT_GT(diagnosis.candidates, 25U);
+    EXPECT_GT(diagnosis.samples, 6000U);
+    EXPECT_LE(diagnosis.residual_rms, diagnosis.rms_given * 1.02);
+    EXPECT_NEAR(diagnosis.noise_rms, diagnosis.residual_rms, 0.1 * diagnosis.residual_rms);
+  }
+}
+
+TEST(Diagnose, IsSilentOnAShortFlight) {
+  EXPECT_EQ(diagnose({flight("c130-short", 311)}).verdict, Verdict::silent);
+}
+
+TEST(Diagnose, FindsALagOfTheStaticLine) {
+  const Diagnosis diagnosis = diagnose({flight("c130-eq18", 321, static_lag)});
+  EXPECT_EQ(diagnosis.verdict, Verdict::identified);
+  ASSERT_THAT(names_of(diagnosis), testing::ElementsAre("static-lag"));
+  const Finding& finding = diagnosis.findings[0];
+  expect_coefficient(finding, 0.4);
+  EXPECT_GT(finding.chi2, diagnosis.threshold);
+  EXPECT_LT(finding.p_value, 0.003);
+  // It adds tau dp/dt: the laser shows that the residual falls where it took no part in the fit.
+  EXPECT_LT(finding.rms_after, finding.rms_before);
+  EXPECT_GT(std::abs(finding.worst), finding.rms);
+  ASSERT_FALSE(finding.evidence.empty());
+  double share = 0.0;
+  for (const pcor::Evidence& each : finding.evidence) {
+    share += each.share;
+    EXPECT_LT(each.begin, each.end);
+    EXPECT_FALSE(each.regimes.empty());
+  }
+  EXPECT_LE(share, 1.2);
+  EXPECT_GE(finding.events, 1.0);
+}
+
+TEST(Diagnose, FindsWhatSideslipDoesToThePorts) {
+  const Diagnosis diagnosis = diagnose({flight("c130-eq18", 322, beta_odd)});
+  ASSERT_THAT(names_of(diagnosis), testing::ElementsAre("static-beta-odd"));
+  EXPECT_EQ(diagnosis.verdict, Verdict::identified);
+  expect_coefficient(diagnosis.findings[0], -0.006);
+  // The laws have no sideslip: the evidence is in the yaw manoeuvres.
+  EXPECT_THAT(diagnosis.findings[0].evidence.at(0).regimes, HasSubstr("yaw manoeuvre"));
+}
+
+// The coefficients of a model are where the last fit left them, which may be far from these flights.
+TEST(Diagnose, FindsTheSameWhereTheModelIsNotFitted) {
+  ModelFile off = model();
+  off.model.effects[0].parameters[0] = 0.001;
+  off.model.effects[2].parameters[0] = 0.07;
+  const Paths flights{flight("c130-eq18", 321, static_lag)};
+  const Diagnosis fitted = diagnose(flights);
+  const Diagnosis diagnosis = pcor::diagnose(flights, off, Reference{});
+  EXPECT_GT(diagnosis.rms_given, 1.2 * diagnosis.residual_rms);
+  EXPECT_NEAR(diagnosis.residual_rms, fitted.residual_rms, 0.01);
+  ASSERT_THAT(names_of(diagnosis), testing::ElementsAre("static-lag"));
+  expect_coefficient(diagnosis.findings[0], 0.4);
+}
+
+TEST(Diagnose, FindsTwoEffectsAtOnce) {
+  const Diagnosis diagnosis = diagnose({flight("c130-eq18", 323, static_lag + "\n[[effect]]\n" + beta_odd)});
+  EXPECT_THAT(names_of(diagnosis), testing::UnorderedElementsAre("static-lag", "static-beta-odd"));
+}
+
+// Level legs alone: an effect of the manoeuvres is not seen, or not claimed alone.
+TEST(Diagnose, WithoutManoeuvresIsSilentOrDoesNotClaimWhatItCannotTell) {
+  for (const auto& [effect, name] : std::vector<std::pair<std::string, std::string>>{
+           {"id = \"static-beta-odd\"\nb1 = -0.002\n", "static-beta-odd"},
+           {"id = \"load-factor\"\nper_g = 0.5\n", "load-factor"},
+           {"id = \"static-attack\"\na3 = 0.0004\n", "static-attack"}}) {
+    const Diagnosis diagnosis = diagnose({flight("c130-no-manoeuvres", 331, effect)});
+    EXPECT_NE(diagnosis.verdict, Verdict::partial) << name;
+    for (const Finding& finding : diagnosis.findings)
+      EXPECT_THAT(family_of(finding), testing::Contains(name));
+  }
+}
+
+TEST(Diagnose, TracesWhatNoEffectExplainsToItsVariable) {
+  const Diagnosis diagnosis = diagnose({flight("c130-eq18", 341, engine_torque)});
+  EXPECT_THAT(diagnosis.verdict, AnyOf(Verdict::unexplained, Verdict::partial));
+  ASSERT_TRUE(diagnosis.unexplained.significant);
+  ASSERT_FALSE(diagnosis.unexplained.variables.empty());
+  const pcor::TracedVariable& traced = diagnosis.unexplained.variables[0];
+  EXPECT_EQ(traced.name, "ENGTRQ");
+  EXPECT_EQ(traced.unit, "percent");
+  EXPECT_THAT(traced.formula, HasSubstr("ENGTRQ"));
+  // 3 hPa for 100 percent; slow drift in the noise and a memory of the torque take some.
+  EXPECT_GT(traced.slope, 0.01);
+  EXPECT_LT(traced.slope, 0.04);
+  ASSERT_THAT(diagnosis.flights, SizeIs(1));
+  EXPECT_EQ(diagnosis.flights[0].traced.size(), diagnosis.flights[0].samples->time.size());
+}
+
+TEST(Diagnose, DoesNotLookWhereItIsToldNotTo) {
+  DiagnoseOptions options;
+  options.not_variables = {"ENGTRQ"};
+  for (const pcor::TracedVariable& variable :
+       diagnose({flight("c130-eq18", 341, engine_torque)}, options).unexplained.variables)
+    EXPECT_NE(variable.name, "ENGTRQ");
+  options.whole_file = false;
+  const Diagnosis diagnosis = diagnose({flight("c130-eq18", 341, engine_torque)}, options);
+  for (const pcor::TracedVariable& variable : diagnosis.unexplained.variables)
+    EXPECT_THAT(variable.formula, IsEmpty()) << variable.name;
+}
+
+TEST(Diagnose, DoesNotInventAnEffectForAHiddenWave) {
+  const Diagnosis diagnosis = diagnose({flight("c130-eq18", 351, hidden_wave)});
+  EXPECT_EQ(diagnosis.verdict, Verdict::unexplained);
+  EXPECT_THAT(diagnosis.findings, IsEmpty());
+  EXPECT_TRUE(diagnosis.unexplained.significant);
+  // The wave has an amplitude of 0.6 hPa, the rms 0.42; the free coefficients take some.
+  EXPECT_GT(diagnosis.unexplained.drift_rms, 0.15);
+  EXPECT_LT(diagnosis.unexplained.drift_rms, 0.8);
+}
+
+TEST(Diagnose, FindsAFormulaThatIsRight) {
+  const Diagnosis diagnosis =
+      diagnose({flight("c130-eq18", 18, engine_torque)}, with_formula("k * (ENGTRQ - 50) / 100"));
+  ASSERT_THAT(names_of(diagnosis), testing::Contains("try-1"));
+  EXPECT_EQ(diagnosis.findings[0].effect.id, "try-1");
+  expect_coefficient(diagnosis.findings[0], 3.0);
+}
+
+TEST(Diagnose, SaysWhyAFormulaWithoutValuesIsNotTested) {
+  const Diagnosis diagnosis = diagnose({flight("c130-short", 311)}, with_formula("k * log(sideslip - 100)"));
+  EXPECT_EQ(diagnosis.verdict, Verdict::silent);
+  bool told = false;
+  for (const pcor::NotTestable& each : diagnosis.not_testable) {
+    if (each.effect != "try-1") continue;
+    told = true;
+    EXPECT_THAT(each.reason, HasSubstr("impossible"));
+  }
+  EXPECT_TRUE(told);
+}
+
+TEST(Diagnose, AFormulaThatActsNowhereIsNotTested) {
+  const Diagnosis diagnosis = diagnose({flight("c130-short", 311)}, with_formula("k * max(mach - 5, 0)"));
+  bool told = false;
+  for (const pcor::NotTestable& each : diagnosis.not_testable) told = told || each.effect == "try-1";
+  EXPECT_TRUE(told);
+}
+
+TEST(Diagnose, LooksAtTheFirstPartAlone) {
+  const Paths flights{flight("c130-eq18", 321, static_lag)};
+  DiagnoseOptions options;
+  options.training_share = 0.6;
+  const Diagnosis part = diagnose(flights, options);
+  const Diagnosis whole = diagnose(flights);
+  EXPECT_NEAR(static_cast<double>(part.samples), 0.6 * static_cast<double>(whole.samples), 1.0);
+  const std::vector<double>& before = part.flights.at(0).before;
+  std::size_t used = 0;
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (std::isnan(before[i])) continue;
+    ++used;
+    last = i;
+  }
+  EXPECT_EQ(used, part.samples);
+  // The rest is later.
+  EXPECT_LT(last + 1, whole.flights.at(0).before.size());
+  EXPECT_FALSE(std::isnan(whole.flights.at(0).before[last]));
+}
+
+TEST(Diagnose, TwoFlightsTellMoreThanOne) {
+  const std::filesystem::path first = flight("c130-eq18", 321, static_lag);
+  const std::filesystem::path second = flight("c130-eq18", 324, static_lag);
+  std::size_t done = 0;
+  DiagnoseOptions options;
+  options.progress = [&](std::size_t now, std::size_t total) {
+    done = now;
+    EXPECT_EQ(total, 2U);
+  };
+  const Diagnosis one = diagnose({first});
+  const Diagnosis both = diagnose({first, second}, options);
+  EXPECT_EQ(done, 2U);
+  ASSERT_THAT(names_of(both), testing::ElementsAre("static-lag"));
+  ASSERT_THAT(names_of(one), testing::ElementsAre("static-lag"));
+  EXPECT_THAT(both.flights, SizeIs(2));
+  expect_coefficient(both.findings[0], 0.4);
+  // Twice the evidence: the error falls by the root of two.
+  const double ratio =
+      both.findings[0].estimates[0].standard_error / one.findings[0].estimates[0].standard_error;
+  EXPECT_NEAR(ratio, std::sqrt(0.5), 0.15);
+}
+
+TEST(Diagnose, IsTheSameTwice) {
+  const Paths flights{flight("c130-eq18", 322, beta_odd)};
+  const Diagnosis first = diagnose(flights);
+  const Diagnosis second = diagnose(flights);
+  EXPECT_EQ(first.threshold, second.threshold);
+  ASSERT_EQ(names_of(first), names_of(second));
+  EXPECT_EQ(first.findings[0].estimates[0].value, second.findings[0].estimates[0].value);
+  EXPECT_EQ(first.findings[0].p_value, second.findings[0].p_value);
+  EXPECT_EQ(first.residual_rms, second.residual_rms);
+  EXPECT_EQ(first.unexplained.shares_noise, second.unexplained.shares_noise);
+}
+
+TEST(Diagnose, AlongAFlightPartsAddUp) {
+  const Diagnosis diagnosis = diagnose({flight("c130-eq18", 321, static_lag)});
+  const pcor::FlightDiagnosis& along = diagnosis.flights.at(0);
+  ASSERT_THAT(along.added, SizeIs(diagnosis.findings.size()));
+  double squares = 0.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i < along.before.size(); ++i) {
+    EXPECT_EQ(std::isnan(along.before[i]), along.mask[i] != pcor::Mask::none);
+    if (std::isnan(along.added[0][i])) continue;
+    squares += along.added[0][i] * along.added[0][i];
+    count += 1.0;
+  }
+  EXPECT_NEAR(std::sqrt(squares / count), diagnosis.findings[0].rms, 1e-9);
+}
+
+TEST(Diagnose, AModelWithoutFreeCoefficientsIsDiagnosedToo) {
+  ModelFile fixed = model();
+  fixed.fits.assign(3, pcor::EffectFit(1));
+  for (pcor::EffectFit& fit : fixed.fits) fit[0].fixed = true;
+  const Diagnosis diagnosis = pcor::diagnose({flight("c130-eq18", 322, beta_odd)}, fixed, Reference{});
+  EXPECT_NEAR(diagnosis.residual_rms, diagnosis.rms_given, 1e-6);
+  EXPECT_THAT(names_of(diagnosis), testing::Contains("static-beta-odd"));
+}
+
+TEST(Diagnose, AgainstAStaticSystemFindsWhatOneOfThemHas) {
+  Reference reference;
+  reference.kind = Reference::Kind::static_system;
+  reference.system =
+      pcor::read_model(std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "models" / "c130-psfrd-eq18.toml");
+  const Diagnosis diagnosis =
+      pcor::diagnose({flight("c130-eq18", 361, "on = \"PSFD\"\n" + beta_odd)}, model(), reference);
+  EXPECT_THAT(names_of(diagnosis), testing::Contains("static-beta-odd"));
+}
+
+TEST(Diagnose, NeedsFlightsAndSamples) {
+  EXPECT_THROW(diagnose({}), pcor::Error);
+  EXPECT_THROW(diagnose({"/nowhere/flight.nc"}), pcor::Error);
+  DiagnoseOptions options;
+  options.training_share = 0.1;
+  EXPECT_THROW(diagnose({flight("c130-short", 311)}, options), pcor::Error);
+}
+
+// An effect that level legs show but cannot tell from others: what to fly to tell them apart.
+TEST(Advice, NamesAManoeuvreWithSideslip) {
+  for (unsigned seed = 371; seed <= 373; ++seed) {
+    const Diagnosis diagnosis =
+        diagnose({flight("c130-no-manoeuvres", seed, "id = \"static-beta-odd\"\nb1 = -0.009\n")});
+    for (const Finding& finding : diagnosis.findings) {
+      if (finding.aliases.empty()) {
+        EXPECT_THAT(finding.advice.sentence, IsEmpty());
+        continue;
+      }
+      EXPECT_THAT(finding.advice.sentence, HasSubstr(finding.effect.id));
+      EXPECT_GE(finding.advice.power, 0.0);
+      EXPECT_LE(finding.advice.power, 1.0);
+      if (finding.effect.id != "static-beta-odd" || finding.advice.manoeuvre.empty()) continue;
+      EXPECT_THAT(finding.advice.manoeuvre, AnyOf(HasSubstr("yaw"), HasSubstr("sideslip")));
+      EXPECT_GT(finding.advice.duration, 60.0);
+    }
+  }
+}

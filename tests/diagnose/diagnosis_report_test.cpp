@@ -1,0 +1,481 @@
+#include <pcor/diagnose/diagnosis_report.hpp>
+#include <pcor/improve/improvement_report.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <random>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <pcor/words/error.hpp>
+
+namespace pcor {
+namespace {
+
+using testing::AllOf;
+using testing::AnyOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double start = 1321560000.0;  // 2011-11-17 20:00:00 UTC
+
+/// An hour: a climb, a level leg with a yaw manoeuvre, a descent. Two effects are missing, one with sideslip
+/// and one with the vertical speed, and something goes with the torque. The first 100 samples are not used.
+FlightDiagnosis flight(const std::string& name, unsigned seed) {
+  constexpr std::size_t count = 3600;
+  auto samples = std::make_shared<FlightSamples>();
+  samples->name = name;
+  FlightDiagnosis made;
+  made.added.resize(2);
+  made.evidence.resize(2);
+  std::mt19937 engine(seed);
+  std::normal_distribution<double> normal;
+  double noise = 0.0;
+  const double begin = start + 86400.0 * seed;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto t = static_cast<double>(i);
+    const bool yaw = i >= 1800 && i < 2100;
+    const double climb = (i < 1200 ? 6.0 : i < 2700 ? 0.0 : -5.0) + std::sin(t / 50.0);
+    const double sideslip = (yaw ? 4.0 * std::sin(t / 1.6) : 0.0) + 0.2 * normal(engine);
+    const double torque = 60.0 + 20.0 * std::sin(t / 400.0);
+    noise = 0.8 * noise + 0.6 * 0.08 * normal(engine);
+    const double first = 0.07 * sideslip;
+    const double second = 0.03 * climb;
+    const bool used = i >= 100;
+    samples->time.push_back(begin + t);
+    samples->motion.vertical_speed.push_back(climb);
+    made.mask.push_back(used ? Mask::none : Mask::ground);
+    made.static_pressure.push_back(900.0 - (i < 1200   ? t / 4.0
+                                            : i < 2700 ? 300.0
+                                                       : 300.0 - (t - 2700.0) / 5.0));
+    made.mach.push_back(0.3 + 0.02 * std::sin(t / 300.0));
+    made.attack.push_back(nan);
+    made.sideslip.push_back(sideslip);
+    made.traced.push_back(torque);
+    made.drift.push_back(0.03 * std::sin(t / 900.0));
+    const double left = 0.003 * (torque - 60.0) + made.drift.back() + noise;
+    made.before.push_back(used ? left + first + second : nan);
+    made.after.push_back(used ? left : nan);
+    made.added[0].push_back(first);
+    made.added[1].push_back(second);
+    made.evidence[0].push_back(used ? (yaw ? 40.0 : 0.3 * normal(engine)) : nan);
+    made.evidence[1].push_back(used ? (std::abs(climb) > 2.0 ? 5.0 : 0.0) + 0.3 * normal(engine) : nan);
+  }
+  samples->intervals = {{Regime::climb, begin, begin + 1200.0},
+                        {Regime::level, begin + 1200.0, begin + 2700.0},
+                        {Regime::yaw_manoeuvre, begin + 1800.0, begin + 2100.0},
+                        {Regime::descent, begin + 2700.0, begin + 3600.0}};
+  made.samples = samples;
+  return made;
+}
+
+Finding sideslip_finding() {
+  Finding finding;
+  finding.effect.id = "static-beta-odd";
+  finding.effect.parameters = {-0.00171};
+  finding.title = "static-port error with sideslip, ports not perfectly paired";
+  finding.estimates = {{"b1", "1", -0.00171, 0.00012, -0.0018}};
+  finding.rms = 0.083;
+  finding.worst = -0.3654;
+  finding.worst_flight = "rf02";
+  finding.worst_time = start + 1912.0;
+  finding.chi2 = 312.4;
+  finding.p_value = 0.0;
+  finding.rms_before = 0.196;
+  finding.rms_after = 0.152;
+  finding.events = 2.0;
+  finding.evidence = {{"rf01", start + 1800.0, start + 2100.0, "level, yaw manoeuvre", 0.55},
+                      {"rf02", start + 88200.0, start + 88500.0, "level, yaw manoeuvre", 0.41}};
+  finding.aliases = {{"lams-azimuth",
+                      "error of the azimuth of the laser beam",
+                      0.991,
+                      1.4,
+                      3.2,
+                      {{"azimuth", "deg", 0.32, 0.03, 0.1}}}};
+  finding.advice = {
+      "a yaw manoeuvre of 3 min with a second static pair recorded would tell the ports from the laser",
+      "yaw manoeuvre at 600 hPa", 180.0, 0.93};
+  return finding;
+}
+
+Finding lag_finding() {
+  Finding finding;
+  finding.effect.id = "static-lag";
+  finding.effect.parameters = {0.31};
+  finding.title = "pneumatic lag of the static line";
+  finding.estimates = {{"tau", "s", 0.31, 0.044, 0.15}};
+  finding.rms = 0.11;
+  finding.worst = 0.1803;
+  finding.worst_flight = "rf01";
+  finding.worst_time = start + 600.0;
+  finding.chi2 = 88.0;
+  finding.p_value = 0.0004;
+  finding.rms_before = 0.196;
+  finding.rms_after = 0.17;
+  finding.events = 7.0;
+  finding.evidence = {{"rf01", start + 100.0, start + 1200.0, "climb", 0.31}};
+  return finding;
+}
+
+Diagnosis partial() {
+  Diagnosis diagnosis;
+  diagnosis.verdict = Verdict::partial;
+  diagnosis.reference = "LAMS";
+  diagnosis.findings = {sideslip_finding(), lag_finding()};
+  diagnosis.unexplained.significant = true;
+  diagnosis.unexplained.rms = 0.047;
+  diagnosis.unexplained.drift_rms = 0.02;
+  diagnosis.unexplained.p_value = 0.002;
+  diagnosis.unexplained.regime = "level";
+  diagnosis.unexplained.variables = {
+      {"ENGTRQ", "percent", "engine torque", 0.31, 0.004, 0.29, 0.0031, 0.0004, 60.0, "k * (ENGTRQ - 60)"}};
+  diagnosis.unexplained.shares_noise = {"QCF", "TASX"};
+  diagnosis.absorbed = {{"psfd-bias", "bias of the static transducer", {"static-constant.a0"}, 0.0021}};
+  diagnosis.limits = {
+      {"clock-skew", "clock of the laser is late", {{"dt", "s", 0.03, 0.05, 0.3}}, {0.13}, 0.021, ""},
+      {"load-factor",
+       "static-port error in accelerated flight",
+       {{"k", "hPa/g", nan, nan, 1.0}},
+       {nan},
+       nan,
+       "hardly moves on these flights"}};
+  diagnosis.not_testable = {{"static-leak", "leak from the pressurised cabin into the static line",
+                             "needs the role 'cabin_pressure'"}};
+  diagnosis.candidates = 41;
+  diagnosis.threshold = 14.3;
+  diagnosis.rms_given = 0.214;
+  diagnosis.residual_rms = 0.196;
+  diagnosis.residual_rms_held_out = 0.199;
+  diagnosis.noise_rms = 0.081;
+  diagnosis.samples = 7000;
+  diagnosis.masks[0] = 7000;
+  diagnosis.masks[3] = 200;
+  diagnosis.flights = {flight("rf01", 0), flight("rf02", 1)};
+  diagnosis.notes = {"the laser of rf02 was off for 3 min"};
+  return diagnosis;
+}
+
+/// The same flights with nothing in them.
+Diagnosis silent() {
+  Diagnosis diagnosis = partial();
+  diagnosis.verdict = Verdict::silent;
+  diagnosis.findings.clear();
+  diagnosis.unexplained = {};
+  for (FlightDiagnosis& one : diagnosis.flights) {
+    one.before = one.after;
+    one.added.clear();
+    one.evidence.clear();
+    one.traced.clear();
+  }
+  return diagnosis;
+}
+
+Diagnosis unexplained() {
+  Diagnosis diagnosis = partial();
+  diagnosis.verdict = Verdict::unexplained;
+  diagnosis.findings.clear();
+  for (FlightDiagnosis& one : diagnosis.flights) {
+    one.added.clear();
+    one.evidence.clear();
+    one.after = one.before;
+  }
+  return diagnosis;
+}
+
+Improvement improvement() {
+  Improvement made;
+  made.holdout_is_flights = true;
+  made.why_stopped = "no further effect exceeds the threshold";
+  made.steps.resize(3);
+  ImproveStep& foot = made.steps[0];
+  foot.rms_train = 0.196;
+  foot.rms_holdout = 0.203;
+  foot.noise_rms = 0.081;
+  foot.terms = 3;
+  foot.learnt = "the residual of the yaw manoeuvres is the largest";
+  foot.diagnosis = partial();
+  foot.diagnosis.verdict = Verdict::ambiguous;
+  foot.diagnosis.findings = {sideslip_finding()};
+  ImproveStep& middle = made.steps[1];
+  middle = foot;
+  middle.added = "static-beta-odd";
+  middle.title = sideslip_finding().title;
+  middle.aliases = {"lams-azimuth"};
+  middle.rms_holdout = 0.161;
+  middle.terms = 4;
+  middle.learnt = "sideslip counts, be it at the ports or at the laser";
+  middle.diagnosis.findings.clear();
+  for (FlightDiagnosis& one : middle.diagnosis.flights) {
+    for (std::size_t i = 0; i < one.before.size(); ++i) one.before[i] -= one.added[0][i];
+  }
+  ImproveStep& top = made.steps[2];
+  top = middle;
+  top.added = "ENGTRQ-trace";
+  top.title = "a line in ENGTRQ";
+  top.aliases.clear();
+  top.rms_holdout = 0.12;
+  top.terms = 5;
+  top.learnt = "what is left goes with the torque";
+  top.diagnosis = silent();
+  made.fit.parameters = {{"static-beta-odd.b1", "1", 0.0, -0.00169, 0.00011, true, false, 1}};
+  made.model.model.effects = {sideslip_finding().effect,
+                              {"ENGTRQ-trace", {0.003}, {"k"}, "k * (ENGTRQ - 60)"}};
+  return made;
+}
+
+ModelFile model() {
+  ModelFile file;
+  file.model.name = "C-130 PSFD 2011";
+  return file;
+}
+
+template <class Item>
+const Item* item(const Report& report, const std::string& title) {
+  for (const ReportItem& one : report.items) {
+    if (const auto* found = std::get_if<Item>(&one); found != nullptr && found->title == title) return found;
+  }
+  return nullptr;
+}
+
+std::string all_of(const std::vector<std::string>& texts) {
+  std::string all;
+  for (const std::string& text : texts) all += text + "\n";
+  return all;
+}
+
+/// The words of the page, without its data and its script: nothing in them may be the name of no number.
+std::string words_of(const Report& report) {
+  const std::string html = report_html(report);
+  const std::string body = html.substr(html.find("<body>"), html.find("id=\"data\"") - html.find("<body>"));
+  EXPECT_THAT(body, Not(testing::ContainsRegex("[^a-z]-?(nan|inf)[^a-z]")));
+  return body;
+}
+
+TEST(DiagnosisReport, SaysWhatIsMissingHowLargeAndHowSure) {
+  const Report report = diagnosis_report(partial(), model());
+  EXPECT_EQ(report.title,
+            "Effects are missing: static-beta-odd and static-lag; structure is left that no effect explains");
+  EXPECT_EQ(report.subtitle, "Diagnosis of C-130 PSFD 2011 against LAMS");
+  EXPECT_THAT(
+      report.summary,
+      Contains(AllOf(HasSubstr("static-port error with sideslip, ports not perfectly paired "
+                               "(static-beta-odd), b1 = -0.00171 ± 0.00012"),
+                     HasSubstr("0.083 hPa rms, at most -0.365 hPa"),
+                     HasSubstr("probability of less than one in a million"),
+                     HasSubstr("rf01, 2011-11-17 20:30:00 to 20:35:00 UTC (level, yaw manoeuvre)"),
+                     HasSubstr("cannot tell it from lams-azimuth (error of the azimuth of the laser beam)"),
+                     HasSubstr("A yaw manoeuvre of 3 min with a second static pair"))));
+  EXPECT_THAT(report.summary, Contains(HasSubstr("clock-skew |dt| < 0.13 s (0.021 hPa rms)")));
+  EXPECT_THAT(report.facts, Contains(testing::Pair("Not used", HasSubstr("200 "))));
+  words_of(report);
+}
+
+TEST(DiagnosisReport, HasAPageInWordsForEachFinding) {
+  const Report report = diagnosis_report(partial(), model());
+  const auto* page = item<ReportText>(report, "Finding 1: static-beta-odd");
+  ASSERT_NE(page, nullptr);
+  const std::string text = all_of(page->paragraphs);
+  for (const char* part :
+       {"The correction b1 * sideslip_ratio * static_pressure (hPa) is added to delta-p.",
+        "b1 = -0.00171 ± 0.00012, 0.95 times the usual size.", "in rf02 at 2011-11-17 20:31:52 UTC",
+        "a fall of chi2 by 312.4, where 14.3 would have been enough", "about 2 separate events",
+        "20:35:00 UTC (level, yaw manoeuvre), 55 %", "falls from 0.196 to 0.152 hPa",
+        "lams-azimuth (error of the azimuth of the laser beam; correlation +0.991, chi2 1.4 lower, 3.2 times "
+        "the usual size).",
+        "decide with a probability of 93 %", "Source: memo eq. 19."})
+    EXPECT_THAT(text, HasSubstr(part));
+  const auto* second = item<ReportText>(report, "Finding 2: static-lag");
+  ASSERT_NE(second, nullptr);
+  EXPECT_THAT(all_of(second->paragraphs), HasSubstr("No other effect that was tested"));
+}
+
+TEST(DiagnosisReport, NamesWhatCannotBeToldApart) {
+  Diagnosis diagnosis = partial();
+  diagnosis.verdict = Verdict::ambiguous;
+  EXPECT_EQ(diagnosis_report(diagnosis, model()).title,
+            "Effects are missing: static-beta-odd and static-lag; these flights cannot tell all of them from "
+            "others");
+  diagnosis.findings.resize(1);
+  EXPECT_EQ(diagnosis_report(diagnosis, model()).title,
+            "An effect is missing, static-beta-odd or lams-azimuth: these flights cannot tell which");
+  diagnosis.findings.front().aliases.resize(4);
+  EXPECT_EQ(diagnosis_report(diagnosis, model()).title,
+            "An effect is missing, static-beta-odd or one of 4 others: these flights cannot tell which");
+  diagnosis.verdict = Verdict::identified;
+  EXPECT_EQ(diagnosis_report(diagnosis, model()).title,
+            "An effect is missing: static-port error with sideslip, ports not perfectly paired");
+}
+
+TEST(DiagnosisReport, DrawsEachFindingAgainstItsOwnInputsFirst) {
+  const Report report = diagnosis_report(partial(), model());
+  const auto* sideslip =
+      item<BinnedPanel>(report, "Residual before and after, against what static-beta-odd depends on");
+  ASSERT_NE(sideslip, nullptr);
+  EXPECT_THAT(sideslip->y, ElementsAre("before", "after"));
+  EXPECT_EQ(sideslip->x_choices.front(), "sideslip");
+  EXPECT_THAT(sideslip->x_choices, Not(Contains("attack")));  // it has no value
+  EXPECT_GT(sideslip->samples_per_independent, 2.0);
+  const auto* lag =
+      item<BinnedPanel>(report, "Residual before and after, against what static-lag depends on");
+  ASSERT_NE(lag, nullptr);
+  EXPECT_EQ(lag->x_choices.front(), "vertical_speed");
+  const auto* map = item<PlanePanel>(report, "Evidence for static-beta-odd, over Mach number and pressure");
+  ASSERT_NE(map, nullptr);
+  EXPECT_TRUE(map->reverse_y);
+}
+
+TEST(DiagnosisReport, RanksFindingsAndRivals) {
+  const Report report = diagnosis_report(partial(), model());
+  const auto* bars = item<BarPanel>(report, "Ranking");
+  ASSERT_NE(bars, nullptr);
+  ASSERT_EQ(bars->bars.size(), 4U);
+  EXPECT_EQ(bars->bars[1].label, "or lams-azimuth");
+  EXPECT_NEAR(bars->bars[1].value, 311.0, 1e-9);
+  EXPECT_EQ(bars->bars[3].value, 14.3);
+  const auto* table = item<ReportTable>(report, "Findings and their rivals");
+  ASSERT_NE(table, nullptr);
+  EXPECT_THAT(table->rows[0], ElementsAre("1", "static-beta-odd", "b1 = -0.00171 ± 0.00012", "0.083", "312.4",
+                                          "", "0.95", HasSubstr("sideslip")));
+  EXPECT_THAT(table->rows[1], ElementsAre("or", "lams-azimuth", "azimuth = 0.320 ± 0.030 deg", "", "311.0",
+                                          "+0.991", "3.2", HasSubstr("laser")));
+}
+
+TEST(DiagnosisReport, ShowsOnlySamplesThatWereUsed) {
+  const Report report = diagnosis_report(partial(), model());
+  EXPECT_EQ(report.time.size(), 7000U);
+  EXPECT_THAT(report.flight_starts, ElementsAre(0U, 3500U));
+  EXPECT_THAT(report.flight_names, ElementsAre("rf01", "rf02"));
+  EXPECT_EQ(report.time.front(), start + 100.0);
+  EXPECT_EQ(report.intervals.size(), 8U);
+}
+
+TEST(DiagnosisReport, TellsOfStructureWithoutAnExplanation) {
+  const Report report = diagnosis_report(unexplained(), model());
+  EXPECT_EQ(report.title, "Structure is left that no effect explains");
+  EXPECT_THAT(report.summary,
+              Contains(HasSubstr("0.047 hPa rms is left that no effect explains; most of it lies in "
+                                 "the regime level")));
+  EXPECT_THAT(report.summary, Contains(HasSubstr("engine torque (ENGTRQ), which takes 31 %")));
+  EXPECT_NE(item<ReportTable>(report, "Variables that the unexplained structure goes with"), nullptr);
+  const auto* binned = item<BinnedPanel>(report, "What is left, against ENGTRQ");
+  ASSERT_NE(binned, nullptr);
+  EXPECT_EQ(binned->x_choices.front(), "variable ENGTRQ");
+  words_of(report);
+}
+
+TEST(DiagnosisReport, SilenceComesWithItsLimits) {
+  const Report report = diagnosis_report(silent(), model());
+  EXPECT_EQ(report.title, "Nothing is missing that these flights could show");
+  EXPECT_THAT(report.summary, Contains("None of the 41 effects that were tested exceeds the threshold."));
+  EXPECT_THAT(report.summary, Contains(HasSubstr("clock-skew |dt| < 0.13 s (0.021 hPa rms)")));
+  EXPECT_NE(item<BinnedPanel>(report, "Residual against a variable"), nullptr);
+  const auto* limits = item<ReportTable>(report, "How large what was not found may be");
+  ASSERT_NE(limits, nullptr);
+  EXPECT_EQ(limits->rows[1][3], "");
+  words_of(report);
+}
+
+TEST(DiagnosisReport, NeedsNothingButAVerdict) {
+  Diagnosis diagnosis;
+  words_of(diagnosis_report(diagnosis, {}));
+  diagnosis.findings.resize(1);
+  diagnosis.verdict = Verdict::ambiguous;
+  diagnosis.unexplained.significant = true;
+  diagnosis.unexplained.variables.resize(1);
+  diagnosis.limits.resize(1);
+  diagnosis.flights.resize(1);
+  words_of(diagnosis_report(diagnosis, {}));
+}
+
+TEST(DiagnosisReport, LeavesOutWhatIsNoNumber) {
+  Diagnosis diagnosis = partial();
+  Finding& finding = diagnosis.findings.front();
+  finding.estimates = {{"b1", "1", nan, nan, 0.0}, {"b2", "hPa", 1.0, nan, nan}};
+  finding.rms = finding.worst = finding.p_value = finding.rms_before = finding.rms_after = finding.events =
+      nan;
+  finding.aliases.front().size_to_usual = std::numeric_limits<double>::infinity();
+  diagnosis.noise_rms = diagnosis.residual_rms = diagnosis.residual_rms_held_out = nan;
+  for (FlightDiagnosis& one : diagnosis.flights) {
+    for (std::vector<double>* values : {&one.mach, &one.sideslip, &one.evidence[0], &one.traced, &one.drift})
+      values->assign(values->size(), nan);
+    one.added.clear();
+  }
+  const std::string words = words_of(diagnosis_report(diagnosis, model()));
+  EXPECT_THAT(words, HasSubstr("b1 unknown and b2 = 1 hPa"));
+}
+
+TEST(DiagnosisReport, EscapesNames) {
+  Diagnosis diagnosis = partial();
+  auto samples = std::make_shared<FlightSamples>(*diagnosis.flights.front().samples);
+  samples->name = "<i>rf&01</i>";
+  diagnosis.flights.front().samples = samples;
+  diagnosis.findings.front().worst_flight = diagnosis.findings.front().evidence.front().flight =
+      samples->name;
+  diagnosis.findings.front().advice.sentence = "<b>fly</b>";
+  const std::string words = words_of(diagnosis_report(diagnosis, model()));
+  EXPECT_THAT(words, Not(AnyOf(HasSubstr("<i>"), HasSubstr("<b>"))));
+  EXPECT_THAT(words, HasSubstr("&lt;i&gt;rf&amp;01&lt;/i&gt;"));
+}
+
+TEST(ImprovementReport, ShowsTheLadder) {
+  const Report report = improvement_report(improvement(), model());
+  EXPECT_EQ(report.title, "2 effects make the model better");
+  EXPECT_EQ(report.subtitle, "Improvement of C-130 PSFD 2011 against LAMS");
+  EXPECT_THAT(report.summary,
+              Contains("On what was held out the rms residual goes from 0.203 to 0.120 hPa; the "
+                       "noise is 0.081 hPa."));
+  EXPECT_THAT(report.summary, Contains("No further effect exceeds the threshold."));
+  const auto* bars = item<BarPanel>(report, "The ladder");
+  ASSERT_NE(bars, nullptr);
+  ASSERT_EQ(bars->bars.size(), 4U);
+  EXPECT_EQ(bars->bars[1].label, "+ static-beta-odd");
+  EXPECT_EQ(bars->bars[1].value, 0.161);
+  EXPECT_EQ(bars->bars[3].label, "noise");
+  const auto* table = item<ReportTable>(report, "Rung by rung");
+  ASSERT_NE(table, nullptr);
+  EXPECT_THAT(table->rows[1], ElementsAre("+ static-beta-odd", "4", "0.196", "0.161", "0.081", "lams-azimuth",
+                                          "Sideslip counts, be it at the ports or at the laser."));
+  words_of(report);
+}
+
+TEST(ImprovementReport, HasAPageAndPicturesForEveryRung) {
+  const Report report = improvement_report(improvement(), model());
+  const auto* page = item<ReportText>(report, "Rung 1: static-beta-odd");
+  ASSERT_NE(page, nullptr);
+  EXPECT_THAT(all_of(page->paragraphs), HasSubstr("The flights give b1 = -0.00171 ± 0.00012"));
+  EXPECT_EQ(page->paragraphs.back(), "In the best model b1 = -0.00169 ± 0.00011.");
+  const auto* binned =
+      item<BinnedPanel>(report, "Residual without and with static-beta-odd, against what it depends on");
+  ASSERT_NE(binned, nullptr);
+  EXPECT_THAT(binned->y, ElementsAre("rung1", "rung2"));
+  EXPECT_EQ(binned->x_choices.front(), "sideslip");
+  EXPECT_NE(item<PlanePanel>(report, "Evidence for static-beta-odd, over Mach number and pressure"), nullptr);
+  const auto* formula =
+      item<BinnedPanel>(report, "Residual without and with ENGTRQ-trace, against what it depends on");
+  ASSERT_NE(formula, nullptr);
+  EXPECT_EQ(formula->x_choices.front(), "variable ENGTRQ");
+}
+
+TEST(ImprovementReport, MayHaveNothingToAdd) {
+  Improvement made = improvement();
+  made.steps.resize(1);
+  const Report report = improvement_report(made, model());
+  EXPECT_EQ(report.title, "No effect makes the model better");
+  words_of(report);
+  made.steps[0] = {};
+  words_of(improvement_report(made, {}));
+  made.steps.clear();
+  EXPECT_THROW(improvement_report(made, {}), Error);
+}
+
+}  // namespace
+}  // namespace pcor

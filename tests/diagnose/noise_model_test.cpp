@@ -1,0 +1,185 @@
+// Noise of binned residuals: whitening against the covariance of the process, written out.
+#include "diagnose/noise_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+using pcor::Binning;
+using pcor::NoiseModel;
+
+namespace {
+
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+constexpr double step = 4.0;  // s: every record is a bin
+
+Binning bins_of(const std::vector<double>& residual) {
+  std::vector<double> time(residual.size());
+  for (std::size_t i = 0; i < time.size(); ++i) time[i] = 1000.0 + step * static_cast<double>(i);
+  return Binning(residual, time, step);
+}
+
+/// A process of second order with poles 0.5 +- 0.5i whose innovations have the deviation `level(i)`.
+template <class Level>
+Eigen::VectorXd second_order(std::size_t count, unsigned seed, const Level& level) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal;
+  double before = 0.0;
+  double before_that = 0.0;
+  Eigen::VectorXd values(static_cast<Eigen::Index>(count));
+  for (std::size_t i = 0; i < count + 100; ++i) {
+    const double value = before - 0.5 * before_that + normal(engine);
+    before_that = before;
+    before = value;
+    if (i >= 100) values[static_cast<Eigen::Index>(i - 100)] = level(i - 100) * value;
+  }
+  return values;
+}
+
+/// The autocovariance of an autoregression with innovations of variance 1, from its impulse response.
+std::vector<double> autocovariance(const std::vector<double>& coefficients, std::size_t lags) {
+  constexpr std::size_t length = 2000;
+  std::vector<double> response(length + lags, 0.0);
+  response[0] = 1.0;
+  for (std::size_t j = 1; j < response.size(); ++j) {
+    for (std::size_t k = 0; k < std::min(j, coefficients.size()); ++k)
+      response[j] += coefficients[k] * response[j - 1 - k];
+  }
+  std::vector<double> covariance(lags, 0.0);
+  for (std::size_t lag = 0; lag < lags; ++lag) {
+    for (std::size_t j = 0; j < length; ++j) covariance[lag] += response[j] * response[j + lag];
+  }
+  return covariance;
+}
+
+double autocorrelation(const Eigen::VectorXd& series, Eigen::Index lag) {
+  const Eigen::Index n = series.size() - lag;
+  return series.head(n).dot(series.tail(n)) / series.squaredNorm();
+}
+
+}  // namespace
+
+// W C W' = 1: whitening is the inverse root of the covariance, also in stretches shorter than the order.
+TEST(Whitening, TurnsTheCovarianceOfTheProcessIntoUnity) {
+  std::vector<double> residual(23, 1.0);
+  residual[2] = residual[5] = residual[14] = missing;  // stretches of 2, 2, 8 and 8
+  const Binning bins = bins_of(residual);
+  ASSERT_EQ(bins.stretches().size(), 4U);
+  for (const std::vector<double>& coefficients :
+       {std::vector<double>{}, {0.7}, {1.0, -0.5}, {0.4, 0.1, -0.3, 0.2}}) {
+    NoiseModel noise;
+    noise.coefficients = coefficients;
+    Eigen::VectorXd level(static_cast<Eigen::Index>(bins.size()));
+    for (Eigen::Index i = 0; i < level.size(); ++i) level[i] = 0.3 + 0.1 * static_cast<double>(i % 5);
+    noise.level = {level};
+    const std::vector<double> lags = autocovariance(coefficients, bins.size());
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(level.size(), level.size());
+    for (const pcor::Stretch& stretch : bins.stretches()) {
+      for (std::size_t i = 0; i < stretch.count; ++i) {
+        for (std::size_t j = 0; j < stretch.count; ++j) {
+          covariance(static_cast<Eigen::Index>(stretch.first + i),
+                     static_cast<Eigen::Index>(stretch.first + j)) = lags[i > j ? i - j : j - i];
+        }
+      }
+    }
+    covariance = level.asDiagonal() * covariance * level.asDiagonal();
+    const Eigen::MatrixXd white =
+        pcor::whitened(Eigen::MatrixXd::Identity(level.size(), level.size()), bins, noise, 0);
+    const Eigen::MatrixXd left = white * covariance * white.transpose();
+    // Rounding; the sums of the autocovariance are cut off where they are nothing.
+    EXPECT_LT((left - Eigen::MatrixXd::Identity(level.size(), level.size())).cwiseAbs().maxCoeff(), 1e-10)
+        << coefficients.size();
+  }
+}
+
+TEST(Whitening, OfEstimatedNoiseIsWhiteAndOfUnitVariance) {
+  constexpr std::size_t count = 3600;
+  const auto level = [](std::size_t i) { return i < count / 2 ? 0.2 : 0.4; };
+  const Eigen::VectorXd residual = second_order(count, 11, level);
+  const std::vector<Binning> bins{bins_of(std::vector<double>(count, 0.0))};
+  const NoiseModel noise = pcor::estimate_noise(bins, {residual});
+  const Eigen::VectorXd white = pcor::whitened(residual, bins[0], noise, 0);
+  // Of white noise an autocorrelation has the deviation 1/sqrt(n); one of eight is beyond 3 of them once in
+  // fifty, and this seed is not.
+  for (Eigen::Index lag = 1; lag <= 8; ++lag)
+    EXPECT_LT(std::abs(autocorrelation(white, lag)), 3.0 / std::sqrt(static_cast<double>(count))) << lag;
+  // A level is brought by 15 % of its logarithm towards that of the whole, a factor between 1 and 2 away:
+  // (2^0.15)^2 = 1.23 at most, and the robust level of 75 innovations adds some percent.
+  const Eigen::Index half = count / 2;
+  EXPECT_NEAR(white.head(half).squaredNorm() / static_cast<double>(half), 1.0, 0.25);
+  EXPECT_NEAR(white.tail(half).squaredNorm() / static_cast<double>(half), 1.0, 0.25);
+}
+
+TEST(NoiseModel, HasTheCoefficientsAndTheLevelsOfTheProcess) {
+  constexpr std::size_t count = 3600;
+  const auto level = [](std::size_t i) { return i < count / 2 ? 0.2 : 0.4; };
+  const std::vector<Binning> bins{bins_of(std::vector<double>(count, 0.0))};
+  const NoiseModel noise = pcor::estimate_noise(bins, {second_order(count, 12, level)});
+  ASSERT_GE(noise.coefficients.size(), 2U);
+  // Standard errors sqrt((1 - 0.25)/3600) = 0.015; what drift shapes take away of the slow noise adds as
+  // much.
+  EXPECT_NEAR(noise.coefficients[0], 1.0, 0.08);
+  EXPECT_NEAR(noise.coefficients[1], -0.5, 0.08);
+  const Eigen::Index half = count / 2;
+  // Levels 0.2 and 0.4, brought towards one between them by up to 2^0.15 = 1.11.
+  EXPECT_NEAR(noise.level[0].head(half).mean(), 0.2 * 1.055, 0.02);
+  EXPECT_NEAR(noise.level[0].tail(half).mean(), 0.4 / 1.055, 0.03);
+}
+
+TEST(NoiseModel, IsNotDisturbedBySlowDrift) {
+  constexpr std::size_t count = 1800;
+  const std::vector<Binning> bins{bins_of(std::vector<double>(count, 0.0))};
+  const auto level = [](std::size_t) { return 0.2; };
+  const Eigen::VectorXd residual = second_order(count, 13, level);
+  Eigen::VectorXd drifting = residual;
+  for (Eigen::Index i = 0; i < drifting.size(); ++i)
+    drifting[i] += 2.0 * std::sin(2.0 * M_PI * static_cast<double>(i) * step / 1500.0);
+  const NoiseModel without = pcor::estimate_noise(bins, {residual});
+  const NoiseModel with = pcor::estimate_noise(bins, {drifting});
+  ASSERT_GE(with.coefficients.size(), 2U);
+  // The drift is ten times the noise; what its shapes leave of it is below a twentieth of the noise.
+  EXPECT_NEAR(with.coefficients[0], without.coefficients[0], 0.03);
+  EXPECT_NEAR(with.coefficients[1], without.coefficients[1], 0.03);
+  EXPECT_NEAR(with.level[0].mean(), without.level[0].mean(), 0.01);
+}
+
+TEST(NoiseModel, OfSeveralFlightsHasALevelForEach) {
+  const std::vector<Binning> bins{bins_of(std::vector<double>(600, 0.0)),
+                                  bins_of(std::vector<double>(900, 0.0))};
+  const NoiseModel noise =
+      pcor::estimate_noise(bins, {second_order(600, 14, [](std::size_t) { return 0.1; }),
+                                  second_order(900, 15, [](std::size_t) { return 0.3; })});
+  ASSERT_EQ(noise.level.size(), 2U);
+  EXPECT_EQ(noise.level[0].size(), 600);
+  EXPECT_EQ(noise.level[1].size(), 900);
+  // As above: 3^0.15 = 1.18, and 8 % of error.
+  EXPECT_NEAR(noise.level[0].mean(), 0.11, 0.02);
+  EXPECT_NEAR(noise.level[1].mean(), 0.29, 0.04);
+}
+
+TEST(DriftShapes, SpanASlowWave) {
+  const Binning bins = bins_of(std::vector<double>(1800, 0.0));  // two hours
+  const Eigen::MatrixXd shapes = pcor::drift_shapes(bins);
+  EXPECT_GE(shapes.cols(), 46);
+  EXPECT_LE(shapes.cols(), 48);
+  for (const double period : {900.0, 2500.0, 10000.0}) {
+    Eigen::VectorXd wave(shapes.rows());
+    for (Eigen::Index i = 0; i < wave.size(); ++i)
+      wave[i] = std::sin(2.0 * M_PI * static_cast<double>(i) * step / period + 0.7);
+    Eigen::MatrixXd columns(shapes.rows(), shapes.cols() + 1);
+    columns << shapes, Eigen::VectorXd::Ones(shapes.rows());
+    const Eigen::VectorXd left = wave - columns * columns.householderQr().solve(wave);
+    // Cosines of whole half-waves fall off as 1/k^2: beyond the 48th 1 % of the wave is left.
+    EXPECT_LT(left.norm(), 0.03 * wave.norm()) << period;
+  }
+}
+
+TEST(DriftShapes, AreFewInShortFlights) {
+  EXPECT_EQ(pcor::drift_shapes(bins_of({1.0})).cols(), 0);
+  EXPECT_EQ(pcor::drift_shapes(bins_of(std::vector<double>(30, 0.0))).cols(), 0);
+  EXPECT_LE(pcor::drift_shapes(bins_of(std::vector<double>(300, 0.0))).cols(), 8);
+}

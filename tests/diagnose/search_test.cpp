@@ -1,0 +1,417 @@
+// The search for missing effects on columns that are made up, against dense least squares and known truths.
+#include "diagnose/search.hpp"
+
+#include <gmock/gmock.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "numerics/chi_squared.hpp"
+
+using pcor::Binning;
+using pcor::Bounds;
+using pcor::ColumnGroup;
+using pcor::GroupScore;
+using pcor::NoiseModel;
+using pcor::Scores;
+using pcor::Search;
+using pcor::SearchOptions;
+using pcor::SearchResult;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::UnorderedElementsAre;
+
+namespace {
+
+constexpr double step = 4.0;  // s: every record is a bin
+constexpr Eigen::Index base = 2;
+
+/// Columns with memory, a base of a constant and a line, and a residual of noise to which effects are added.
+struct Problem {
+  std::vector<Binning> bins;
+  Eigen::MatrixXd columns;
+  Eigen::VectorXd residual;
+  NoiseModel noise;
+  std::vector<ColumnGroup> groups;
+  Scores scores;
+
+  /// @param common how much of one series every column has; @param offset how much of the base is in the
+  /// residual, hPa
+  Problem(Eigen::Index rows, Eigen::Index candidates, unsigned seed, double common = 0.0, double offset = 0.0)
+      : columns(rows, base + candidates), residual(rows) {
+    std::vector<double> time(static_cast<std::size_t>(rows));
+    for (std::size_t i = 0; i < time.size(); ++i) time[i] = step * static_cast<double>(i);
+    bins.emplace_back(std::vector<double>(time.size(), 0.0), time, step);
+    std::mt19937_64 engine(seed);
+    std::normal_distribution<double> normal;
+    const auto series = [&](double memory) {
+      Eigen::VectorXd values(rows);
+      double value = normal(engine);
+      for (double& each : values) {
+        each = value;
+        value = memory * value + std::sqrt(1.0 - memory * memory) * normal(engine);
+      }
+      return values;
+    };
+    columns.col(0).setOnes();
+    columns.col(1).setLinSpaced(-1.0, 1.0);
+    const Eigen::VectorXd shared = series(0.8);
+    for (Eigen::Index c = 0; c < candidates; ++c)
+      columns.col(base + c) = common * shared + std::sqrt(1.0 - common * common) * series(0.8);
+    residual = offset * (3.0 * columns.col(0) - columns.col(1));
+    for (double& each : residual) each += 0.5 * normal(engine);
+    noise.level = {Eigen::VectorXd::Constant(rows, 0.5)};
+  }
+
+  /// The column of a candidate.
+  Eigen::MatrixXd::ColXpr candidate(Eigen::Index c) { return columns.col(base + c); }
+
+  /// Groups of one column each.
+  void one_by_one() {
+    for (Eigen::Index c = 0; c < columns.cols() - base; ++c) {
+      ColumnGroup group;
+      group.first = c;
+      group.count = 1;
+      group.effect = groups.size();
+      group.bounds = {Bounds{}};
+      groups.push_back(group);
+    }
+  }
+
+  Search search() {
+    if (groups.empty()) one_by_one();
+    scores = pcor::find_scores(bins, {columns}, {residual}, noise);
+    return Search(scores, base, groups);
+  }
+};
+
+SearchResult run(Problem& problem, const SearchOptions& options = {}) {
+  const Search search = problem.search();
+  return search.run(options);
+}
+
+/// Coefficients of some columns by a dense decomposition, and their covariance for a noise of variance 1.
+struct Dense {
+  Eigen::VectorXd estimate;
+  Eigen::MatrixXd covariance;
+  double variance = 0.0;  // of the residuals left, in units of the noise
+
+  Dense(const Problem& problem, const std::vector<Eigen::Index>& places) {
+    const Eigen::MatrixXd white = problem.columns(Eigen::all, places) / problem.noise.level[0][0];
+    const Eigen::VectorXd right = problem.residual / problem.noise.level[0][0];
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> decomposition(white);
+    estimate = decomposition.solve(right);
+    covariance = (white.transpose() * white).inverse();
+    variance = (right - white * estimate).squaredNorm() /
+               static_cast<double>(right.size() - static_cast<Eigen::Index>(places.size()));
+  }
+};
+
+}  // namespace
+
+TEST(Search, FindsTheOneColumnThatIsThere) {
+  for (const double size : {0.3, -0.3}) {
+    Problem problem(600, 20, 1, 0.7);
+    problem.residual += size * problem.candidate(7);
+    const Search search = problem.search();
+    const SearchResult result = search.run({});
+    ASSERT_THAT(result.chosen, ElementsAre(7U));
+    const GroupScore score = search.score(7, {});
+    // The error of the estimate is about 0.5/sqrt(600 * 0.5) = 0.03.
+    EXPECT_NEAR(score.estimate[0], size, 4.0 * std::sqrt(score.covariance(0, 0)));
+    EXPECT_LT(std::sqrt(score.covariance(0, 0)), 0.04);
+    EXPECT_GT(score.chi2, result.threshold);
+    EXPECT_LT(result.p_values[0], 0.003);
+  }
+}
+
+// A model whose own coefficients are off leaves much that they explain: it must not hide what is missing.
+TEST(Search, WhatTheBaseExplainsHidesNothing) {
+  for (const double offset : {0.0, 0.2, 1.0, 5.0}) {
+    Problem problem(600, 20, 1, 0.7, offset);
+    problem.residual += 0.3 * problem.candidate(7);
+    EXPECT_THAT(run(problem).chosen, ElementsAre(7U)) << offset;
+  }
+}
+
+TEST(Search, FindsAPair) {
+  Problem problem(600, 20, 2, 0.5);
+  problem.residual += 0.3 * problem.candidate(4) - 0.25 * problem.candidate(15);
+  EXPECT_THAT(run(problem).chosen, UnorderedElementsAre(4U, 15U));
+}
+
+// The third explains more than each of the two alone, and nothing beside both.
+TEST(Search, FindsAPairWhereAThirdColumnIsNearlyTheirSum) {
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    Problem problem(900, 12, seed);
+    std::mt19937_64 engine(seed);
+    std::normal_distribution<double> normal;
+    problem.candidate(9) = problem.candidate(2) + problem.candidate(5);
+    for (double& each : problem.candidate(9)) each += 0.7 * normal(engine);
+    problem.residual += 0.4 * (problem.candidate(2) + problem.candidate(5));
+    ASSERT_GT(problem.search().score(9, {}).chi2, problem.search().score(2, {}).chi2);
+    EXPECT_THAT(run(problem).chosen, UnorderedElementsAre(2U, 5U)) << seed;
+  }
+}
+
+TEST(Search, TheStrongestIsFirst) {
+  Problem problem(900, 10, 3);
+  problem.residual += 0.2 * problem.candidate(1) + 0.6 * problem.candidate(8);
+  EXPECT_THAT(run(problem).chosen, ElementsAre(8U, 1U));
+}
+
+TEST(Search, WhatTheBaseImitatesIsAbsorbedHoweverStrong) {
+  Problem problem(600, 5, 4);
+  // One part in 40 is its own: 1/1600 of the variance.
+  problem.candidate(3) = 40.0 * problem.columns.col(1) + 0.577 * problem.candidate(3);
+  problem.residual += 2.0 * problem.candidate(3);
+  const Search search = problem.search();
+  EXPECT_TRUE(search.is_absorbed(3));
+  // The line has the mean square 1/3.
+  EXPECT_NEAR(search.remaining(3), 0.577 * 0.577 / (1600.0 / 3.0), 2e-4);
+  EXPECT_EQ(search.score(3, {}).chi2, 0.0);
+  EXPECT_THAT(search.run({}).chosen, testing::Not(testing::Contains(3U)));
+  for (const std::size_t other : {0U, 1U, 2U, 4U}) {
+    EXPECT_FALSE(search.is_absorbed(other));
+    EXPECT_GT(search.remaining(other), 0.8);
+  }
+}
+
+TEST(Search, WhatIsOutOfBoundsIsNotFound) {
+  Problem problem(600, 8, 5);
+  problem.residual -= 0.5 * problem.candidate(3);
+  problem.one_by_one();
+  problem.groups[3].bounds = {{0.0, 1.0}};
+  const Search search = problem.search();
+  EXPECT_FALSE(search.score(3, {}).possible);
+  EXPECT_THAT(search.run({}).chosen, testing::Not(testing::Contains(3U)));
+  problem.groups[3].bounds = {{-1.0, 0.0}};
+  EXPECT_THAT(problem.search().run({}).chosen, ElementsAre(3U));
+}
+
+TEST(Search, AnEstimateWithinTwoErrorsOfItsBoundIsPossible) {
+  Problem problem(600, 3, 6);
+  problem.residual += 0.3 * problem.candidate(1);
+  problem.one_by_one();
+  const GroupScore score = problem.search().score(1, {});
+  const double error = std::sqrt(score.covariance(0, 0));
+  problem.groups[1].bounds = {{score.estimate[0] + 1.9 * error, 10.0}};
+  EXPECT_TRUE(problem.search().score(1, {}).possible);
+  problem.groups[1].bounds = {{score.estimate[0] + 2.1 * error, 10.0}};
+  EXPECT_FALSE(problem.search().score(1, {}).possible);
+}
+
+TEST(Search, FindsAGroupOfTwoColumns) {
+  Problem problem(600, 12, 7, 0.5);
+  for (Eigen::Index g = 0; g < 6; ++g) {
+    ColumnGroup group;
+    group.first = 2 * g;
+    group.count = 2;
+    group.effect = static_cast<std::size_t>(g);
+    group.bounds = {Bounds{}, Bounds{}};
+    problem.groups.push_back(group);
+  }
+  problem.residual += 0.3 * problem.candidate(8) - 0.3 * problem.candidate(9);
+  const Search search = problem.search();
+  ASSERT_THAT(search.run({}).chosen, ElementsAre(4U));
+  const GroupScore score = search.score(4, {});
+  EXPECT_EQ(score.freedom, 2.0);
+  EXPECT_LT(score.equivalent, score.chi2);
+  EXPECT_NEAR(score.estimate[0], 0.3, 4.0 * std::sqrt(score.covariance(0, 0)));
+  EXPECT_NEAR(score.estimate[1], -0.3, 4.0 * std::sqrt(score.covariance(1, 1)));
+}
+
+// Whose columns are one and the same has one direction.
+TEST(Search, AGroupOfEqualColumnsHasOneDegreeOfFreedom) {
+  Problem problem(600, 2, 8);
+  problem.candidate(1) = 3.0 * problem.candidate(0);
+  problem.residual += 0.5 * problem.candidate(0);
+  ColumnGroup group;
+  group.count = 2;
+  group.bounds = {Bounds{}, Bounds{}};
+  problem.groups = {group};
+  const Search search = problem.search();
+  const GroupScore score = search.score(0, {});
+  EXPECT_EQ(score.freedom, 1.0);
+  // Together they are the effect; four errors of 0.02.
+  EXPECT_NEAR(score.estimate[0] + 3.0 * score.estimate[1], 0.5, 0.1);
+}
+
+TEST(Search, ShapesOfOneEffectExcludeEachOther) {
+  Problem problem(600, 6, 9);
+  problem.residual += 0.4 * problem.candidate(0) + 0.4 * problem.candidate(1);
+  problem.one_by_one();
+  problem.groups[1].effect = problem.groups[0].effect;
+  EXPECT_THAT(run(problem).chosen, testing::AnyOf(ElementsAre(0U), ElementsAre(1U)));
+}
+
+TEST(Search, EstimatesAreThoseOfDenseLeastSquares) {
+  Problem problem(300, 6, 10, 0.6, 1.0);
+  // Units differ: hPa, degrees, per mille.
+  problem.candidate(2) *= 1e4;
+  problem.candidate(5) *= 1e-5;
+  problem.residual += 3e-5 * problem.candidate(2) - 2e4 * problem.candidate(5);
+  const Search search = problem.search();
+  Eigen::VectorXd estimate;
+  Eigen::MatrixXd covariance;
+  search.fit({2, 5}, estimate, covariance);
+  const Dense dense(problem, {0, 1, base + 2, base + 5});
+  // Rounding of normal equations whose condition, columns alike, is below 1e3.
+  for (Eigen::Index k = 0; k < 4; ++k) {
+    EXPECT_NEAR(estimate[k], dense.estimate[k], 1e-9 * std::abs(dense.estimate[k])) << k;
+    const double error = std::sqrt(dense.variance * dense.covariance(k, k));
+    EXPECT_NEAR(std::sqrt(covariance(k, k)), error, 1e-8 * error) << k;
+  }
+  EXPECT_NEAR(search.variance({2, 5}), dense.variance, 1e-9 * dense.variance);
+  EXPECT_NEAR(dense.variance, 1.0, 0.3);  // 300 samples: deviation 0.08
+
+  // A score beside another: the same estimate, and the square of it over its variance.
+  const GroupScore score = search.score(5, {2});
+  EXPECT_NEAR(score.estimate[0], dense.estimate[3], 1e-8 * std::abs(dense.estimate[3]));
+  const Dense without(problem, {0, 1, base + 2});
+  EXPECT_NEAR(score.chi2, dense.estimate[3] * dense.estimate[3] / (without.variance * dense.covariance(3, 3)),
+              1e-7 * score.chi2);
+  EXPECT_NEAR(score.chi2, search.score(5, {5, 2}).chi2, 1e-9 * score.chi2);
+}
+
+// 0.3 % of flights without any effect may be claimed: 1.2 of 400, and more than 6 once in 4000 times.
+TEST(Search, ClaimsNothingInNoise) {
+  int claims = 0;
+  double threshold = 0.0;
+  for (unsigned seed = 1; seed <= 400; ++seed) {
+    Problem problem(300, 30, 1000 + seed, 0.7);
+    SearchOptions options;
+    options.draws = 2000;
+    options.seed = seed;
+    const SearchResult result = run(problem, options);
+    claims += result.chosen.empty() ? 0 : 1;
+    threshold += result.threshold / 400.0;
+  }
+  EXPECT_LE(claims, 6);
+  // Of one column 0.3 % exceed 8.81, of thirty that have nothing in common 15.1 (Bonferroni).
+  EXPECT_GT(threshold, 8.81);
+  EXPECT_LT(threshold, 15.3);
+}
+
+// Without the sign flips, which only take away, chance has what it is given: 20 of 400 at 5 %, deviation 4.4.
+TEST(Search, TheThresholdIsExceededAsOftenAsItSays) {
+  int above = 0;
+  for (unsigned seed = 1; seed <= 400; ++seed) {
+    Problem problem(300, 12, 5000 + seed, 0.7);
+    SearchOptions options;
+    options.draws = 2000;
+    options.confidence = 0.95;
+    options.seed = seed;
+    const Search search = problem.search();
+    const double threshold = search.run(options).threshold;
+    double best = 0.0;
+    for (std::size_t g = 0; g < 12; ++g) best = std::max(best, search.score(g, {}).equivalent);
+    above += best > threshold ? 1 : 0;
+  }
+  EXPECT_GE(above, 20 - 14);
+  EXPECT_LE(above, 20 + 14);
+}
+
+TEST(Search, NoiseWithHeavyTailsIsNotAnEffect) {
+  int claims = 0;
+  for (unsigned seed = 1; seed <= 200; ++seed) {
+    Problem problem(300, 30, 9000 + seed, 0.5);
+    // Three bins in a row that are ten times the noise: a single event.
+    problem.residual.segment(100 + seed % 100, 3).array() += 5.0;
+    SearchOptions options;
+    options.draws = 1000;
+    claims += run(problem, options).chosen.empty() ? 0 : 1;
+  }
+  // One event tells nothing. Flipped signs let 5 % of such flights through, 10 of 200 with a deviation
+  // of 3.1.
+  EXPECT_LE(claims, 19);
+}
+
+TEST(Search, IsTheSameTwice) {
+  Problem problem(300, 20, 11, 0.5);
+  problem.residual += 0.3 * problem.candidate(6);
+  const SearchResult first = run(problem);
+  const SearchResult second = run(problem);
+  EXPECT_EQ(first.chosen, second.chosen);
+  EXPECT_EQ(first.threshold, second.threshold);
+  EXPECT_EQ(first.p_values, second.p_values);
+}
+
+TEST(Search, AGivenThresholdAndAGreatestNumberHold) {
+  Problem problem(600, 10, 12);
+  for (Eigen::Index c = 0; c < 6; ++c) problem.residual += 0.5 * problem.candidate(c);
+  SearchOptions options;
+  options.threshold = 9.0;
+  options.most_effects = 3;
+  EXPECT_LE(run(problem, options).chosen.size(), 3U);
+  options.threshold = 1e6;
+  EXPECT_THAT(run(problem, options).chosen, IsEmpty());
+}
+
+TEST(Search, NothingToSearchForIsNothing) {
+  Problem problem(300, 0, 13);
+  const Search search = problem.search();
+  EXPECT_THAT(search.run({}).chosen, IsEmpty());
+  EXPECT_NEAR(search.variance({}), 1.0, 0.4);
+}
+
+TEST(Correlation, HasTheSignOfTheColumns) {
+  Problem problem(2000, 4, 14);
+  problem.candidate(1) = 0.8 * problem.candidate(0) + 0.6 * problem.candidate(1);
+  problem.candidate(2) = -0.8 * problem.candidate(0) + 0.6 * problem.candidate(2);
+  const Search search = problem.search();
+  // Samples with a memory of 0.8 count like 2000/9, so correlations of 0 have a deviation of 0.07.
+  EXPECT_NEAR(search.correlation(0, 1, {}), 0.8, 0.1);
+  EXPECT_NEAR(search.correlation(0, 2, {}), -0.8, 0.1);
+  EXPECT_NEAR(search.correlation(1, 0, {}), search.correlation(0, 1, {}), 1e-12);
+  EXPECT_NEAR(search.correlation(0, 3, {}), 0.0, 0.3);
+  // What is common to the two is gone beside it.
+  EXPECT_NEAR(search.correlation(1, 2, {0}), 0.0, 0.3);
+}
+
+TEST(Correlation, IsOfWhatTheBaseLeaves) {
+  Problem problem(1000, 2, 15);
+  Eigen::MatrixXd parts = problem.columns.rightCols(2);
+  const Eigen::MatrixXd own = problem.columns.leftCols(2);
+  parts -= own * own.householderQr().solve(parts);
+  const double expected = parts.col(0).dot(parts.col(1)) / parts.col(0).norm() / parts.col(1).norm();
+  problem.candidate(0) += 5.0 * problem.columns.col(1);
+  problem.candidate(1) += 5.0 * problem.columns.col(1);
+  EXPECT_NEAR(problem.search().correlation(0, 1, {}), expected, 1e-9);
+}
+
+TEST(LeftoverRows, AreAtRightAnglesToBaseAndOthers) {
+  Problem problem(400, 6, 16, 0.7);
+  problem.residual += 0.5 * problem.candidate(1) + 0.3 * problem.candidate(4);
+  const Search search = problem.search();
+  const Eigen::VectorXd rows = search.leftover_rows(1, {1, 4})[0];
+  const Eigen::MatrixXd white = problem.columns / problem.noise.level[0][0];
+  for (const Eigen::Index column : {Eigen::Index{0}, Eigen::Index{1}, base + 4})
+    EXPECT_NEAR(rows.dot(white.col(column)) / rows.norm() / white.col(column).norm(), 0.0, 1e-9) << column;
+  // Their product with the residual is the evidence, in units of the noise that is left.
+  const double evidence = rows.dot(problem.residual) / problem.noise.level[0][0];
+  const GroupScore score = search.score(1, {4});
+  EXPECT_NEAR(evidence, score.chi2 * search.variance({4}), 1e-8 * evidence);
+}
+
+TEST(OneDegreeEquivalent, IsAsRare) {
+  for (const double freedom : {1.0, 2.0, 3.0, 6.0}) {
+    double before = -1.0;
+    for (double chi2 = 0.0; chi2 < 900.0; chi2 += 0.5) {
+      const double equivalent = pcor::one_degree_equivalent(chi2, freedom);
+      EXPECT_GE(equivalent, before);
+      EXPECT_LE(equivalent, chi2 + 1e-12);
+      before = equivalent;
+      if (chi2 > 0.0 && chi2 < 500.0) {
+        const double tail = pcor::chi_squared_tail(chi2, freedom);
+        EXPECT_NEAR(pcor::chi_squared_tail(equivalent, 1.0), tail, 1e-7 * tail) << freedom << " " << chi2;
+      }
+    }
+  }
+  // Tables: 5 % of two degrees is 5.991, of one 3.841.
+  EXPECT_NEAR(pcor::one_degree_equivalent(5.991, 2.0), 3.841, 1e-3);
+  EXPECT_NEAR(pcor::chi_squared_tail(12.592, 6.0), 0.05, 1e-5);
+}

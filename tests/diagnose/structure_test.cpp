@@ -1,0 +1,309 @@
+// Smooth functions of a variable, and what they explain of residuals.
+#include "diagnose/structure.hpp"
+
+#include <gmock/gmock.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+using pcor::Binning;
+using pcor::NoiseModel;
+using pcor::Smooth;
+using pcor::Structure;
+using pcor::StructureTest;
+
+namespace {
+
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+constexpr double step = 4.0;  // s: every record is a bin
+constexpr double memory = 0.5;
+
+std::vector<double> draws(std::size_t count, unsigned seed) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal;
+  std::vector<double> values(count);
+  for (double& value : values) value = normal(engine);
+  return values;
+}
+
+Eigen::MatrixXd functions_of(const Smooth& smooth, const std::vector<double>& values) {
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(values.size()), static_cast<Eigen::Index>(smooth.columns()));
+  std::vector<double> out(smooth.columns());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    smooth.evaluate(values[i], out.data());
+    for (std::size_t k = 0; k < out.size(); ++k)
+      rows(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = out[k];
+  }
+  return rows;
+}
+
+/// The part of a target that columns leave, 0 to 1.
+double left_of(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target) {
+  return (target - columns * columns.colPivHouseholderQr().solve(target)).norm() / target.norm();
+}
+
+Eigen::VectorXd as_vector(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+/// Residuals of noise that remembers itself, a base of a constant, and variables that wander.
+struct Flight {
+  std::vector<Binning> bins;
+  std::vector<Eigen::MatrixXd> columns;
+  std::vector<Eigen::VectorXd> residuals;
+  NoiseModel noise;
+  std::vector<std::vector<double>> variables;
+
+  Flight(std::size_t rows, std::size_t count, unsigned seed) {
+    std::vector<double> time(rows);
+    for (std::size_t i = 0; i < rows; ++i) time[i] = step * static_cast<double>(i);
+    bins.emplace_back(std::vector<double>(rows, 0.0), time, step);
+    columns.emplace_back(Eigen::MatrixXd::Ones(static_cast<Eigen::Index>(rows), 1));
+    std::mt19937_64 engine(seed);
+    std::normal_distribution<double> normal;
+    const auto wander = [&](double remembers, double size) {
+      std::vector<double> values(rows);
+      double value = normal(engine) / std::sqrt(1.0 - remembers * remembers);
+      for (double& each : values) {
+        each = size * value;
+        value = remembers * value + normal(engine);
+      }
+      return values;
+    };
+    residuals.emplace_back(as_vector(wander(memory, 0.3)));
+    for (std::size_t k = 0; k < count; ++k) variables.push_back(wander(0.98, 1.0));
+    noise.coefficients = {memory};
+    noise.level = {Eigen::VectorXd::Constant(static_cast<Eigen::Index>(rows), 0.3)};
+  }
+
+  StructureTest test() const {
+    StructureTest result(bins, columns, residuals, noise);
+    for (std::size_t k = 0; k < variables.size(); ++k)
+      result.add("v" + std::to_string(k), {variables[k].data()});
+    return result;
+  }
+};
+
+const Structure& strongest(const StructureTest& test) {
+  return *std::max_element(
+      test.structures().begin(), test.structures().end(),
+      [](const Structure& a, const Structure& b) { return a.equivalent < b.equivalent; });
+}
+
+}  // namespace
+
+TEST(Smooth, HasALineAndNoConstant) {
+  const std::vector<double> values = draws(500, 1);
+  for (const std::size_t columns : {2U, 3U, 6U}) {
+    const Smooth smooth(values, columns);
+    EXPECT_EQ(smooth.columns(), columns);
+    const Eigen::MatrixXd rows = functions_of(smooth, values);
+    EXPECT_NEAR(rows.col(0).mean(), 0.0, 1e-12);
+    EXPECT_NEAR(rows.col(0).squaredNorm() / 500.0, 1.0, 1e-12);
+    Eigen::MatrixXd with(rows.rows(), rows.cols() + 1);
+    with << rows, Eigen::VectorXd::Ones(rows.rows());
+    // A constant beside them is a direction of its own.
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> decomposition(with);
+    EXPECT_EQ(decomposition.rank(), rows.cols() + 1);
+    EXPECT_LT(left_of(with, as_vector(values)), 1e-10);
+  }
+}
+
+TEST(Smooth, HasNotMoreColumnsThanAllowed) {
+  const std::vector<double> values = draws(500, 2);
+  for (std::size_t columns = 1; columns <= 8; ++columns)
+    EXPECT_LE(Smooth(values, columns).columns(), columns);
+}
+
+TEST(Smooth, FollowsABentCurve) {
+  std::vector<double> values(600);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = 6.0 * static_cast<double>(i) / 599.0;
+  Eigen::VectorXd wave(600);
+  for (Eigen::Index i = 0; i < 600; ++i) wave[i] = std::sin(values[static_cast<std::size_t>(i)]);
+  const Eigen::MatrixXd rows = functions_of(Smooth(values, 6), values);
+  Eigen::MatrixXd with(rows.rows(), rows.cols() + 1);
+  with << rows, Eigen::VectorXd::Ones(rows.rows());
+  // Quadratic splines of knots h = 1.2 apart err by h^3/72 of the third derivative, some percent.
+  EXPECT_LT(left_of(with, wave), 0.05);
+}
+
+// Of a switch with three positions every function is one: as good as a mean for each, less the constant.
+TEST(Smooth, OfFewLevelsIsAnyFunctionOfThem) {
+  std::vector<double> values(90);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i % 3) * 10.0;
+  const Smooth smooth(values, 6);
+  EXPECT_EQ(smooth.columns(), 2U);
+  const Eigen::MatrixXd rows = functions_of(smooth, values);
+  Eigen::MatrixXd with(rows.rows(), rows.cols() + 1);
+  with << rows, Eigen::VectorXd::Ones(rows.rows());
+  Eigen::VectorXd target(90);
+  for (Eigen::Index i = 0; i < 90; ++i) target[i] = i % 3 == 1 ? 5.0 : (i % 3 == 2 ? -1.0 : 0.5);
+  EXPECT_LT(left_of(with, target), 1e-10);
+}
+
+// A variable that is zero most of the time, as liquid water: quantiles fall together.
+TEST(Smooth, WithManyTiesIsFinite) {
+  std::vector<double> values(500, 0.0);
+  for (std::size_t i = 0; i < 40; ++i) values[12 * i] = 0.01 * static_cast<double>(i + 1);
+  const Smooth smooth(values, 6);
+  ASSERT_GE(smooth.columns(), 1U);
+  EXPECT_LE(smooth.columns(), 6U);
+  const Eigen::MatrixXd rows = functions_of(smooth, values);
+  EXPECT_TRUE(rows.allFinite());
+  EXPECT_LT(left_of(rows, rows.col(0)), 1e-10);
+}
+
+TEST(Smooth, LeavesOutMissingValues) {
+  std::vector<double> values = draws(300, 3);
+  const Smooth without(values, 4);
+  values.insert(values.begin() + 50, 40, missing);
+  values.push_back(std::numeric_limits<double>::infinity());
+  const Smooth with(values, 4);
+  EXPECT_EQ(with.columns(), without.columns());
+  EXPECT_NEAR(with.centre(), without.centre(), 1e-14);
+  EXPECT_NEAR(with.deviation(), without.deviation(), 1e-14);
+}
+
+TEST(Smooth, OfAConstantIsNothing) {
+  EXPECT_EQ(Smooth(std::vector<double>(100, 7.0), 6).columns(), 0U);
+  EXPECT_EQ(Smooth({}, 6).columns(), 0U);
+  EXPECT_EQ(Smooth(std::vector<double>(100, missing), 6).columns(), 0U);
+}
+
+TEST(StructureTest, FindsASineInOneOfFiftyVariables) {
+  Flight flight(900, 50, 1);
+  for (Eigen::Index i = 0; i < 900; ++i)
+    flight.residuals[0][i] += 0.3 * std::sin(0.6 * flight.variables[31][static_cast<std::size_t>(i)]);
+  const StructureTest test = flight.test();
+  EXPECT_EQ(strongest(test).name, "v31");
+  EXPECT_GT(strongest(test).equivalent, test.threshold(0.002));
+  EXPECT_LE(test.chance_of(strongest(test).equivalent, 1000, 1), 0.004);
+  EXPECT_GT(strongest(test).share, 0.05);
+  EXPECT_LT(strongest(test).share, 1.0);
+}
+
+TEST(StructureTest, KnowsTheSlopeOfALine) {
+  Flight flight(900, 10, 2);
+  for (Eigen::Index i = 0; i < 900; ++i)
+    flight.residuals[0][i] += 0.05 * (flight.variables[3][static_cast<std::size_t>(i)] - 20.0);
+  const StructureTest test = flight.test();
+  const Structure& found = strongest(test);
+  ASSERT_EQ(found.name, "v3");
+  EXPECT_NEAR(found.slope, 0.05, 4.0 * found.slope_error);
+  // Of a dense fit: the variable wanders with a deviation of 5 whose differences hold most information.
+  EXPECT_LT(found.slope_error, 0.01);
+  EXPECT_NEAR(found.line_chi2, found.slope * found.slope / (found.slope_error * found.slope_error),
+              1e-9 * found.line_chi2);
+  EXPECT_LE(found.line_chi2, found.chi2 * (1.0 + 1e-9));
+}
+
+TEST(StructureTest, TheSlopeIsThatOfGeneralisedLeastSquares) {
+  Flight flight(200, 1, 3);
+  flight.noise.drift = 0.4;
+  const StructureTest test = flight.test();
+  ASSERT_EQ(test.structures().size(), 1U);
+  const Eigen::Index rows = 200;
+  Eigen::MatrixXd covariance(rows, rows);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    for (Eigen::Index j = 0; j < rows; ++j)
+      covariance(i, j) =
+          0.09 * std::pow(memory, std::abs(static_cast<double>(i - j))) / (1.0 - memory * memory);
+  }
+  const Eigen::MatrixXd shapes = pcor::drift_shapes(flight.bins[0]);
+  covariance += 0.16 * shapes * shapes.transpose();
+  Eigen::MatrixXd columns(rows, 2);
+  columns << Eigen::VectorXd::Ones(rows), as_vector(flight.variables[0]);
+  const Eigen::MatrixXd weighted = covariance.ldlt().solve(columns);
+  const Eigen::MatrixXd inverse = (columns.transpose() * weighted).inverse();
+  const double slope = (inverse * (weighted.transpose() * flight.residuals[0]))[1];
+  // Rounding.
+  EXPECT_NEAR(test.structures()[0].slope, slope, 1e-8 * std::sqrt(inverse(1, 1)));
+  // The error is scaled by the variance that is found: 200 rows, deviation of its root 5 %.
+  EXPECT_NEAR(test.structures()[0].slope_error, std::sqrt(inverse(1, 1)), 0.2 * std::sqrt(inverse(1, 1)));
+}
+
+// 0.2 % of the flights are to be taken for structure: 0.4 of 200, more than 3 once in 1200 times.
+TEST(StructureTest, FindsNothingInNoise) {
+  int claims = 0;
+  for (unsigned seed = 1; seed <= 200; ++seed) {
+    const Flight flight(300, 50, 100 + seed);
+    const StructureTest test = flight.test();
+    ASSERT_EQ(test.structures().size(), 50U);
+    if (strongest(test).equivalent > test.threshold(0.002) &&
+        test.chance_of(strongest(test).equivalent, 1000, seed) <= 0.004)
+      ++claims;
+  }
+  EXPECT_LE(claims, 3);
+}
+
+TEST(StructureTest, WhatTheModelHasIsNotStructure) {
+  Flight flight(600, 3, 5);
+  flight.columns[0].conservativeResize(Eigen::NoChange, 2);
+  flight.columns[0].col(1) = as_vector(flight.variables[1]);
+  flight.residuals[0] += 0.5 * flight.columns[0].col(1);
+  const StructureTest test = flight.test();
+  EXPECT_LT(strongest(test).equivalent, test.threshold(0.002));
+  EXPECT_EQ(test.structures()[1].line_chi2, 0.0);
+}
+
+TEST(StructureTest, LeavesOutWhatDoesNotVaryOrIsMissing) {
+  Flight flight(300, 3, 6);
+  StructureTest test(flight.bins, flight.columns, flight.residuals, flight.noise);
+  const std::vector<double> constant(300, 5.0);
+  EXPECT_FALSE(test.add("constant", {constant.data()}));
+  std::vector<double> gappy = flight.variables[0];
+  for (std::size_t i = 100; i < 120; ++i) gappy[i] = missing;
+  EXPECT_TRUE(test.add("gappy", {gappy.data()}));
+  for (std::size_t i = 120; i < 150; ++i) gappy[i] = missing;
+  EXPECT_FALSE(test.add("too gappy", {gappy.data()}));
+  ASSERT_EQ(test.structures().size(), 1U);
+  EXPECT_TRUE(std::isfinite(test.structures()[0].chi2));
+}
+
+TEST(SharesNoise, IsWhatWasComputedFromTheSameMeasurement) {
+  const std::vector<double> residual = draws(3600, 7);
+  std::vector<double> derived = draws(3600, 8);
+  for (std::size_t i = 0; i < derived.size(); ++i) derived[i] = 3.0 * derived[i] - residual[i];
+  EXPECT_TRUE(pcor::shares_noise({residual}, {derived.data()}));
+  const std::vector<double> other = draws(3600, 9);
+  EXPECT_FALSE(pcor::shares_noise({residual}, {other.data()}));
+}
+
+// An effect makes residual and variable go together in its manoeuvres alone.
+TEST(SharesNoise, IsNotWhatGoesWithItInManoeuvresAlone) {
+  std::vector<double> residual = draws(3600, 10);
+  std::vector<double> variable(3600, 0.0);
+  const std::vector<double> sensor = draws(3600, 11);
+  for (std::size_t i = 0; i < 3600; ++i) {
+    variable[i] = 0.01 * sensor[i];
+    if (i >= 1000 && i < 1400) variable[i] += 3.0 * std::sin(static_cast<double>(i) / 2.0);
+    residual[i] = 0.3 * residual[i] + variable[i];
+  }
+  EXPECT_FALSE(pcor::shares_noise({residual}, {variable.data()}));
+}
+
+TEST(SharesNoise, OfNothingIsFalse) {
+  const std::vector<double> nothing(600, missing);
+  const std::vector<double> values = draws(600, 12);
+  EXPECT_FALSE(pcor::shares_noise({nothing}, {values.data()}));
+  const std::vector<double> constant(600, 1.0);
+  EXPECT_FALSE(pcor::shares_noise({values}, {constant.data()}));
+}
+
+// Of twenty minutes and variables that have nothing to do with it, few are taken for it: two windows of 300
+// have a median whose deviation is below 0.058, and the limit of 0.12 is two of them.
+TEST(SharesNoise, IsRarelyChance) {
+  int shared = 0;
+  const std::vector<double> residual = draws(1200, 13);
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    const std::vector<double> other = draws(1200, 500 + seed);
+    shared += pcor::shares_noise({residual}, {other.data()}) ? 1 : 0;
+  }
+  EXPECT_LE(shared, 6);
+}

@@ -1,0 +1,384 @@
+#include <gmock/gmock.h>
+#include <pcor/fit/refit.hpp>
+#include <pcor/words/error.hpp>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "support/made_samples.hpp"
+
+using pcor::FlightSamples;
+using pcor::Loss;
+using pcor::ModelFile;
+using pcor::Quantity;
+using pcor::RefitOptions;
+using pcor::RefitResult;
+using testing::HasSubstr;
+
+namespace {
+
+using Flights = std::vector<std::shared_ptr<const FlightSamples>>;
+
+const std::vector<std::string> equation_18{"static-constant", "static-alpha", "static-qp"};
+const std::map<std::string, double> truth_18{
+    {"static-constant.a0", 0.004127875}, {"static-alpha.a1", 0.021279816}, {"static-qp.a2", 0.030849643}};
+
+made::Plan plan_18(unsigned seed) {
+  made::Plan plan;
+  plan.seed = seed;
+  plan.defect = made::equation_18;
+  return plan;
+}
+
+RefitResult fit(const Flights& flights, const ModelFile& model, const RefitOptions& options = {}) {
+  return pcor::refit(flights, model, made::pressure_reference(), options);
+}
+
+RefitOptions with_loss(Loss loss) {
+  RefitOptions options;
+  options.loss = loss;
+  return options;
+}
+
+std::map<std::string, pcor::FittedParameter> by_name(const RefitResult& result) {
+  std::map<std::string, pcor::FittedParameter> parameters;
+  for (const pcor::FittedParameter& parameter : result.parameters) parameters[parameter.name] = parameter;
+  return parameters;
+}
+
+std::string message_of(const Flights& flights, const ModelFile& model, const RefitOptions& options = {}) {
+  try {
+    fit(flights, model, options);
+  } catch (const pcor::Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// The least squares of equation 18 by another way: the normal equations, unweighted.
+Eigen::Vector3d normal_equations(const FlightSamples& samples) {
+  const std::vector<double>& p = *samples.model.find(Quantity::static_pressure);
+  const std::vector<double>& q = *samples.model.find(Quantity::dynamic_pressure);
+  const std::vector<double>& adifr = *samples.model.find(Quantity::attack_differential_pressure);
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const Eigen::Vector3d row(p[i], p[i] * adifr[i] / q[i], q[i]);
+    matrix += row * row.transpose();
+    right += row * (samples.pressure[i] - p[i]);
+  }
+  return matrix.ldlt().solve(right);
+}
+
+}  // namespace
+
+TEST(Refit, ReturnsTheTruthWithoutNoise) {
+  made::Plan plan = plan_18(1);
+  plan.noise = 0.0;
+  const RefitResult result = fit({made::shared(plan)}, made::model(equation_18));
+  // The reference pressure is rounded to 1e-13 hPa of some hundred, and 3600 samples determine the rest.
+  for (const auto& [name, parameter] : by_name(result))
+    EXPECT_NEAR(parameter.value, truth_18.at(name), 1e-12) << name;
+  EXPECT_LT(result.rms, 1e-11);
+  EXPECT_NEAR(result.r_squared, 1.0, 1e-12);
+}
+
+TEST(Refit, OfALinearModelIsTheLeastSquares) {
+  // With noise of one level in each five minutes the weights differ little, so take them away: noise-free
+  // samples and a misfit. Without noise all weights are one.
+  made::Plan plan = plan_18(2);
+  plan.noise = 0.0;
+  plan.defect = [](double p, double q, double ratio, double time) {
+    return made::equation_18(p, q, ratio, time) + (static_cast<long>(time) % 2 == 0 ? 0.0 : 1e-9 * q * q);
+  };
+  const auto samples = made::shared(plan);
+  RefitOptions options = with_loss(Loss::none);
+  const auto found = by_name(fit({samples}, made::model(equation_18), options));
+  const Eigen::Vector3d expected = normal_equations(*samples);
+  // Weights follow the difference of neighbours here, which changes the estimate by less than its size, 1e-9.
+  EXPECT_NEAR(found.at("static-constant.a0").value, expected[0], 1e-9);
+  EXPECT_NEAR(found.at("static-alpha.a1").value, expected[1], 1e-9);
+  EXPECT_NEAR(found.at("static-qp.a2").value, expected[2], 1e-9);
+}
+
+TEST(Refit, StatesItsErrors) {
+  // 200 flights: the spread of a coefficient is known to 5 %, and the mean of its stated error better; 20 %
+  // is four times that. Noise that remembers itself for seconds would be underestimated 2.4 times by a
+  // formula that does not know it.
+  std::map<std::string, std::vector<double>> scores;
+  for (unsigned seed = 100; seed < 300; ++seed) {
+    for (const auto& [name, parameter] :
+         by_name(fit({made::shared(plan_18(seed))}, made::model(equation_18))))
+      scores[name].push_back((parameter.value - truth_18.at(name)) / parameter.standard_error);
+  }
+  for (const auto& [name, all] : scores) {
+    double squares = 0.0;
+    for (const double score : all) squares += score * score;
+    EXPECT_NEAR(std::sqrt(squares / static_cast<double>(all.size())), 1.0, 0.2) << name;
+  }
+}
+
+TEST(Refit, DoesNotMindOutliers) {
+  const ModelFile model = made::model(equation_18);
+  made::Plan plan = plan_18(3);
+  const auto clean = by_name(fit({made::shared(plan)}, model));
+  plan.outliers = 0.05;
+  const auto hit = fit({made::shared(plan)}, model);
+  const auto squares = by_name(fit({made::shared(plan)}, model, with_loss(Loss::none)));
+  double worst = 0.0;
+  for (const auto& [name, parameter] : by_name(hit)) {
+    EXPECT_LT(std::abs(parameter.value - clean.at(name).value), clean.at(name).standard_error) << name;
+    worst = std::max(worst,
+                     std::abs(squares.at(name).value - clean.at(name).value) / clean.at(name).standard_error);
+  }
+  // Least squares goes along with them: 5 % of 5 hPa is 0.25 hPa of bias, many standard errors.
+  EXPECT_GT(worst, 3.0);
+  EXPECT_NEAR(static_cast<double>(hit.outliers), 0.05 * 3600.0, 40.0);
+}
+
+TEST(Refit, AddsFlightsUp) {
+  // Two halves of a flight, and the whole, with the weights of one: the same least squares.
+  made::Plan plan = plan_18(4);
+  plan.noise = 0.0;
+  plan.defect = [](double p, double q, double ratio, double time) {
+    return made::equation_18(p, q, ratio, time) + 1e-7 * q * q;  // smooth, so no noise is seen
+  };
+  const auto first = made::shared(plan);
+  plan.seed = 5;
+  const auto second = made::shared(plan);
+  RefitOptions options = with_loss(Loss::none);
+  options.threads = 2;
+  const RefitResult both = fit({first, second}, made::model(equation_18), options);
+  EXPECT_EQ(both.samples, 7200U);
+  options.threads = 1;
+  const RefitResult alone = fit({first, second}, made::model(equation_18), options);
+  for (std::size_t i = 0; i < both.parameters.size(); ++i)
+    EXPECT_EQ(both.parameters[i].value, alone.parameters[i].value) << "the order of threads must not matter";
+  ASSERT_EQ(both.flights.size(), 2U);
+}
+
+TEST(Refit, DoesNotDependOnWhatIsKeptInMemory) {
+  const Flights flights{made::shared(plan_18(6)), made::shared(plan_18(7))};
+  RefitOptions options;
+  const auto kept = by_name(fit(flights, made::model(equation_18), options));
+  options.memory = 0;
+  for (const auto& [name, parameter] : by_name(fit(flights, made::model(equation_18), options)))
+    EXPECT_NEAR(parameter.value, kept.at(name).value, 1e-12) << name;  // sums in another order: rounding
+}
+
+TEST(Refit, HoldsWhatIsFixed) {
+  ModelFile model = made::model(equation_18);
+  model.model.effects[1].parameters = {0.02};
+  RefitOptions options;
+  options.fix = {"static-alpha"};
+  const auto found = by_name(fit({made::shared(plan_18(8))}, model, options));
+  EXPECT_EQ(found.at("static-alpha.a1").value, 0.02);
+  EXPECT_FALSE(found.at("static-alpha.a1").fitted);
+  EXPECT_TRUE(found.at("static-qp.a2").fitted);
+}
+
+TEST(Refit, StopsAtABoundAndSaysSo) {
+  ModelFile model = made::model(equation_18);
+  model.fits.resize(1);
+  model.fits[0].resize(1);
+  model.fits[0][0].bounds = pcor::Bounds{-0.01, 0.002};
+  const RefitResult result = fit({made::shared(plan_18(9))}, model);
+  const auto found = by_name(result);
+  EXPECT_NEAR(found.at("static-constant.a0").value, 0.002, 1e-9);
+  EXPECT_TRUE(found.at("static-constant.a0").at_bound);
+  EXPECT_TRUE(std::isnan(found.at("static-constant.a0").standard_error));
+  EXPECT_THAT(result.notes, testing::Contains(HasSubstr("static-constant.a0 is held at its bound")));
+}
+
+TEST(Refit, StopsAtABoundWithNothingElseFree) {
+  ModelFile model = made::model({"static-constant"});
+  model.fits.resize(1);
+  model.fits[0].resize(1);
+  model.fits[0][0].bounds = pcor::Bounds{-0.01, 0.0001};
+  const RefitResult result = fit({made::shared(plan_18(9))}, model);
+  EXPECT_TRUE(by_name(result).at("static-constant.a0").at_bound);
+  EXPECT_TRUE(std::isnan(by_name(result).at("static-constant.a0").standard_error));
+}
+
+TEST(Refit, NamesWhatCannotBeToldApart) {
+  ModelFile model = made::model(equation_18);
+  pcor::ModelEffect twin;
+  twin.id = "twin";
+  twin.formula = "k * static_pressure";
+  twin.parameter_names = {"k"};
+  twin.parameters = {0.0};
+  model.model.effects.push_back(twin);
+  const std::string message = message_of({made::shared(plan_18(10))}, model);
+  EXPECT_THAT(message, HasSubstr("static-constant.a0"));
+  EXPECT_THAT(message, HasSubstr("twin.k"));
+  EXPECT_THAT(message, HasSubstr("--fix"));
+  EXPECT_THAT(message, testing::Not(HasSubstr("static-alpha")));
+}
+
+TEST(Refit, SaysWhatEachEffectIsWorth) {
+  const auto samples = made::shared(plan_18(11));
+  const RefitResult all = fit({samples}, made::model(equation_18));
+  ASSERT_EQ(all.omissions.size(), 3U);
+  for (const pcor::Omission& omission : all.omissions) {
+    std::vector<std::string> others = equation_18;
+    others.erase(std::find(others.begin(), others.end(), omission.effect));
+    const RefitResult without = fit({samples}, made::model(others), with_loss(Loss::none));
+    // The weights of the full fit stay, whereas the fit without weights its samples by its own noise, and
+    // both are robust against different residuals: a per cent or two.
+    EXPECT_NEAR(omission.rms, without.rms, 0.05 * without.rms) << omission.effect;
+    EXPECT_GT(omission.rms, all.rms);
+    EXPECT_LT(omission.r_squared, all.r_squared);
+  }
+}
+
+TEST(Refit, FitsSlopesToManoeuvresFirst) {
+  FlightSamples samples = made::flight(plan_18(12));
+  // A bias outside of the manoeuvre that goes with the angle of attack: only a stage finds the slope.
+  const double begin = samples.time[600];
+  const double end = samples.time[1200];
+  const std::vector<double>& adifr = *samples.model.find(Quantity::attack_differential_pressure);
+  for (std::size_t i = 0; i < samples.time.size(); ++i) {
+    if (samples.time[i] < begin || samples.time[i] >= end) samples.pressure[i] += 0.2 * adifr[i];
+  }
+  pcor::Interval interval;
+  interval.regime = pcor::Regime::pitch_manoeuvre;
+  interval.begin = begin;
+  interval.end = end;
+  samples.intervals = {interval};
+  ModelFile model = made::model(equation_18);
+  model.model.effects[2].parameters = {truth_18.at("static-qp.a2")};
+  RefitOptions options;
+  options.stages = {{{pcor::Regime::pitch_manoeuvre}, {"static-alpha"}}};
+  const auto shared = std::make_shared<const FlightSamples>(samples);
+  const auto found = by_name(fit({shared}, model, options));
+  const pcor::FittedParameter& slope = found.at("static-alpha.a1");
+  EXPECT_NEAR(slope.value, truth_18.at("static-alpha.a1"), 4.0 * slope.standard_error);
+  EXPECT_EQ(slope.stage, 1);
+  EXPECT_EQ(found.at("static-constant.a0").stage, 2);
+  const pcor::FittedParameter& at_once = by_name(fit({shared}, model)).at("static-alpha.a1");
+  EXPECT_GT(std::abs(at_once.value - truth_18.at("static-alpha.a1")), 10.0 * at_once.standard_error);
+}
+
+TEST(Refit, CanFitEverythingInStages) {
+  FlightSamples samples = made::flight(plan_18(17));
+  pcor::Interval first;
+  first.regime = pcor::Regime::pitch_manoeuvre;
+  first.begin = samples.time[600];
+  first.end = samples.time[1200];
+  pcor::Interval second = first;
+  second.regime = pcor::Regime::speed_run;
+  second.begin = samples.time[1500];
+  second.end = samples.time[2500];
+  samples.intervals = {first, second};
+  RefitOptions options;
+  options.stages = {{{pcor::Regime::pitch_manoeuvre}, {"static-alpha"}},
+                    {{pcor::Regime::speed_run}, {"static-qp"}}};
+  options.fix = {"static-constant"};
+  const RefitResult result =
+      fit({std::make_shared<const FlightSamples>(samples)}, made::model(equation_18), options);
+  const auto found = by_name(result);
+  EXPECT_EQ(found.at("static-alpha.a1").stage, 1);
+  EXPECT_EQ(found.at("static-qp.a2").stage, 2);
+  EXPECT_GT(found.at("static-qp.a2").standard_error, 0.0);
+  // What the offset of an interval takes up is no business of a stage.
+  options.fix = {};
+  options.stages = {{{pcor::Regime::pitch_manoeuvre}, {"static-constant"}}};
+  EXPECT_THAT(message_of({std::make_shared<const FlightSamples>(samples)}, made::model(equation_18), options),
+              HasSubstr("cannot be told from the offsets"));
+}
+
+TEST(Refit, DrawsToItsStartWhatTheFlightsLeaveOpen) {
+  // What an hour of samples says, the prior leaves; what nearly collinear terms leave open, it decides.
+  const auto samples = made::shared(plan_18(18));
+  RefitOptions with_prior;
+  with_prior.use_prior = true;
+  const auto free = by_name(fit({samples}, made::model(equation_18)));
+  for (const auto& [name, parameter] : by_name(fit({samples}, made::model(equation_18), with_prior)))
+    EXPECT_NEAR(parameter.value, free.at(name).value, free.at(name).standard_error) << name;
+  const ModelFile powers = made::model(
+      {"static-constant", "static-alpha", "static-qp", "static-mach", "static-mach2", "static-mach3"});
+  const auto open = by_name(fit({samples}, powers));
+  for (const auto& [name, parameter] : by_name(fit({samples}, powers, with_prior))) {
+    if (open.at(name).at_bound) continue;  // it has no error to compare with
+    EXPECT_LT(parameter.standard_error, 1.05 * open.at(name).standard_error) << name;
+  }
+}
+
+TEST(Refit, FindsByGlobalSearchWhatCeresFromTheStartDoesNot) {
+  // A wave in time: between the start and the truth lie many minima of its frequency.
+  made::Plan plan = plan_18(13);
+  plan.defect = [](double p, double q, double ratio, double time) {
+    return made::equation_18(p, q, ratio, time) + 1.5 * std::sin(0.031 * time);
+  };
+  ModelFile model = made::model(equation_18);
+  pcor::ModelEffect wave;
+  wave.id = "wave";
+  wave.formula = "a * sin(w * time) + b * cos(w * time)";
+  wave.parameter_names = {"a", "b", "w"};
+  wave.parameters = {0.1, 0.1, 0.01};
+  model.model.effects.push_back(wave);
+  model.fits.resize(4);
+  model.fits[3].resize(3);
+  model.fits[3][0].bounds = model.fits[3][1].bounds = pcor::Bounds{-5.0, 5.0};
+  model.fits[3][2].bounds = pcor::Bounds{0.005, 0.1};
+  FlightSamples samples = made::flight(plan);
+  samples.model.columns.emplace_back(Quantity::time, std::vector<double>());
+  for (std::size_t i = 0; i < samples.time.size(); ++i)
+    samples.model.columns.back().second.push_back(static_cast<double>(i));
+  samples.model.roles.push_back(Quantity::time);
+  const auto shared = std::make_shared<const FlightSamples>(samples);
+  const RefitResult without = fit({shared}, model);
+  RefitOptions options;
+  options.search = true;
+  const RefitResult with = fit({shared}, model, options);
+  EXPECT_GT(without.rms, 2.0 * with.rms);
+  EXPECT_NEAR(with.rms, 0.3, 0.03);
+  EXPECT_NEAR(by_name(with).at("wave.w").value, 0.031, 1e-4);
+}
+
+TEST(Refit, TestsItselfOnWhatItHeldOut) {
+  RefitOptions options;
+  options.training_share = 0.5;
+  const RefitResult result = fit({made::shared(plan_18(14))}, made::model(equation_18), options);
+  ASSERT_EQ(result.flights.size(), 2U);
+  EXPECT_FALSE(result.flights[0].holdout);
+  EXPECT_TRUE(result.flights[1].holdout);
+  EXPECT_EQ(result.samples, 1800U);
+  EXPECT_NEAR(result.flights[1].after.rms, 0.3, 0.03);  // the noise
+  EXPECT_GT(result.flights[1].before.rms, 1.0);
+}
+
+TEST(Refit, RefusesWhatCannotBeDone) {
+  const ModelFile model = made::model(equation_18);
+  made::Plan plan = plan_18(15);
+  EXPECT_THAT(message_of({}, model), HasSubstr("no flight"));
+  EXPECT_THAT(message_of({made::shared(plan)}, made::model({})), HasSubstr("no coefficient is free"));
+  plan.samples = 2;
+  EXPECT_THAT(message_of({made::shared(plan)}, model), HasSubstr("2 samples are too few for 3 coefficients"));
+  plan.samples = 100;
+  FlightSamples other = made::flight(plan);
+  other.aircraft = "N677F";
+  EXPECT_THAT(message_of({made::shared(plan), std::make_shared<const FlightSamples>(other)}, model),
+              testing::AllOf(HasSubstr("N677F"), HasSubstr("N130AR")));
+  FlightSamples slow = made::flight(plan);
+  slow.motion.airspeed.assign(slow.time.size(), 20.0);
+  EXPECT_THAT(message_of({std::make_shared<const FlightSamples>(slow)}, model), HasSubstr("100 slower than"));
+  RefitOptions options;
+  options.fix = {"static-alfa"};
+  EXPECT_THAT(message_of({made::shared(plan)}, model, options), HasSubstr("static-alpha"));
+}
+
+TEST(Refit, WritesWhatItFound) {
+  const RefitResult result = fit({made::shared(plan_18(16))}, made::model(equation_18));
+  const ModelFile back = pcor::parse_model(pcor::write_model(result.model), "fitted");
+  const auto found = by_name(result);
+  EXPECT_EQ(back.model.effects[1].parameters[0], found.at("static-alpha.a1").value);
+  EXPECT_EQ(back.fit(1, 0).standard_error, found.at("static-alpha.a1").standard_error);
+  ASSERT_EQ(back.covariance.parameters.size(), 3U);
+  EXPECT_NEAR(back.covariance.matrix[1][1], std::pow(found.at("static-alpha.a1").standard_error, 2), 1e-18);
+  EXPECT_FALSE(back.provenance.empty());
+}

@@ -1,0 +1,669 @@
+#include <gmock/gmock.h>
+#include <sys/resource.h>
+#include <pcor/flight/flight.hpp>
+#include <pcor/words/error.hpp>
+#include <pcor/words/utc.hpp>
+
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <random>
+#include <sstream>
+
+#include "support/netcdf_file.hpp"
+#include "support/temporary_directory.hpp"
+
+using pcor::Error;
+using pcor::Flight;
+using pcor::RecordBlock;
+using pcor::TimeStamp;
+using pcor::UnitConversion;
+using pcor::utc_text;
+using pcor::test::NetcdfMaker;
+using pcor::test::sequence;
+using testing::AllOf;
+using testing::DoubleEq;
+using testing::ElementsAre;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::IsNan;
+using testing::Not;
+
+namespace {
+
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double midnight = 1077062400;  // 2004-02-18 00:00:00 UTC
+
+class FlightTest : public testing::Test {
+ protected:
+  std::filesystem::path path() const { return directory / "flight.nc"; }
+
+  // The one-line error of opening the file.
+  std::string refusal() const { return refusal(path()); }
+  static std::string refusal(const std::filesystem::path& file) {
+    const std::string message = pcor::test::message_of<Error>([&] { Flight{file}; });
+    EXPECT_THAT(message, AllOf(HasSubstr(file.string()), Not(HasSubstr("\n"))));
+    return message;
+  }
+
+  std::vector<double> read(const std::string& name, const UnitConversion& conversion = {}) const {
+    const Flight flight(path());
+    std::vector<double> values(flight.records() * static_cast<std::size_t>(flight.variable(name).rate));
+    flight.read(name, {0, flight.records()}, conversion, values.data());
+    return values;
+  }
+
+  std::vector<double> times() const {
+    const Flight flight(path());
+    std::vector<double> values(flight.records());
+    flight.read_time_stamps({0, flight.records()}, values.data());
+    return values;
+  }
+
+  void make_with_times(const std::vector<double>& seconds, int type = NC_INT) const {
+    NetcdfMaker maker(path());
+    maker.time(seconds, "seconds since 2004-02-18 00:00:00 +0000", type);
+  }
+
+  // base_time and time_offset as before 2005
+  static void put_old_time(NetcdfMaker& maker, double base, const std::vector<double>& offsets) {
+    maker.time_dimension = maker.dimension("Time", offsets.size());
+    const int base_time = maker.variable("base_time", NC_INT, {});
+    const int offset = maker.variable("time_offset", NC_FLOAT, {maker.time_dimension});
+    maker.values(base_time, {base});
+    maker.values(offset, offsets);
+  }
+
+  pcor::test::TemporaryDirectory directory;
+};
+
+}  // namespace
+
+// Files that cannot be read
+
+TEST_F(FlightTest, AnAbsentFileIsNamed) { EXPECT_THAT(refusal(), HasSubstr("no such file")); }
+
+TEST_F(FlightTest, ADirectoryIsRefused) {
+  EXPECT_THAT(refusal(directory.path()), HasSubstr("is a directory"));
+}
+
+TEST_F(FlightTest, ADeviceIsRefused) { EXPECT_THAT(refusal("/dev/null"), HasSubstr("not a regular file")); }
+
+TEST_F(FlightTest, AFileOfAnotherKindIsRefused) {
+  std::ofstream(path()) << "PSFD,QCF\n850,100\n";
+  EXPECT_THAT(refusal(), HasSubstr("is not a netCDF file"));
+  std::ofstream(path(), std::ios::trunc).flush();
+  EXPECT_THAT(refusal(), HasSubstr("is not a netCDF file"));
+}
+
+TEST_F(FlightTest, ATruncatedFileIsRefusedWhateverItsKind) {
+  for (const int mode : {0, NC_64BIT_OFFSET, NC_64BIT_DATA, NC_NETCDF4}) {
+    for (const bool one_record_variable : {true, false}) {
+      {
+        NetcdfMaker maker(path(), mode);
+        maker.time(sequence(100, 500));
+        if (!one_record_variable) maker.series("PSFD", "hPa", std::vector<double>(500, 850));
+      }
+      EXPECT_EQ(Flight(path()).records(), 500);
+      const auto size = std::filesystem::file_size(path());
+      for (const std::uintmax_t left : {size - 1, size / 2, std::uintmax_t{40}}) {
+        std::filesystem::resize_file(path(), left);
+        EXPECT_THAT(refusal(), HasSubstr("truncated")) << mode << " " << left << " of " << size;
+      }
+    }
+  }
+}
+
+TEST_F(FlightTest, AFileWithoutANameIsRefused) {
+  EXPECT_EQ(pcor::test::message_of<Error>([] { Flight{""}; }), "the input has no name; name a netCDF file");
+}
+
+// The netCDF library believes a header, and takes the memory it asks for.
+TEST_F(FlightTest, ADamagedHeaderIsRefusedOrReadSoonAndInLittleMemory) {
+  constexpr int mutations = 250;
+  constexpr std::size_t most_mutated = 2048;
+  const auto begin = std::chrono::steady_clock::now();
+  std::mt19937 random(20040218);
+  int refused = 0;
+  for (const int mode : {0, NC_64BIT_OFFSET, NC_64BIT_DATA}) {
+    {
+      NetcdfMaker maker(path(), mode);
+      maker.text(NC_GLOBAL, "FlightDate", "02/18/2004");
+      maker.time(sequence(100, 50));
+      for (int i = 0; i < 10; ++i) {
+        const int number = maker.series("PS" + std::to_string(i), "hPa", std::vector<double>(50, 850));
+        maker.text(number, "long_name", "Static Pressure of system " + std::to_string(i));
+      }
+      maker.series("FAST", "hPa", std::vector<double>(250, 100), 5);
+    }
+    std::ostringstream text;
+    text << std::ifstream(path(), std::ios::binary).rdbuf();
+    const std::string whole = text.str();
+    std::uniform_int_distribution<std::size_t> place(0, std::min(most_mutated, whole.size()) - 1);
+    for (int i = 0; i < mutations; ++i) {
+      std::string damaged = whole;
+      for (auto changes = 1 + random() % 4; changes > 0; --changes) {
+        const auto kind = random() % 3;
+        damaged[place(random)] = static_cast<char>(kind == 0 ? 0xff : kind == 1 ? 0 : random() % 256);
+      }
+      std::ofstream(path(), std::ios::binary) << damaged;
+      try {
+        const Flight flight(path());
+        for (const std::string& name : flight.variables()) {
+          if (!flight.variable(name).is_series) continue;
+          std::vector<double> values(flight.records() * static_cast<std::size_t>(flight.variable(name).rate));
+          flight.read(name, {0, flight.records()}, {}, values.data());
+        }
+      } catch (const Error&) {
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GT(refused, 100);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60));
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  EXPECT_LT(usage.ru_maxrss, 2 << 20) << "kB";
+}
+
+TEST_F(FlightTest, ACountThatTheFileHasNoRoomForIsDamage) {
+  for (const int mode : {0, NC_64BIT_DATA}) {
+    { NetcdfMaker(path(), mode).time(sequence(100, 5)); }
+    std::fstream file(path(), std::ios::binary | std::ios::in | std::ios::out);
+    file.seekp(mode == 0 ? 12 : 16);  // how many dimensions
+    file.put('\x3f');
+    file.close();
+    EXPECT_THAT(refusal(), HasSubstr("is truncated or damaged: its header cannot be read"));
+  }
+}
+
+TEST_F(FlightTest, AnEmptyTimeDimensionIsRefused) {
+  NetcdfMaker(path()).time({});
+  EXPECT_THAT(refusal(), HasSubstr("has no records"));
+}
+
+TEST_F(FlightTest, AFileWithoutTimeIsRefused) {
+  { NetcdfMaker(path()).dimension("x", 3); }
+  EXPECT_THAT(refusal(), HasSubstr("neither a variable Time nor base_time and time_offset"));
+}
+
+// Time
+
+TEST_F(FlightTest, TimeCountsFromMidnight) {
+  make_with_times({51720, 51721, 51722});
+  const Flight flight(path());
+  EXPECT_EQ(utc_text(flight.time().first), "2004-02-18 14:22:00");
+  EXPECT_EQ(utc_text(flight.time().last), "2004-02-18 14:22:02");
+  EXPECT_EQ(flight.time().step, 1);
+  EXPECT_TRUE(flight.time().whole_seconds);
+  EXPECT_EQ(flight.time().gap_count, 0);
+  EXPECT_THAT(times(), ElementsAre(midnight + 51720, midnight + 51721, midnight + 51722));
+}
+
+TEST_F(FlightTest, TimeMayCrossMidnightWithoutBeginningAgain) {
+  make_with_times({86399, 86400, 86401});
+  EXPECT_EQ(utc_text(Flight(path()).time().last), "2004-02-19 00:00:01");
+}
+
+TEST_F(FlightTest, TimeMayBeginAgainAtMidnight) {
+  make_with_times({86398, 86399, 0, 1});
+  EXPECT_THAT(Flight(path()).time().midnight_wraps, ElementsAre(2));
+  EXPECT_THAT(times(), ElementsAre(midnight + 86398, midnight + 86399, midnight + 86400, midnight + 86401));
+  double one = 0;
+  Flight(path()).read_time_stamps({3, 1}, &one);
+  EXPECT_EQ(one, midnight + 86401) << "the same in a block that begins after midnight";
+}
+
+TEST_F(FlightTest, TheTimeDimensionMayBeLowerCaseAndFixed) {
+  {
+    NetcdfMaker maker(path());
+    const int dimension = maker.dimension("time", 2);
+    const int time = maker.variable("time", NC_DOUBLE, {dimension});
+    maker.text(time, "units", "hours since 2004-02-18");
+    maker.values(time, {10, 11});
+  }
+  EXPECT_THAT(times(), ElementsAre(midnight + 36000, midnight + 39600));
+}
+
+TEST_F(FlightTest, OldFilesHaveBaseTimeAndTimeOffset) {
+  {
+    NetcdfMaker maker(path(), 0);
+    put_old_time(maker, midnight + 51720, {0, 1, 2});
+  }
+  EXPECT_THAT(times(), ElementsAre(midnight + 51720, midnight + 51721, midnight + 51722));
+  EXPECT_EQ(Flight(path()).time().source, "base_time + time_offset");
+  EXPECT_EQ(Flight(path()).time_variable(), "time_offset");
+}
+
+TEST_F(FlightTest, ImpossibleUnitsGiveWayToBaseTime) {
+  for (const char* units :
+       {"seconds since 1141-01-00 00:00:00 +0000", "seconds since 1970-1-1 0:00:00 0:00", "s", ""}) {
+    {
+      NetcdfMaker maker(path());
+      const int base = maker.variable("base_time", NC_INT, {});
+      maker.values(base, {midnight + 51720});
+      maker.time({51720, 51721}, units);
+    }
+    EXPECT_THAT(times(), ElementsAre(midnight + 51720, midnight + 51721)) << units;
+    EXPECT_THAT(Flight(path()).time().source, HasSubstr("base_time"));
+  }
+}
+
+TEST_F(FlightTest, SecondsSince1970AreTakenAsTheyAre) {
+  {
+    NetcdfMaker maker(path());
+    maker.time({midnight + 51720, midnight + 51721}, "seconds since 1970-1-1 0:00:00 0:00");
+  }
+  EXPECT_THAT(times(), ElementsAre(midnight + 51720, midnight + 51721));
+}
+
+TEST_F(FlightTest, WithoutBaseTimeTheFlightDateServes) {
+  for (const double first : {51720., 0.}) {
+    {
+      NetcdfMaker maker(path());
+      maker.text(NC_GLOBAL, "FlightDate", std::string("02/18/2004\0", 11));
+      maker.text(NC_GLOBAL, "TimeInterval", "14:22:00-15:13:00");
+      maker.time({first, first + 1}, "seconds");
+    }
+    EXPECT_THAT(times(), ElementsAre(midnight + 51720, midnight + 51721)) << "from " << first;
+  }
+}
+
+TEST_F(FlightTest, MonthsAndYearsAreNoUnitsOfAFlightsTime) {
+  for (const char* units : {"months since 2004-01-01", "years since 2004-01-01"}) {
+    { NetcdfMaker(path()).time({1, 2}, units); }
+    EXPECT_THAT(refusal(), AllOf(HasSubstr(units), HasSubstr("ncatted -a units,Time")));
+  }
+  { NetcdfMaker(path()).time({1, 2}, "days since 2004-02-18"); }
+  EXPECT_EQ(Flight(path()).time().step, 86400) << "slow, and not wrong";
+}
+
+TEST_F(FlightTest, ATimeThatCannotBeToldSaysHowToStateIt) {
+  { NetcdfMaker(path()).time({51720, 51721}, "seconds since 1141-01-00 00:00:00 +0000"); }
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("does not tell the time"), HasSubstr("1141-01-00"),
+                               HasSubstr("ncatted -a units,Time")));
+}
+
+TEST_F(FlightTest, TimeThatRunsBackwardsNamesTheRecordAndCountsThem) {
+  make_with_times({100, 101, 102, 101, 102, 90, 91});
+  EXPECT_THAT(refusal(),
+              AllOf(HasSubstr("runs backwards at record 3 (2004-02-18 00:01:41 after 2004-02-18 00:01:42)"),
+                    HasSubstr("2 backward and 0 repeated"), HasSubstr("ncks -d Time,0,2")));
+}
+
+TEST_F(FlightTest, ARepeatedTimeNamesTheRecord) {
+  make_with_times({100, 101, 101, 102});
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("repeats at record 2"), HasSubstr("0 backward and 1 repeated")));
+}
+
+TEST_F(FlightTest, AMissingTimeNamesTheRecord) {
+  {
+    NetcdfMaker maker(path());
+    const int time = maker.time({}, "seconds since 2004-02-18 00:00:00 +0000");
+    maker.numbers(time, "missing_value", NC_INT, {-32767});
+    maker.values(time, {100, 101, -32767, 103});
+  }
+  EXPECT_THAT(refusal(), HasSubstr("the time of record 2 is missing"));
+}
+
+TEST_F(FlightTest, GapsAreAllowedAndListed) {
+  make_with_times({100, 101, 110, 111, 200});
+  const Flight flight(path());
+  EXPECT_EQ(flight.time().gap_count, 2);
+  ASSERT_EQ(flight.time().gaps.size(), 2);
+  EXPECT_EQ(flight.time().gaps[0].record, 2);
+  EXPECT_EQ(flight.time().gaps[0].before, midnight + 101);
+  EXPECT_EQ(flight.time().gaps[0].after, midnight + 110);
+  EXPECT_EQ(flight.time().gaps[1].record, 4);
+}
+
+TEST_F(FlightTest, StepsMayBeIrregularAndBrokenSeconds) {
+  make_with_times({100, 101.1, 101.9, 103}, NC_DOUBLE);
+  const Flight flight(path());
+  EXPECT_FALSE(flight.time().whole_seconds);
+  EXPECT_NEAR(flight.time().step, 1.1, 1e-6);
+}
+
+TEST_F(FlightTest, TimeIsCheckedAcrossBlocks) {
+  std::vector<double> seconds = sequence(0, 2 * pcor::records_per_block);
+  seconds[pcor::records_per_block] = seconds[pcor::records_per_block - 1];
+  make_with_times(seconds);
+  EXPECT_THAT(refusal(), HasSubstr("repeats at record " + std::to_string(pcor::records_per_block)));
+}
+
+TEST_F(FlightTest, SamplesLieInTheMiddleOfTheirIntervals) {
+  make_with_times({100, 101});
+  double values[4];
+  Flight(path()).read_sample_times({0, 2}, 1, values);
+  EXPECT_THAT(std::vector(values, values + 2), ElementsAre(midnight + 100.5, midnight + 101.5));
+  Flight(path()).read_sample_times({0, 2}, 2, values);
+  EXPECT_THAT(std::vector(values, values + 4),
+              ElementsAre(midnight + 100.25, midnight + 100.75, midnight + 101.25, midnight + 101.75));
+  Flight(path(), TimeStamp::middle).read_sample_times({0, 2}, 1, values);
+  EXPECT_THAT(std::vector(values, values + 2), ElementsAre(midnight + 100, midnight + 101));
+  Flight(path(), TimeStamp::middle).read_sample_times({0, 1}, 2, values);
+  EXPECT_THAT(std::vector(values, values + 2), ElementsAre(midnight + 99.75, midnight + 100.25));
+}
+
+// Variables
+
+TEST_F(FlightTest, AMissingVariableSuggestsThoseThatLookLikeIt) {
+  {
+    NetcdfMaker maker(path());
+    maker.time({100});
+    for (const char* name : {"TASX", "QCR", "QCFR", "QCX", "PSFD"}) maker.series(name, "hPa", {1});
+  }
+  const Flight flight(path());
+  EXPECT_EQ(pcor::test::message_of<Error>([&] { flight.variable("QCF"); }),
+            path().string() + ": QCF is not in this file; it has QCFR, QCR, QCX");
+  EXPECT_TRUE(flight.has("QCR"));
+  EXPECT_FALSE(flight.has("QCF"));
+}
+
+TEST_F(FlightTest, AMissingVariableOfTheModelNamesItsRoleAndWhatFits) {
+  {
+    NetcdfMaker maker(path());
+    maker.time({100});
+    maker.series("QCFR", "mbar", {1});
+    maker.series("QCR", "hPa", {1});
+    maker.series("QCX", "hPa", {1});
+    maker.series("QCFK", "K", {1});
+    maker.text(maker.series("ATX", "degC", {1}), "long_name", "Ambient");
+    maker.series("RSTB1", "degC", {1});
+    maker.series("COUNTS", "cnts", {1});
+    for (const char* name : {"TTRR", "TTRL", "TTWH"})
+      maker.text(maker.series(name, "C", {1}), "long_name", "Total Temperature");
+  }
+  const Flight flight(path());
+  const auto refusal_of = [&](const char* name, const char* unit, const char* role) {
+    return pcor::test::message_of<Error>([&] { flight.conversion(name, unit, role); });
+  };
+  EXPECT_EQ(
+      refusal_of("QCF", "hPa", "dynamic_pressure"),
+      path().string() +
+          ": QCF is not in this file; it has QCFR, QCR, QCX; change dynamic_pressure in the [variables] of "
+          "the model");
+  EXPECT_EQ(refusal_of("RTF1", "K", "recovery_temperature"),
+            path().string() +
+                ": RTF1 (recovery_temperature of the model) is not in this file; it has TTRR, TTRL, TTWH in "
+                "degC, QCFK in K, ATX, RSTB1 in degC (units that fit); change [variables] of the model")
+      << "the words of the role first";
+  EXPECT_THAT(refusal_of("ALT", "degree", "attack"),
+              AllOf(HasSubstr("ALT (attack of the model) is not in this file"),
+                    HasSubstr("no time series in degree"), HasSubstr("[variables]")));
+  EXPECT_EQ(pcor::test::message_of<Error>([&] { flight.conversion("QCF", "hPa"); }),
+            pcor::test::message_of<Error>([&] { flight.variable("QCF"); }))
+      << "without a role there is no model to change";
+}
+
+TEST_F(FlightTest, NoMoreThanSixVariablesThatFitAreNamed) {
+  {
+    NetcdfMaker maker(path());
+    maker.time({100});
+    for (int i = 1; i < 10; ++i) maker.series("ABCD" + std::to_string(i), "degC", {1});
+  }
+  const Flight flight(path());
+  EXPECT_THAT(
+      pcor::test::message_of<Error>([&] { flight.conversion("ZZ", "K", "ambient_temperature"); }),
+      HasSubstr("it has ABCD1, ABCD2, ABCD3, ABCD4, ABCD5, ABCD6 in degC and 3 more (units that fit)"));
+}
+
+TEST_F(FlightTest, AUnitOfTheModelNeverReplacesAnotherOneOfTheFile) {
+  {
+    NetcdfMaker maker(path());
+    maker.time({100});
+    maker.series("PSFD", "mbar", {850});
+    maker.series("HEAT", "K", {1});
+    maker.series("ODD", "furlong-ish", {1});
+    maker.series("BARE", "", {1});
+  }
+  const Flight flight(path());
+  const auto stated = [&](const char* name, const char* unit) {
+    return flight.conversion(name, "hPa", "static_pressure", unit)(1);
+  };
+  EXPECT_EQ(stated("PSFD", "hPa"), 1) << "the same in another spelling";
+  EXPECT_EQ(stated("ODD", "kPa"), 10);
+  EXPECT_EQ(stated("BARE", "kPa"), 10);
+  const auto refusal_of = [&](const char* name, const char* unit) {
+    return pcor::test::message_of<Error>([&] { stated(name, unit); });
+  };
+  EXPECT_EQ(refusal_of("PSFD", "Pa"),
+            path().string() +
+                ": PSFD has the unit \"mbar\", and the model states \"Pa\"; remove unit.static_pressure from "
+                "the [units] of the model, or mend the units attribute of the file if that is wrong");
+  EXPECT_THAT(refusal_of("HEAT", "hPa"), HasSubstr("HEAT has the unit \"K\", and the model states \"hPa\""));
+  for (const char* wrong : {"furlong", "K", "furlong-ish"})
+    EXPECT_THAT(refusal_of("BARE", wrong),
+                AllOf(HasSubstr(std::string("the unit \"") + wrong + "\" that the model states for BARE"),
+                      HasSubstr("correct unit.static_pressure in the [units]")));
+}
+
+TEST_F(FlightTest, AttributesComeWithoutTrailingNul) {
+  {
+    NetcdfMaker maker(path());
+    maker.time({100});
+    const int number = maker.series("PSFD", std::string("mbar\0", 5), {850});
+    maker.text(number, "long_name", std::string("Static\0\0", 8));
+    maker.text(NC_GLOBAL, "Aircraft", std::string("N130AR\0", 7));
+    maker.text(NC_GLOBAL, "project", "GOTEX");
+  }
+  const Flight flight(path());
+  EXPECT_EQ(flight.variable("PSFD").units, "mbar");
+  EXPECT_EQ(flight.variable("PSFD").long_name, "Static");
+  EXPECT_EQ(flight.aircraft(), "N130AR");
+  EXPECT_EQ(flight.project(), "GOTEX");
+  EXPECT_EQ(flight.flight_number(), "");
+}
+
+TEST_F(FlightTest, EveryMarkOfMissingValuesBecomesNan) {
+  {
+    NetcdfMaker maker(path(), 0);
+    maker.time({100, 101, 102, 103, 104});
+    const auto put = [&](const char* name, const char* attribute, int type, double marker) {
+      const int number = maker.variable(name, NC_FLOAT, {maker.time_dimension});
+      if (attribute != nullptr) maker.numbers(number, attribute, type, {marker});
+      maker.values(number, {marker, missing, infinity, -infinity, 5});
+    };
+    put("FILL", "_FillValue", NC_FLOAT, -32767);
+    put("MISSING", "missing_value", NC_FLOAT, -9999.9f);
+    put("OLD", "MissingValue", NC_FLOAT, 99999);
+    put("DOUBLE", "missing_value", NC_DOUBLE, -999.9);
+    put("BARE", nullptr, NC_FLOAT, -32767);
+    put("DEFAULT", nullptr, NC_FLOAT, static_cast<double>(NC_FILL_FLOAT));
+    const int text = maker.variable("TEXT", NC_FLOAT, {maker.time_dimension});
+    maker.text(text, "missing_value", std::string("-32767.f\0", 9));
+    maker.values(text, {-32767, missing, missing, missing, 5});
+  }
+  for (const char* name : {"FILL", "MISSING", "OLD", "DOUBLE", "BARE", "DEFAULT", "TEXT"})
+    EXPECT_THAT(read(name), ElementsAre(IsNan(), IsNan(), IsNan(), IsNan(), 5)) << name;
+}
+
+TEST_F(FlightTest, AVariableThatIsMissingThroughoutIsAnErrorWhenRequired) {
+  {
+    NetcdfMaker maker(path());
+    maker.time({100, 101});
+    maker.series("PSFD", "hPa", {-32767, -32767});
+    maker.series("QCF", "hPa", {-32767, 3});
+  }
+  const Flight flight(path());
+  EXPECT_THAT(pcor::test::message_of<Error>([&] { flight.require_values("PSFD"); }),
+              HasSubstr("PSFD has no value, all 2 records are missing"));
+  EXPECT_NO_THROW(flight.require_values("QCF"));
+}
+
+TEST_F(FlightTest, UnitsAreConvertedByTheFilesAttribute) {
+  {
+    NetcdfMaker maker(path());
+    maker.time({100, 101});
+    maker.series("ATX", std::string("C\0", 2), {10, -32767});
+    maker.series("PSF", "", {850, 851});
+    maker.series("ODD", "furlong-ish", {1, 2});
+  }
+  const Flight flight(path());
+  EXPECT_THAT(read("ATX", flight.conversion("ATX", "K")), ElementsAre(DoubleEq(283.15), IsNan()));
+  EXPECT_THAT(
+      pcor::test::message_of<Error>([&] { flight.conversion("PSF", "hPa", "static_pressure"); }),
+      AllOf(HasSubstr("PSF has no unit"), HasSubstr("unit.static_pressure = \"hPa\""), HasSubstr("[units]")));
+  EXPECT_THAT(pcor::test::message_of<Error>([&] { flight.conversion("ODD", "hPa", "static_pressure"); }),
+              HasSubstr("ODD has the unit \"furlong-ish\", which is not known"));
+  EXPECT_THAT(pcor::test::message_of<Error>([&] { flight.conversion("ATX", "hPa", "static_pressure"); }),
+              HasSubstr("cannot be converted to hPa"));
+  EXPECT_EQ(flight.conversion("PSF", "hPa", "static_pressure", "kPa")(85), 850)
+      << "the unit that a model file states";
+}
+
+TEST_F(FlightTest, PackedIntegersAreUnpacked) {
+  {
+    NetcdfMaker maker(path());
+    maker.time({100, 101});
+    const int number = maker.variable("PACKED", NC_SHORT, {maker.time_dimension});
+    maker.numbers(number, "scale_factor", NC_DOUBLE, {0.5});
+    maker.numbers(number, "add_offset", NC_DOUBLE, {100});
+    maker.numbers(number, "_FillValue", NC_SHORT, {-1});
+    maker.values(number, {10, -1});
+  }
+  EXPECT_THAT(read("PACKED"), ElementsAre(105, IsNan()));
+}
+
+TEST_F(FlightTest, WhatIsNotATimeSeriesIsListedAndRefused) {
+  {
+    NetcdfMaker maker(path());
+    maker.time({100});
+    const int sps1 = maker.dimension("sps1", 1), bins = maker.dimension("Vector64", 64);
+    maker.variable("CDP", NC_FLOAT, {maker.time_dimension, sps1, bins});
+    maker.variable("WORDS", NC_CHAR, {maker.time_dimension});
+    maker.variable("ONE", NC_FLOAT, {maker.time_dimension, sps1});
+  }
+  const Flight flight(path());
+  EXPECT_THAT(flight.variables(), ElementsAre("Time", "CDP", "WORDS", "ONE"));
+  EXPECT_FALSE(flight.variable("CDP").is_series);
+  double value = 0;
+  EXPECT_THAT(pcor::test::message_of<Error>([&] {
+                flight.read("CDP", {0, 1}, {}, &value);
+              }),
+              HasSubstr("CDP(Time, sps1, Vector64) is not a time series"));
+  EXPECT_THAT(pcor::test::message_of<Error>([&] {
+                flight.read("WORDS", {0, 1}, {}, &value);
+              }),
+              HasSubstr("not a time series"));
+  EXPECT_EQ(flight.variable("ONE").rate, 1);
+}
+
+TEST_F(FlightTest, ABlockBeyondTheEndIsRefused) {
+  make_with_times({100, 101});
+  double values[3];
+  EXPECT_THAT(pcor::test::message_of<Error>([&] {
+                Flight(path()).read("Time", {1, 2}, {}, values);
+              }),
+              HasSubstr("cannot read Time at records 1 to 3, there are 2"));
+}
+
+// Rates
+
+TEST_F(FlightTest, RatesSideBySideAreReadAtEither) {
+  {
+    NetcdfMaker maker(path());
+    maker.time({100, 101});
+    maker.series("SLOW", "hPa", {1, 2});
+    maker.series("FAST", "hPa", {1, 2, -32767, 6, -32767, -32767, -32767, -32767}, 4);
+  }
+  const Flight flight(path());
+  EXPECT_EQ(flight.variable("SLOW").rate, 1);
+  EXPECT_EQ(flight.variable("FAST").rate, 4);
+  const auto at = [&](int rate, const char* name) {
+    std::vector<double> values(static_cast<std::size_t>(2 * rate));
+    flight.read_at_rate(rate, name, {0, 2}, {}, values.data());
+    return values;
+  };
+  EXPECT_THAT(at(4, "SLOW"), ElementsAre(1, 1, 1, 1, 2, 2, 2, 2)) << "held constant within its record";
+  EXPECT_THAT(at(1, "FAST"), ElementsAre(3, IsNan())) << "the mean of what is there";
+  EXPECT_THAT(at(2, "FAST"), ElementsAre(1.5, 6, IsNan(), IsNan()));
+  EXPECT_THAT(at(4, "FAST"), ElementsAre(1, 2, IsNan(), 6, IsNan(), IsNan(), IsNan(), IsNan()));
+  EXPECT_THAT(pcor::test::message_of<Error>([&] { at(3, "FAST"); }),
+              AllOf(HasSubstr("FAST has 4 samples a record"), HasSubstr("with 1 samples a record")));
+  EXPECT_THAT(pcor::test::message_of<Error>([&] { at(6, "FAST"); }),
+              HasSubstr("FAST has 4 samples a record, which cannot be brought to 6"));
+}
+
+TEST_F(FlightTest, AnglesAverageOnTheCircle) {
+  {
+    NetcdfMaker maker(path());
+    maker.time({100, 101, 102});
+    const std::vector<double> degrees{350, 10, 340, 360, 90, 270};
+    const int heading = maker.series("THDG", "deg", degrees, 2);
+    maker.numbers(heading, "modulus_range", NC_FLOAT, {0, 360});
+    const int longitude = maker.series("LON", "deg", {179, -179, 10, 20, -179, 177}, 2);
+    maker.numbers(longitude, "modulus_range", NC_FLOAT, {-180, 180});
+  }
+  const Flight flight(path());
+  double values[3];
+  flight.read_at_rate(1, "THDG", {0, 3}, {}, values);
+  EXPECT_NEAR(std::remainder(values[0], 360), 0, 1e-9);
+  EXPECT_NEAR(values[1], 350, 1e-9);
+  EXPECT_THAT(values[2], IsNan()) << "opposite directions have no mean";
+  flight.read_at_rate(1, "LON", {0, 3}, {}, values);
+  EXPECT_NEAR(std::abs(values[0]), 180, 1e-9);
+  EXPECT_NEAR(values[1], 15, 1e-9);
+  EXPECT_NEAR(values[2], 179, 1e-9);
+}
+
+TEST_F(FlightTest, BlocksOfAnySizeGiveTheSame) {
+  {
+    NetcdfMaker maker(path(), 0);
+    maker.time(sequence(0, 100));
+    maker.series("PSFD", "hPa", sequence(500, 500), 5);
+  }
+  const Flight flight(path());
+  for (const std::size_t size : {1U, 7U, 100U, 1000U}) {
+    std::vector<double> all(500);
+    for (const RecordBlock block : pcor::blocks_of(flight.records(), size))
+      flight.read("PSFD", block, {}, all.data() + 5 * block.first);
+    EXPECT_EQ(all, sequence(500, 500)) << size;
+  }
+}
+
+// The real thing
+
+TEST(RealFlight, OfJuly2004IsRead) {
+  const char* flights = std::getenv("PCOR_FLIGHTS");
+  if (flights == nullptr) GTEST_SKIP() << "set PCOR_FLIGHTS to the directory of the reference flights";
+  const Flight flight(std::filesystem::path(flights) / "GOTEX-rf06-C130-2004.nc");
+  EXPECT_EQ(flight.records(), 3061);
+  EXPECT_EQ(utc_text(flight.time().first), "2004-02-18 14:22:00");
+  EXPECT_EQ(utc_text(flight.time().last), "2004-02-18 15:13:00");
+  EXPECT_EQ(flight.time().gap_count, 0);
+  EXPECT_EQ(flight.aircraft(), "N130AR");
+  EXPECT_EQ(flight.project(), "Ocean Waves");
+  EXPECT_EQ(flight.flight_number(), "rf06");
+  EXPECT_THAT(pcor::test::message_of<Error>([&] { flight.variable("VLAMS"); }),
+              HasSubstr("VLAMS is not in this file"));
+  for (const std::string& name : flight.variables()) {
+    const pcor::VariableInfo& info = flight.variable(name);
+    EXPECT_TRUE(info.units.empty() || pcor::is_known_unit(info.units)) << name << " " << info.units;
+  }
+
+  // Total pressure of the two systems: slope 0.99989, offset -0.05 hPa, rms 0.088 in flight.
+  const std::size_t records = flight.records();
+  std::vector<std::vector<double>> values;
+  for (const char* name : {"PSFD", "QCF", "PSFRD", "QCFR"}) {
+    values.emplace_back(records);
+    flight.read(name, {0, records}, flight.conversion(name, "hPa"), values.back().data());
+  }
+  std::vector<double> airspeed(records);
+  flight.read("TASX", {0, records}, flight.conversion("TASX", "m/s"), airspeed.data());
+  double squares = 0;
+  int samples = 0;
+  for (std::size_t i = 0; i < records; ++i) {
+    if (!(airspeed[i] > 50)) continue;
+    const double first = values[0][i] + values[1][i], second = values[2][i] + values[3][i];
+    const double residual =
+        std::min(std::abs(second - (0.99989 * first - 0.05)), std::abs(first - (0.99989 * second - 0.05)));
+    squares += residual * residual;
+    ++samples;
+  }
+  EXPECT_GT(samples, 2000);
+  EXPECT_LT(std::sqrt(squares / samples), 0.12);
+}

@@ -1,0 +1,647 @@
+#include <gmock/gmock.h>
+#include <sys/mount.h>
+#include <sys/resource.h>
+#include <pcor/flight/flight_writer.hpp>
+#include <pcor/words/error.hpp>
+#include <pcor/words/replacement_file.hpp>
+#include <pcor/words/utc.hpp>
+
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "support/netcdf_file.hpp"
+#include "support/temporary_directory.hpp"
+
+using pcor::Error;
+using pcor::FileDescription;
+using pcor::FileKind;
+using pcor::Flight;
+using pcor::FlightWriter;
+using pcor::NewFlight;
+using pcor::OutputVariable;
+using pcor::RecordBlock;
+using pcor::test::message_of;
+using pcor::test::NetcdfMaker;
+using pcor::test::sequence;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsNan;
+using testing::MatchesRegex;
+using testing::NanSensitiveDoubleEq;
+using testing::Not;
+using testing::Pointwise;
+
+namespace {
+
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+constexpr double midnight = 1077062400;  // 2004-02-18 00:00:00 UTC
+
+OutputVariable pressure(const std::string& name = "PSXC", int rate = 1) {
+  OutputVariable variable;
+  variable.name = name;
+  variable.rate = rate;
+  variable.units = "hPa";
+  variable.long_name = "Static Pressure, Corrected";
+  variable.standard_name = "air_pressure";
+  variable.category = "Thermodynamic";
+  variable.dependencies = {"PSFD", "QCF"};
+  return variable;
+}
+
+std::string contents(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+/// What the netCDF library itself says of a written file.
+class Written {
+ public:
+  explicit Written(const std::filesystem::path& path) {
+    EXPECT_EQ(nc_open(path.c_str(), NC_NOWRITE, &id), NC_NOERR) << path;
+  }
+  Written(const Written&) = delete;
+  Written& operator=(const Written&) = delete;
+  ~Written() { nc_close(id); }
+
+  int variable(const std::string& name) const {
+    int number = -2;
+    EXPECT_EQ(nc_inq_varid(id, name.c_str(), &number), NC_NOERR) << name;
+    return number;
+  }
+  bool has_variable(const std::string& name) const {
+    int number = 0;
+    return nc_inq_varid(id, name.c_str(), &number) == NC_NOERR;
+  }
+  int type(const std::string& name) const {
+    nc_type type = NC_NAT;
+    nc_inq_vartype(id, variable(name), &type);
+    return type;
+  }
+  int attribute_type(const std::string& name, const std::string& attribute) const {
+    nc_type type = NC_NAT;
+    nc_inq_atttype(id, variable(name), attribute.c_str(), &type);
+    return type;
+  }
+  std::string text(const std::string& name, const std::string& attribute) const {
+    const int number = name.empty() ? NC_GLOBAL : variable(name);
+    std::size_t length = 0;
+    if (nc_inq_attlen(id, number, attribute.c_str(), &length) != NC_NOERR) return "absent";
+    std::string value(length, '?');
+    EXPECT_EQ(nc_get_att_text(id, number, attribute.c_str(), value.data()), NC_NOERR) << attribute;
+    return value;
+  }
+  std::vector<double> numbers(const std::string& name, const std::string& attribute) const {
+    const int number = name.empty() ? NC_GLOBAL : variable(name);
+    std::size_t length = 0;
+    if (nc_inq_attlen(id, number, attribute.c_str(), &length) != NC_NOERR) return {};
+    std::vector<double> values(length);
+    EXPECT_EQ(nc_get_att_double(id, number, attribute.c_str(), values.data()), NC_NOERR) << attribute;
+    return values;
+  }
+  std::vector<double> values(const std::string& name) const {
+    int rank = 0, dimensions[NC_MAX_VAR_DIMS];
+    nc_inq_var(id, variable(name), nullptr, nullptr, &rank, dimensions, nullptr);
+    std::size_t total = 1;
+    for (int i = 0; i < rank; ++i) {
+      std::size_t length = 0;
+      nc_inq_dimlen(id, dimensions[i], &length);
+      total *= length;
+    }
+    std::vector<double> result(total);
+    EXPECT_EQ(nc_get_var_double(id, variable(name), result.data()), NC_NOERR) << name;
+    return result;
+  }
+  std::vector<std::string> shape(const std::string& name) const {
+    int rank = 0, dimensions[NC_MAX_VAR_DIMS];
+    nc_inq_var(id, variable(name), nullptr, nullptr, &rank, dimensions, nullptr);
+    std::vector<std::string> names;
+    for (int i = 0; i < rank; ++i) {
+      char dimension[NC_MAX_NAME + 1];
+      nc_inq_dimname(id, dimensions[i], dimension);
+      names.emplace_back(dimension);
+    }
+    return names;
+  }
+
+  int id = 0;
+};
+
+class FlightWriterTest : public testing::Test {
+ protected:
+  // Two systems, a scalar, a histogram with an extra dimension, and the oddities of old files.
+  void make_input_of(int mode) const {
+    NetcdfMaker maker(input, mode);
+    maker.text(NC_GLOBAL, "Aircraft", std::string("N130AR\0", 7));
+    maker.text(NC_GLOBAL, "ProjectName", "GOTEX");
+    maker.text(NC_GLOBAL, "FlightNumber", "rf06");
+    maker.text(NC_GLOBAL, "history", "2004: made");
+    maker.numbers(NC_GLOBAL, "landmark", NC_FLOAT, {39.5, -105});
+    maker.time({51720, 51721, 51722});
+    const int statics = maker.series("PSFD", std::string("mbar\0", 5), {850, 851, -32767});
+    maker.numbers(statics, "CalibrationCoefficients", NC_FLOAT, {0, 1});
+    maker.series("QCF", "mbar", sequence(100, 12), 4);
+    maker.series("TASX", "M/s", {100, 101, 102});
+    const int counter = maker.variable("COUNT", NC_SHORT, {maker.time_dimension});
+    maker.numbers(counter, "missing_value", NC_DOUBLE, {-9});
+    maker.values(counter, {1, 2, -9});
+    const int bins = maker.dimension("Vector3", 3), sps1 = maker.dimension("sps1", 1);
+    const int histogram = maker.variable("CDP", NC_FLOAT, {maker.time_dimension, sps1, bins});
+    maker.values(histogram, sequence(0, 9));
+    const int base = maker.variable("base_time", NC_INT, {});
+    maker.values(base, {midnight + 51720});
+    const int latitude = maker.series("GGLAT", "degree_N", {15.25, 15.5, -32767});
+    maker.text(latitude, "standard_name", "latitude");
+  }
+
+  static void write_all(FlightWriter& writer, std::size_t variable, const std::vector<double>& values,
+                        std::size_t records) {
+    writer.write(variable, {0, records}, values.data());
+  }
+
+  std::string refusal(const std::filesystem::path& file) const {
+    const std::string message = message_of<Error>([&] { FlightWriter(file, NewFlight{midnight}, {}); });
+    EXPECT_THAT(message, AllOf(HasSubstr(file.string()), Not(HasSubstr("\n"))));
+    return message;
+  }
+
+  // Writes a long flight to `path` until something gives; the message of that.
+  static std::string write_much(const std::filesystem::path& path, FileKind kind) {
+    return message_of<Error>([&] {
+      constexpr std::size_t records = 4096;
+      NewFlight flight{midnight};
+      flight.kind = kind;
+      FlightWriter writer(path, flight, {});
+      const std::size_t number = writer.define(pressure("PSXC", 25));
+      const std::vector<double> values(records * 25, 850);
+      for (std::size_t block = 0; block < 4; ++block) {
+        const std::vector<double> times = sequence(midnight + static_cast<double>(block * records), records);
+        writer.write_time_stamps({block * records, records}, times.data());
+        writer.write(number, {block * records, records}, values.data());
+      }
+      writer.finish();
+    });
+  }
+
+  pcor::test::TemporaryDirectory directory;
+  const std::filesystem::path input = directory / "in.nc";
+  const std::filesystem::path output = directory / "out.nc";
+};
+
+}  // namespace
+
+// What is written
+
+TEST_F(FlightWriterTest, TimeAndVariablesFollowTheConventions) {
+  NewFlight flight{midnight + 86399};
+  FlightWriter writer(output, flight, {});
+  const std::size_t slow = writer.define(pressure());
+  const std::size_t fast = writer.define(pressure("QCXC", 4));
+  OutputVariable quality;
+  quality.name = "PCORFLAG";
+  quality.long_name = "Quality";
+  quality.flags = {{1, "missing_input"}, {4, "low_speed"}};
+  const std::size_t flags = writer.define(quality);
+  const std::vector<double> times{midnight + 86399, midnight + 86400};
+  writer.write_time_stamps({0, 2}, times.data());
+  write_all(writer, slow, {850.25, missing}, 2);
+  write_all(writer, fast, sequence(1, 8), 2);
+  write_all(writer, flags, {0, 5}, 2);
+  writer.finish();
+
+  const Written file(output);
+  EXPECT_EQ(file.type("Time"), NC_INT);
+  EXPECT_THAT(file.values("Time"), ElementsAre(86399, 86400))
+      << "midnight is crossed without beginning again";
+  EXPECT_EQ(file.text("Time", "units"), "seconds since 2004-02-18 00:00:00 +0000");
+  EXPECT_EQ(file.text("Time", "standard_name"), "time");
+  EXPECT_EQ(file.text("Time", "axis"), "T");
+  EXPECT_EQ(file.text("Time", "calendar"), "standard");
+  EXPECT_EQ(file.text("Time", "strptime_format"), "seconds since %F %T %z");
+  int unlimited = -1, time = -2;
+  nc_inq_unlimdim(file.id, &unlimited);
+  nc_inq_dimid(file.id, "Time", &time);
+  EXPECT_EQ(unlimited, time);
+
+  EXPECT_EQ(file.type("PSXC"), NC_FLOAT);
+  EXPECT_THAT(file.shape("PSXC"), ElementsAre("Time"));
+  EXPECT_EQ(file.text("PSXC", "units"), "hPa");
+  EXPECT_EQ(file.text("PSXC", "long_name"), "Static Pressure, Corrected");
+  EXPECT_EQ(file.text("PSXC", "standard_name"), "air_pressure");
+  EXPECT_EQ(file.text("PSXC", "Category"), "Thermodynamic");
+  EXPECT_EQ(file.text("PSXC", "DataQuality"), "Preliminary");
+  EXPECT_EQ(file.text("PSXC", "Dependencies"), "2 PSFD QCF");
+  EXPECT_EQ(file.attribute_type("PSXC", "_FillValue"), NC_FLOAT);
+  EXPECT_THAT(file.numbers("PSXC", "_FillValue"), ElementsAre(-32767));
+  EXPECT_THAT(file.numbers("PSXC", "actual_range"), ElementsAre(850.25, 850.25));
+  EXPECT_THAT(file.values("PSXC"), ElementsAre(850.25, -32767));
+
+  EXPECT_THAT(file.shape("QCXC"), ElementsAre("Time", "sps4"));
+  EXPECT_EQ(file.values("QCXC"), sequence(1, 8));
+  EXPECT_THAT(file.numbers("QCXC", "actual_range"), ElementsAre(1, 8));
+
+  EXPECT_EQ(file.type("PCORFLAG"), NC_INT);
+  EXPECT_THAT(file.numbers("PCORFLAG", "flag_masks"), ElementsAre(1, 4));
+  EXPECT_EQ(file.text("PCORFLAG", "flag_meanings"), "missing_input low_speed");
+  EXPECT_THAT(file.values("PCORFLAG"), ElementsAre(0, 5));
+}
+
+TEST_F(FlightWriterTest, TheFileSaysWhatItIs) {
+  make_input_of(NC_NETCDF4);
+  const Flight flight(input);
+  FileDescription description;
+  description.history = "pcor process in.nc";
+  description.latitude = "GGLAT";
+  description.attributes = {{"pcor_model", "C-130"}};
+  FlightWriter writer(output, flight, description);
+  writer.copy("GGLAT");
+  writer.finish();
+
+  const Written file(output);
+  EXPECT_EQ(file.text("", "Conventions"), "NCAR-RAF/nimbus-2.1 CF-1.8 ACDD-1.3");
+  EXPECT_THAT(file.text("", "history"), MatchesRegex("20..-..-..T..:..:..Z: pcor process in.nc\n2004: made"));
+  EXPECT_THAT(file.text("", "date_created"), MatchesRegex("20..-..-..T..:..:..Z"));
+  EXPECT_EQ(file.text("", "title"), "GOTEX rf06 N130AR");
+  EXPECT_EQ(file.text("", "source"), "airborne observations");
+  EXPECT_EQ(file.text("", "Aircraft"), "N130AR") << "without the trailing NUL";
+  EXPECT_EQ(file.text("", "platform"), "N130AR");
+  EXPECT_EQ(file.text("", "time_coverage_start"), "2004-02-18T14:22:00Z");
+  EXPECT_EQ(file.text("", "time_coverage_end"), "2004-02-18T14:22:02Z");
+  EXPECT_EQ(file.text("", "FlightDate"), "02/18/2004");
+  EXPECT_EQ(file.text("", "TimeInterval"), "14:22:00-14:22:02");
+  EXPECT_EQ(file.text("", "latitude_coordinate"), "GGLAT");
+  EXPECT_EQ(file.text("", "pcor_model"), "C-130");
+  EXPECT_THAT(file.numbers("", "landmark"), ElementsAre(39.5, -105));
+  EXPECT_THAT(file.numbers("", "geospatial_lat_min"), ElementsAre(15.25));
+  EXPECT_THAT(file.numbers("", "geospatial_lat_max"), ElementsAre(15.5));
+}
+
+TEST_F(FlightWriterTest, AVariableWithoutAnyValueHasNoRange) {
+  for (const FileKind kind : {FileKind::classic, FileKind::netcdf4}) {
+    NewFlight start{midnight};
+    start.kind = kind;
+    FlightWriter writer(output, start, {});
+    const std::size_t number = writer.define(pressure());
+    writer.write_time_stamps({0, 1}, &start.first_time);
+    write_all(writer, number, {missing}, 1);
+    writer.finish();
+    EXPECT_THAT(Written(output).numbers("PSXC", "actual_range"), ElementsAre());
+    EXPECT_THAT(Written(output).values("PSXC"), ElementsAre(-32767));
+  }
+}
+
+TEST_F(FlightWriterTest, WhatAFloatCannotHoldIsMissing) {
+  NewFlight start{midnight};
+  FlightWriter writer(output, start, {});
+  const std::size_t number = writer.define(pressure());
+  const std::vector<double> times = sequence(midnight, 4);
+  writer.write_time_stamps({0, 4}, times.data());
+  const double infinity = std::numeric_limits<double>::infinity();
+  write_all(writer, number, {1e300, infinity, -infinity, 3}, 4);
+  writer.finish();
+  EXPECT_THAT(Written(output).values("PSXC"), ElementsAre(-32767, -32767, -32767, 3));
+}
+
+TEST_F(FlightWriterTest, TimesThatAreNotWholeSecondsAreKept) {
+  {
+    NetcdfMaker maker(input);
+    maker.time({100.5, 101.5}, "seconds since 2004-02-18 00:00:00 +0000", NC_DOUBLE);
+  }
+  const Flight flight(input);
+  FlightWriter(output, flight, {}).finish();
+  EXPECT_EQ(Written(output).type("Time"), NC_DOUBLE);
+  EXPECT_THAT(Written(output).values("Time"), ElementsAre(100.5, 101.5));
+}
+
+TEST_F(FlightWriterTest, CopiesKeepValuesTypesShapesAndAttributesInEveryKindOfFile) {
+  for (const int mode : {0, NC_64BIT_OFFSET, NC_64BIT_DATA, NC_NETCDF4, NC_NETCDF4 | NC_CLASSIC_MODEL}) {
+    make_input_of(mode);
+    {
+      const Flight flight(input);
+      FlightWriter writer(output, flight, {});
+      for (const std::string& name : flight.variables()) writer.copy(name);
+      const std::size_t number = writer.define(pressure());
+      write_all(writer, number, {849, 850, 851}, 3);
+      writer.finish();
+      EXPECT_EQ(Flight(output).kind(), flight.kind()) << mode;
+    }
+    const Written before(input), after(output);
+    for (const char* name : {"PSFD", "QCF", "TASX", "COUNT", "CDP", "base_time", "GGLAT", "Time"}) {
+      EXPECT_EQ(after.type(name), before.type(name)) << name;
+      EXPECT_EQ(after.shape(name), before.shape(name)) << name;
+      EXPECT_EQ(after.values(name), before.values(name)) << name;
+    }
+    EXPECT_EQ(after.text("PSFD", "units"), "mbar") << "without the trailing NUL";
+    EXPECT_EQ(after.text("TASX", "units"), "m/s") << "in the spelling of UDUNITS";
+    EXPECT_EQ(after.text("TASX", "long_name"), "TASX") << "CF wants one";
+    EXPECT_THAT(after.numbers("PSFD", "CalibrationCoefficients"), ElementsAre(0, 1));
+    EXPECT_EQ(after.attribute_type("COUNT", "missing_value"), NC_SHORT) << "of the variable's type";
+    EXPECT_THAT(after.values("PSXC"), ElementsAre(849, 850, 851));
+  }
+}
+
+TEST_F(FlightWriterTest, TextAttributesThatAreStringsAreCopied) {
+  {
+    NetcdfMaker maker(input);
+    maker.time({100});
+    const int number = maker.series("PSFD", "hPa", {850});
+    const char* text[] = {"Static"};
+    nc_put_att_string(maker.id(), number, "long_name", 1, text);
+    const int words = maker.variable("WORDS", NC_STRING, {maker.time_dimension});
+    nc_enddef(maker.id());
+    const std::size_t start = 0, count = 1;
+    nc_put_vara_string(maker.id(), words, &start, &count, text);
+  }
+  const Flight flight(input);
+  FlightWriter writer(output, flight, {});
+  writer.copy("PSFD");
+  writer.copy("WORDS");
+  writer.finish();
+  EXPECT_EQ(Flight(output).variable("PSFD").long_name, "Static");
+  const Written file(output);
+  char* word = nullptr;
+  const std::size_t start = 0, count = 1;
+  ASSERT_EQ(nc_get_vara_string(file.id, file.variable("WORDS"), &start, &count, &word), NC_NOERR);
+  EXPECT_STREQ(word, "Static");
+  nc_free_string(1, &word);
+}
+
+TEST_F(FlightWriterTest, BlocksMakeTheWhole) {
+  constexpr std::size_t records = 2 * pcor::records_per_block + 3;
+  for (const FileKind kind : {FileKind::classic, FileKind::netcdf4}) {
+    NewFlight start{midnight};
+    start.kind = kind;
+    FlightWriter writer(output, start, {});
+    const std::size_t number = writer.define(pressure("PSXC", 5));
+    const std::vector<double> times = sequence(midnight, records), values = sequence(0, 5 * records);
+    for (const RecordBlock block : pcor::blocks_of(records, 1000)) {
+      writer.write_time_stamps(block, times.data() + block.first);
+      writer.write(number, block, values.data() + 5 * block.first);
+    }
+    writer.finish();
+    const Flight flight(output);
+    EXPECT_EQ(flight.records(), records);
+    std::vector<double> read(5 * records);
+    flight.read("PSXC", {0, records}, {}, read.data());
+    EXPECT_EQ(read, values);
+  }
+}
+
+// Mistakes of the caller
+
+TEST_F(FlightWriterTest, ANameThatIsTakenIsRefused) {
+  make_input_of(NC_NETCDF4);
+  const Flight flight(input);
+  FlightWriter writer(output, flight, {});
+  writer.copy("PSFD");
+  EXPECT_TRUE(writer.has("PSFD"));
+  EXPECT_FALSE(writer.has("PSXC"));
+  EXPECT_THAT(message_of<Error>([&] { writer.define(pressure("PSFD")); }),
+              HasSubstr("there is a variable PSFD already; give the new one a suffix"));
+  EXPECT_THAT(message_of<Error>([&] { writer.copy("PSFD"); }), HasSubstr("PSFD already"));
+  EXPECT_THAT(message_of<Error>([&] { writer.copy("PSFX"); }), HasSubstr("it has PSFD"));
+}
+
+TEST_F(FlightWriterTest, AVariableThatWasNotWrittenInFullIsAnError) {
+  make_input_of(NC_NETCDF4);
+  const Flight flight(input);
+  {
+    FlightWriter writer(output, flight, {});
+    const std::size_t number = writer.define(pressure());
+    write_all(writer, number, {1, 2}, 2);
+    EXPECT_THAT(message_of<Error>([&] { writer.finish(); }),
+                HasSubstr("PSXC was written for 2 of 3 records"));
+  }
+  EXPECT_EQ(directory.entries(), 1) << "only the input is left";
+}
+
+TEST_F(FlightWriterTest, WhatCannotBeCopiedIsToldBeforeAndLeavesTheRest) {
+  {
+    NetcdfMaker maker(input);
+    maker.time({100, 101});
+    maker.series("PSFD", "hPa", {850, 851});
+    maker.series("FAST", "hPa", sequence(1, 8), 4);
+    const int bins = maker.dimension("Vector2", 2);
+    maker.variable("SIDEWAYS", NC_FLOAT, {bins, maker.time_dimension});
+    nc_type pair = NC_NAT;
+    ASSERT_EQ(nc_def_compound(maker.id(), 8, "pair", &pair), NC_NOERR);
+    ASSERT_EQ(nc_insert_compound(maker.id(), pair, "first", 0, NC_INT), NC_NOERR);
+    ASSERT_EQ(nc_insert_compound(maker.id(), pair, "second", 4, NC_INT), NC_NOERR);
+    maker.variable("PAIRS", pair, {maker.time_dimension});
+    const int values[] = {1, 2};
+    ASSERT_EQ(nc_put_att(maker.id(), NC_GLOBAL, "pair", pair, 1, values), NC_NOERR);
+  }
+  const Flight flight(input);
+  FlightWriter writer(output, flight, {});
+  EXPECT_TRUE(writer.can_copy("PSFD"));
+  EXPECT_TRUE(writer.can_copy("FAST"));
+  for (const char* name : {"PAIRS", "SIDEWAYS", "ABSENT"}) EXPECT_FALSE(writer.can_copy(name)) << name;
+  EXPECT_THAT(message_of<Error>([&] { writer.copy("PAIRS"); }),
+              AllOf(HasSubstr("PAIRS has a type of its own making"), HasSubstr("leave it out")));
+  writer.copy("PSFD");
+  writer.finish();
+  EXPECT_THAT(Written(output).values("PSFD"), ElementsAre(850, 851));
+  EXPECT_FALSE(FlightWriter(output, NewFlight{midnight}, {}).can_copy("PSFD")) << "there is no input";
+}
+
+TEST_F(FlightWriterTest, FlagsMustBeWholeNumbers) {
+  NewFlight start{midnight};
+  FlightWriter writer(output, start, {});
+  OutputVariable quality;
+  quality.name = "PCORFLAG";
+  quality.flags = {{1, "missing_input"}};
+  const std::size_t number = writer.define(quality);
+  for (const double value : {0.5, missing, 1e10})
+    EXPECT_THAT(message_of<Error>([&] {
+                  writer.write(number, {7, 1}, &value);
+                }),
+                HasSubstr("PCORFLAG is not a whole number at record 7"));
+}
+
+TEST_F(FlightWriterTest, TimesMustIncrease) {
+  FlightWriter writer(output, NewFlight{midnight}, {});
+  const std::vector<double> times{midnight, midnight + 1, midnight + 1};
+  EXPECT_THAT(message_of<Error>([&] {
+                writer.write_time_stamps({0, 3}, times.data());
+              }),
+              HasSubstr("the time of record 2 does not follow the one before"));
+}
+
+// Whole or not at all
+
+TEST_F(FlightWriterTest, NothingIsThereBeforeTheEnd) {
+  {
+    FlightWriter writer(output, NewFlight{midnight}, {});
+    writer.write_time_stamps({0, 1}, &midnight);
+    EXPECT_FALSE(std::filesystem::exists(output));
+  }
+  EXPECT_EQ(directory.entries(), 0) << "a writer that did not finish leaves nothing";
+  FlightWriter writer(output, NewFlight{midnight}, {});
+  writer.write_time_stamps({0, 1}, &midnight);
+  writer.finish();
+  EXPECT_TRUE(std::filesystem::exists(output));
+  EXPECT_EQ(directory.entries(), 1);
+}
+
+TEST_F(FlightWriterTest, AnExistingFileIsReplacedOnlyByAWholeOne) {
+  std::ofstream(output) << "old";
+  std::filesystem::permissions(output,
+                               std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+  {
+    FlightWriter writer(output, NewFlight{midnight}, {});
+    EXPECT_THAT(message_of<Error>([&] { writer.finish(); }), HasSubstr("no records"));
+  }
+  EXPECT_EQ(contents(output), "old");
+  FlightWriter writer(output, NewFlight{midnight}, {});
+  writer.write_time_stamps({0, 1}, &midnight);
+  EXPECT_EQ(contents(output), "old");
+  writer.finish();
+  EXPECT_EQ(Flight(output).records(), 1);
+  EXPECT_EQ(std::filesystem::status(output).permissions(),
+            std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+}
+
+TEST_F(FlightWriterTest, ASymbolicLinkIsFollowed) {
+  std::filesystem::create_symlink("real.nc", output);
+  FlightWriter writer(output, NewFlight{midnight}, {});
+  writer.write_time_stamps({0, 1}, &midnight);
+  writer.finish();
+  EXPECT_TRUE(std::filesystem::is_symlink(output));
+  EXPECT_EQ(Flight(directory / "real.nc").records(), 1);
+}
+
+TEST_F(FlightWriterTest, WhatIsNotFinishedIsHiddenBesideTheOutputAndGoesAtASignal) {
+  for (const FileKind kind : {FileKind::classic, FileKind::netcdf4}) {
+    std::ofstream(output) << "old";
+    NewFlight flight{midnight};
+    flight.kind = kind;
+    FlightWriter first(output, flight, {}), second(output, flight, {});
+    EXPECT_EQ(directory.entries(), 3) << "each has its own";
+    for (const auto& entry : std::filesystem::directory_iterator(directory.path()))
+      EXPECT_THAT(entry.path().filename().string(), MatchesRegex("(\\.out\\.nc\\.......\\.part|out\\.nc)"));
+    pcor::remove_unfinished_files();
+    EXPECT_EQ(directory.entries(), 1);
+    EXPECT_EQ(contents(output), "old");
+  }
+}
+
+TEST_F(FlightWriterTest, AFinishedFileStaysAtASignal) {
+  FlightWriter writer(output, NewFlight{midnight}, {});
+  writer.write_time_stamps({0, 1}, &midnight);
+  writer.finish();
+  pcor::remove_unfinished_files();
+  EXPECT_EQ(Flight(output).records(), 1);
+}
+
+TEST_F(FlightWriterTest, MoreUnfinishedFilesThanAreListedAreStillWritten) {
+  std::vector<std::unique_ptr<pcor::ReplacementFile>> files;
+  for (int i = 0; i < 20; ++i)
+    files.push_back(std::make_unique<pcor::ReplacementFile>(directory / std::to_string(i)));
+  for (const auto& file : files) file->commit();
+  EXPECT_EQ(directory.entries(), 20);
+  files.clear();
+  EXPECT_EQ(directory.entries(), 20);
+}
+
+TEST_F(FlightWriterTest, ANewFileHasThePermissionsOfAnyNewFile) {
+  pcor::ReplacementFile file(output);
+  file.commit();
+  const auto other = directory / "other";
+  std::ofstream(other).flush();
+  EXPECT_EQ(std::filesystem::status(output).permissions(), std::filesystem::status(other).permissions());
+}
+
+TEST_F(FlightWriterTest, AnOutputsNameMayBeAsLongAsTheDiskAllows) {
+  const auto longest = directory / std::string(255, 'n');
+  pcor::ReplacementFile(longest).commit();
+  EXPECT_TRUE(std::filesystem::exists(longest));
+}
+
+TEST_F(FlightWriterTest, TheInputIsNeverTheOutputNotEvenByALink) {
+  make_input_of(0);
+  const std::string before = contents(input);
+  const auto hard = directory / "hard.nc", soft = directory / "soft.nc";
+  std::filesystem::create_hard_link(input, hard);
+  std::filesystem::create_symlink(input, soft);
+  const Flight flight(input);
+  for (const auto& same : {input, hard, soft, directory / "." / "in.nc"})
+    EXPECT_THAT(message_of<Error>([&] { FlightWriter(same, flight, {}); }),
+                AllOf(HasSubstr(same.string()), HasSubstr("is the input itself")));
+  EXPECT_EQ(contents(input), before);
+  EXPECT_EQ(directory.entries(), 3);
+}
+
+// Outputs that cannot be written
+
+TEST_F(FlightWriterTest, AnOutputThatIsNoFileIsRefused) {
+  EXPECT_THAT(refusal(directory.path()), HasSubstr("is a directory"));
+  EXPECT_THAT(refusal("/dev/full"), HasSubstr("is not a regular file"));
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+TEST_F(FlightWriterTest, ADirectoryThatIsAbsentIsNamed) {
+  EXPECT_THAT(refusal(directory / "absent" / "out.nc"),
+              HasSubstr("there is no directory " + (directory / "absent").string()));
+}
+
+TEST_F(FlightWriterTest, ADirectoryThatCannotBeWrittenIsRefused) {
+  EXPECT_THAT(refusal("/proc/out.nc"), HasSubstr("/proc/out.nc"));
+  EXPECT_THAT(message_of<Error>([] { FlightWriter("", NewFlight{midnight}, {}); }), HasSubstr("has no name"));
+}
+
+TEST_F(FlightWriterTest, AFileThatMayNotGrowLeavesNothing) {
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  std::ofstream(output) << "old";
+  for (const FileKind kind : {FileKind::classic, FileKind::netcdf4}) {
+    rlimit small = before;
+    small.rlim_cur = 200000;
+    setrlimit(RLIMIT_FSIZE, &small);
+    const std::string message = write_much(output, kind);
+    setrlimit(RLIMIT_FSIZE, &before);
+    EXPECT_THAT(message, AllOf(HasSubstr(output.string()), HasSubstr("cannot be"),
+                               HasSubstr("check the space"), Not(HasSubstr("\n"))));
+    EXPECT_EQ(contents(output), "old");
+    EXPECT_EQ(directory.entries(), 1);
+  }
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(write_much(output, FileKind::netcdf4), "no error") << "and the next file is whole";
+}
+
+TEST_F(FlightWriterTest, AFullDiskIsSaidToBeFull) {
+  const auto disk = directory / "disk";
+  std::filesystem::create_directory(disk);
+  if (mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=300k") != 0)
+    GTEST_SKIP() << "only root can mount the small disk that this test fills";
+  for (const FileKind kind : {FileKind::classic, FileKind::netcdf4}) {
+    const std::string message = write_much(disk / "out.nc", kind);
+    EXPECT_THAT(message, AllOf(HasSubstr((disk / "out.nc").string()), Not(HasSubstr("\n"))));
+    EXPECT_TRUE(message.find("disk is full") != std::string::npos ||
+                message.find("No space left") != std::string::npos)
+        << message;
+    EXPECT_TRUE(std::filesystem::is_empty(disk));
+  }
+  umount2(disk.c_str(), MNT_DETACH);  // HDF5 keeps a file open that it could not complete
+}
+
+// The real thing
+
+TEST_F(FlightWriterTest, TheReferenceFlightIsCopiedWhole) {
+  const char* flights = std::getenv("PCOR_FLIGHTS");
+  if (flights == nullptr) GTEST_SKIP() << "set PCOR_FLIGHTS to the directory of the reference flights";
+  const Flight flight(std::filesystem::path(flights) / "GOTEX-rf06-C130-2004.nc");
+  FlightWriter writer(output, flight, {});
+  for (const std::string& name : flight.variables()) writer.copy(name);
+  writer.finish();
+  const Written before(flight.path()), after(output);
+  for (const std::string& name : flight.variables())
+    EXPECT_THAT(after.values(name), Pointwise(NanSensitiveDoubleEq(), before.values(name))) << name;
+  EXPECT_EQ(Flight(output).time().first, flight.time().first);
+  EXPECT_EQ(Flight(output).time().last, flight.time().last);
+  EXPECT_EQ(Flight(output).kind(), FileKind::classic);
+}

@@ -1,0 +1,302 @@
+#include <gmock/gmock.h>
+#include <pcor/roles/with_effects.hpp>
+#include <pcor/words/error.hpp>
+
+#include <cmath>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "improve/improve_loop.hpp"
+#include "support/made_samples.hpp"
+
+using pcor::Diagnosis;
+using pcor::ImproveLoop;
+using pcor::Improvement;
+using pcor::ImproveStep;
+using pcor::ModelFile;
+using pcor::RefitResult;
+using pcor::Verdict;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+namespace {
+
+/// A loop whose rungs are made up: fit number i leaves the held-out rms number i, and after it comes
+/// diagnosis number i.
+class Improve : public testing::Test {
+ protected:
+  Improve() {
+    loop_.has_holdout = true;
+    loop_.flights = "one.nc";
+    loop_.refit = [this](const ModelFile& model) { return fitted(model); };
+    loop_.diagnose = [this](const ModelFile&) {
+      const Diagnosis next = diagnoses_.front();
+      if (diagnoses_.size() > 1) diagnoses_.pop_front();
+      return next;
+    };
+    loop_.add = [](const ModelFile& model, const pcor::ModelEffect& effect) {
+      return pcor::with_effects(model, {effect});
+    };
+  }
+
+  RefitResult fitted(const ModelFile& model) {
+    RefitResult fit;
+    fit.model = model;
+    fit.rms = rms_.front() - 0.01;
+    fit.noise_rms = rms_.front() / 2.0;
+    for (const pcor::ModelEffect& effect : model.model.effects) {
+      for (const std::string& name : parameter_names(effect)) {
+        pcor::FittedParameter parameter;
+        parameter.name = effect.id + "." + name;
+        parameter.unit = "s";
+        parameter.value = 0.25;
+        parameter.standard_error = 0.02;
+        parameter.fitted = true;
+        fit.parameters.push_back(parameter);
+      }
+    }
+    pcor::FlightFit training;
+    training.after.samples = 1000;
+    training.after.rms = 99.0;
+    pcor::FlightFit held = training;
+    held.holdout = true;
+    held.after.rms = rms_.front();
+    fit.flights = {training, held};
+    if (rms_.size() > 1) rms_.pop_front();
+    return fit;
+  }
+
+  Improvement run() { return loop_.run(made::model({"static-constant", "static-qp"})); }
+
+  ImproveLoop loop_;
+  std::deque<double> rms_{1.0};
+  std::deque<Diagnosis> diagnoses_;
+};
+
+pcor::Finding finding(const std::string& id) {
+  pcor::Finding finding;
+  finding.effect = pcor::neutral_effect(id);
+  finding.title = "title of " + id;
+  return finding;
+}
+
+Diagnosis diagnosis(Verdict verdict, const std::vector<std::string>& findings = {}) {
+  Diagnosis result;
+  result.verdict = verdict;
+  for (const std::string& id : findings) result.findings.push_back(finding(id));
+  return result;
+}
+
+Diagnosis with_trace(Diagnosis result, const std::string& variable) {
+  pcor::TracedVariable traced;
+  traced.name = variable;
+  traced.slope = -0.03;
+  traced.formula = "k * (" + variable + " - 48)";
+  result.unexplained.significant = true;
+  result.unexplained.rms = 0.4;
+  result.unexplained.regime = "climb";
+  result.unexplained.variables.push_back(traced);
+  return result;
+}
+
+std::vector<std::string> added(const Improvement& improvement) {
+  std::vector<std::string> names;
+  for (const ImproveStep& step : improvement.steps) names.push_back(step.added);
+  return names;
+}
+
+std::vector<std::string> effects(const ModelFile& model) {
+  std::vector<std::string> ids;
+  for (const pcor::ModelEffect& effect : model.model.effects) ids.push_back(effect.id);
+  return ids;
+}
+
+}  // namespace
+
+TEST_F(Improve, StopsWhereNothingIsMissing) {
+  diagnoses_ = {diagnosis(Verdict::silent)};
+  const Improvement improvement = run();
+  EXPECT_THAT(added(improvement), ElementsAre(""));
+  EXPECT_THAT(improvement.why_stopped, HasSubstr("nothing is missing"));
+  EXPECT_EQ(improvement.steps[0].terms, 2U);
+  EXPECT_DOUBLE_EQ(improvement.steps[0].rms_train, 0.99);
+  EXPECT_DOUBLE_EQ(improvement.steps[0].rms_holdout, 1.0);
+  EXPECT_TRUE(improvement.holdout_is_flights);
+}
+
+TEST_F(Improve, AddsWhatIsIdentified) {
+  diagnoses_ = {diagnosis(Verdict::identified, {"static-lag"}), diagnosis(Verdict::silent)};
+  rms_ = {1.0, 0.5};
+  const Improvement improvement = run();
+  EXPECT_THAT(added(improvement), ElementsAre("", "static-lag"));
+  EXPECT_THAT(effects(improvement.model), ElementsAre("static-constant", "static-qp", "static-lag"));
+  EXPECT_THAT(improvement.steps[1].title, "title of static-lag");
+  EXPECT_THAT(improvement.steps[1].learnt, HasSubstr("tau = 0.25 +- 0.02 s"));
+  EXPECT_EQ(improvement.steps[1].terms, 3U);
+  EXPECT_EQ(improvement.steps[1].diagnosis.verdict, Verdict::silent);
+  EXPECT_THAT(improvement.why_stopped, HasSubstr("nothing is missing"));
+}
+
+TEST_F(Improve, AddsEveryFindingOnARungOfItsOwn) {
+  diagnoses_ = {diagnosis(Verdict::identified, {"static-lag", "static-mach"}),
+                diagnosis(Verdict::identified, {"static-mach2"}), diagnosis(Verdict::silent)};
+  rms_ = {1.0, 0.7, 0.5};
+  EXPECT_THAT(added(run()), ElementsAre("", "static-lag", "static-mach"));
+}
+
+TEST_F(Improve, NamesWhatTheFlightsCannotTellApart) {
+  Diagnosis ambiguous = diagnosis(Verdict::ambiguous, {"static-lag"});
+  ambiguous.findings[0].aliases = {{}, {}};
+  ambiguous.findings[0].aliases[0].effect = "temp-lag";
+  ambiguous.findings[0].aliases[1].effect = "total-lag";
+  ambiguous.findings[0].advice.sentence = "fly two climbs";
+  diagnoses_ = {ambiguous, diagnosis(Verdict::silent)};
+  rms_ = {1.0, 0.5};
+  const Improvement improvement = run();
+  EXPECT_THAT(improvement.steps[1].aliases, ElementsAre("temp-lag", "total-lag"));
+  EXPECT_THAT(improvement.steps[1].learnt,
+              HasSubstr("cannot tell it from temp-lag, total-lag: fly two climbs"));
+}
+
+TEST_F(Improve, ToleratesTheScatterOfHeldOutFlights) {
+  diagnoses_ = {diagnosis(Verdict::identified, {"static-lag"}), diagnosis(Verdict::silent)};
+  rms_ = {1.0, 1.0009};
+  EXPECT_THAT(added(run()), ElementsAre("", "static-lag"));
+}
+
+TEST_F(Improve, DropsWhatHeldOutFlightsContradict) {
+  diagnoses_ = {diagnosis(Verdict::identified, {"static-lag", "static-mach"})};
+  rms_ = {1.0, 1.0051};  // the limit is 1.005
+  const Improvement improvement = run();
+  EXPECT_THAT(added(improvement), ElementsAre(""));
+  EXPECT_THAT(effects(improvement.model), ElementsAre("static-constant", "static-qp"));
+  EXPECT_THAT(improvement.why_stopped, HasSubstr("static-lag was tried and dropped"));
+  EXPECT_DOUBLE_EQ(improvement.fit.flights[1].after.rms, 1.0);
+}
+
+TEST_F(Improve, AddsNothingOfWhichTheWrongChoiceDoesHarm) {
+  Diagnosis unclear = diagnosis(Verdict::ambiguous, {"static-beta-odd"});
+  unclear.noise_rms = 0.3;
+  pcor::Alias alias;
+  alias.effect = "lams-azimuth";
+  unclear.findings[0].aliases = {alias};
+  unclear.findings[0].static_risk = 0.2;  // hPa, and 0.105 may be
+  unclear.findings[0].advice.sentence = "fly a yaw manoeuvre";
+  diagnoses_ = {unclear};
+  const Improvement improvement = run();
+  EXPECT_THAT(added(improvement), ElementsAre(""));
+  EXPECT_THAT(improvement.why_stopped, HasSubstr("cannot tell static-beta-odd from lams-azimuth"));
+  EXPECT_THAT(improvement.why_stopped, HasSubstr("fly a yaw manoeuvre"));
+  diagnoses_ = {unclear, diagnosis(Verdict::silent, {})};
+  diagnoses_.front().findings[0].static_risk = 0.1;
+  EXPECT_THAT(added(run()), ElementsAre("", "static-beta-odd"));
+}
+
+TEST_F(Improve, DropsWhatCannotBeFitted) {
+  diagnoses_ = {diagnosis(Verdict::identified, {"static-lag"})};
+  loop_.refit = [this](const ModelFile& model) {
+    if (model.model.effects.size() > 2) throw pcor::Error("tau and a0 cannot all be free on these flights");
+    return fitted(model);
+  };
+  const Improvement improvement = run();
+  EXPECT_THAT(added(improvement), ElementsAre(""));
+  EXPECT_THAT(improvement.why_stopped, HasSubstr("static-lag was tried, but cannot be fitted: tau and a0"));
+}
+
+TEST_F(Improve, PassesOnThatTheModelItselfCannotBeFitted) {
+  loop_.refit = [](const ModelFile&) -> RefitResult { throw pcor::Error("no sample is left"); };
+  EXPECT_THROW(run(), pcor::Error);
+}
+
+TEST_F(Improve, DoesNotTakeTheNameOfAPartialFindingForTheCause) {
+  diagnoses_ = {diagnosis(Verdict::partial, {"static-lag"}), diagnosis(Verdict::silent)};
+  rms_ = {1.0, 0.9};
+  const Improvement improvement = run();
+  EXPECT_THAT(added(improvement), ElementsAre("", "static-lag"));
+  EXPECT_THAT(improvement.steps[1].learnt, HasSubstr("not to be taken for the cause"));
+}
+
+TEST_F(Improve, TracesWhereAPartialFindingDoesNotPay) {
+  diagnoses_ = {with_trace(diagnosis(Verdict::partial, {"static-lag"}), "ENGTRQ"),
+                diagnosis(Verdict::silent)};
+  rms_ = {1.0, 0.995, 0.6};
+  EXPECT_THAT(added(run()), ElementsAre("", "traced-engtrq"));
+}
+
+TEST_F(Improve, AddsAFormulaOfATracedVariable) {
+  diagnoses_ = {with_trace(diagnosis(Verdict::unexplained), "ENG_Trq2"), diagnosis(Verdict::silent)};
+  rms_ = {1.0, 0.9};
+  const Improvement improvement = run();
+  EXPECT_THAT(added(improvement), ElementsAre("", "traced-eng-trq2"));
+  const pcor::ModelEffect& effect = improvement.model.model.effects.back();
+  EXPECT_EQ(effect.formula, "k * (ENG_Trq2 - 48)");
+  EXPECT_THAT(effect.parameters, ElementsAre(-0.03));
+  EXPECT_THAT(effect.source, HasSubstr("one.nc"));
+  EXPECT_EQ(write_model(pcor::parse_model(write_model(improvement.model), "it")),
+            write_model(improvement.model));
+  EXPECT_THAT(improvement.steps[1].learnt, HasSubstr("still to be found"));
+}
+
+TEST_F(Improve, ATracedVariableMustPay) {
+  diagnoses_ = {with_trace(diagnosis(Verdict::unexplained), "ENGTRQ")};
+  rms_ = {1.0, 0.991};
+  const Improvement improvement = run();
+  EXPECT_THAT(added(improvement), ElementsAre(""));
+  EXPECT_THAT(improvement.why_stopped, HasSubstr("traced-engtrq was tried and dropped"));
+}
+
+TEST_F(Improve, NeverAddsAnEffectTwice) {
+  diagnoses_ = {with_trace(diagnosis(Verdict::unexplained), "ENGTRQ")};
+  rms_ = {1.0, 0.9, 0.8, 0.7};
+  const Improvement improvement = run();
+  EXPECT_THAT(added(improvement), ElementsAre("", "traced-engtrq"));
+  EXPECT_THAT(improvement.why_stopped, HasSubstr("goes with ENGTRQ"));
+  diagnoses_ = {diagnosis(Verdict::identified, {"static-qp"})};
+  EXPECT_THAT(run().why_stopped, HasSubstr("in the model already"));
+}
+
+TEST_F(Improve, DoesNotTraceWhereThatIsNotWanted) {
+  diagnoses_ = {with_trace(diagnosis(Verdict::unexplained), "ENGTRQ")};
+  loop_.trace_variables = false;
+  const Improvement improvement = run();
+  EXPECT_THAT(added(improvement), ElementsAre(""));
+  EXPECT_THAT(improvement.why_stopped, HasSubstr("most of it in climb; it goes with ENGTRQ"));
+}
+
+TEST_F(Improve, SaysThatNothingGoesWithWhatIsLeft) {
+  Diagnosis unexplained = with_trace(diagnosis(Verdict::unexplained), "ENGTRQ");
+  unexplained.unexplained.variables.clear();
+  diagnoses_ = {unexplained};
+  EXPECT_THAT(run().why_stopped, HasSubstr("no variable of the files goes with"));
+}
+
+TEST_F(Improve, StopsAfterAsManyStepsAsAreAllowed) {
+  diagnoses_ = {diagnosis(Verdict::identified, {"static-lag", "static-mach", "static-mach2"})};
+  rms_ = {1.0, 0.9, 0.8, 0.7};
+  loop_.most_steps = 2;
+  const Improvement improvement = run();
+  EXPECT_THAT(added(improvement), ElementsAre("", "static-lag", "static-mach"));
+  EXPECT_THAT(improvement.why_stopped, HasSubstr("as many as were allowed"));
+}
+
+TEST_F(Improve, HasOneNoiseFloorForAllRungs) {
+  diagnoses_ = {diagnosis(Verdict::identified, {"static-lag"}), diagnosis(Verdict::silent)};
+  rms_ = {1.0, 0.5};
+  for (const ImproveStep& step : run().steps) EXPECT_DOUBLE_EQ(step.noise_rms, 0.25);
+}
+
+TEST_F(Improve, WithoutHeldOutFlightsPartsInTurnCount) {
+  loop_.has_holdout = false;
+  Diagnosis first = diagnosis(Verdict::identified, {"static-lag"});
+  Diagnosis second = diagnosis(Verdict::silent);
+  first.residual_rms_held_out = 0.8;
+  second.residual_rms_held_out = 0.9;
+  diagnoses_ = {first, second};
+  const Improvement improvement = run();
+  EXPECT_THAT(added(improvement), ElementsAre(""));
+  EXPECT_DOUBLE_EQ(improvement.steps[0].rms_holdout, 0.8);
+  EXPECT_FALSE(improvement.holdout_is_flights);
+  EXPECT_THAT(improvement.why_stopped, HasSubstr("static-lag was tried and dropped"));
+}

@@ -1,0 +1,182 @@
+#include <gmock/gmock.h>
+#include <pcor/numerics/noise.hpp>
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <vector>
+
+// Series with known autocovariance.
+
+using pcor::Autoregression;
+using pcor::NoiseFloor;
+using pcor::Stretch;
+
+namespace {
+
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<double> seconds(std::size_t count) {
+  std::vector<double> time(count);
+  std::iota(time.begin(), time.end(), 0.0);
+  return time;
+}
+
+/// Noise of standard deviation 1 whose correlation over k samples is memory^k.
+std::vector<double> first_order(std::size_t count, double memory, unsigned seed) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal;
+  std::vector<double> values(count);
+  double value = normal(engine);
+  for (double& each : values) {
+    each = value;
+    value = memory * value + std::sqrt(1.0 - memory * memory) * normal(engine);
+  }
+  return values;
+}
+
+std::vector<Stretch> whole(const std::vector<double>& values) {
+  return pcor::stretches_of(values, seconds(values.size()), 1.0);
+}
+
+}  // namespace
+
+TEST(Stretches, EndAtMissingValuesAndGaps) {
+  const std::vector<double> values{1, 2, missing, 3, 4, 5, missing, missing, 6};
+  std::vector<double> time = seconds(values.size());
+  time[5] += 10;
+  for (std::size_t i = 6; i < time.size(); ++i) time[i] += 10;
+  const std::vector<Stretch> stretches = pcor::stretches_of(values, time, 1.0);
+  ASSERT_EQ(stretches.size(), 4U);
+  EXPECT_EQ(stretches[1].first, 3U);
+  EXPECT_EQ(stretches[1].count, 2U);
+  EXPECT_EQ(stretches[2].first, 5U);
+  EXPECT_EQ(stretches[3].count, 1U);
+}
+
+TEST(RobustDeviation, IsThatOfTheBulk) {
+  std::vector<double> values = first_order(20000, 0.0, 1);
+  for (std::size_t i = 0; i < values.size(); i += 5) values[i] = 1000.0;
+  // A fifth of outliers moves the median of |x| to the 0.625 quantile of the rest: 1.316 instead of 1.
+  EXPECT_NEAR(pcor::robust_deviation(values), 1.316, 0.03);
+  EXPECT_TRUE(std::isnan(pcor::robust_deviation({missing, missing})));
+}
+
+// Over 20,000 samples of white noise a robust level errs by about 1.6/sqrt(40,000) = 0.8 %; 4 % is five
+// times that. With memory there are fewer independent samples.
+TEST(NoiseFloor, IsThatOfWhiteNoise) {
+  const std::vector<double> values = first_order(20000, 0.0, 2);
+  const NoiseFloor floor = pcor::noise_floor(values, whole(values), 1.0);
+  EXPECT_NEAR(floor.rms, 1.0, 0.04);
+  EXPECT_NEAR(floor.samples_per_independent, 1.0, 0.15);
+}
+
+TEST(NoiseFloor, KnowsTheMemoryOfTheNoise) {
+  for (const double memory : {0.5, 0.8}) {
+    const std::vector<double> values = first_order(50000, memory, 3);
+    const NoiseFloor floor = pcor::noise_floor(values, whole(values), 1.0);
+    const double expected = (1.0 + memory) / (1.0 - memory);
+    EXPECT_NEAR(floor.rms, 1.0, 0.08) << memory;
+    EXPECT_NEAR(floor.samples_per_independent, expected, 0.25 * expected) << memory;
+  }
+}
+
+TEST(NoiseFloor, DoesNotCountWhatChangesSlowly) {
+  std::vector<double> values = first_order(7200, 0.5, 4);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] += 5.0 * std::sin(2.0 * M_PI * static_cast<double>(i) / 1200.0);
+  // Over 16 s the sine changes by at most 0.42, which adds 2 % to a difference of variance 2.
+  EXPECT_NEAR(pcor::noise_floor(values, whole(values), 1.0).rms, 1.0, 0.1);
+}
+
+TEST(NoiseFloor, DoesNotCountOutliers) {
+  std::vector<double> values = first_order(7200, 0.5, 5);
+  for (std::size_t i = 0; i < values.size(); i += 20) values[i] += 30.0;
+  // A tenth of the differences has an outlier: the median of |x| moves to the 0.556 quantile, 1.13 times.
+  EXPECT_NEAR(pcor::noise_floor(values, whole(values), 1.0).rms, 1.13, 0.1);
+}
+
+TEST(NoiseFloor, FollowsALevelThatChanges) {
+  std::vector<double> values = first_order(7200, 0.3, 6);
+  for (std::size_t i = 3600; i < values.size(); ++i) values[i] *= 4.0;
+  const NoiseFloor floor = pcor::noise_floor(values, whole(values), 1.0);
+  EXPECT_NEAR(floor.rms, std::sqrt(0.5 * (1.0 + 16.0)), 0.25);
+  // Brought by 15 % towards the whole, which lies between the two levels: 1 to 4^0.15 = 1.23.
+  EXPECT_NEAR(std::accumulate(floor.local_rms.begin(), floor.local_rms.begin() + 3600, 0.0) / 3600.0, 1.12,
+              0.15);
+  EXPECT_NEAR(std::accumulate(floor.local_rms.begin() + 3600, floor.local_rms.end(), 0.0) / 3600.0, 3.6, 0.5);
+}
+
+TEST(NoiseFloor, IsKnownFromShortStretches) {
+  std::vector<double> values = first_order(7200, 0.0, 12);
+  for (std::size_t i = 0; i < values.size(); i += 7) values[i] = missing;
+  EXPECT_NEAR(pcor::noise_floor(values, whole(values), 1.0).rms, 1.0, 0.05);
+}
+
+TEST(NoiseFloor, IsNotKnownFromFewSamples) {
+  const std::vector<double> values = first_order(20, 0.0, 7);
+  EXPECT_TRUE(std::isnan(pcor::noise_floor(values, whole(values), 1.0).rms));
+}
+
+TEST(Autoregression, FindsAProcessOfSecondOrder) {
+  // Poles 0.5 +- 0.5i: stationary, and with a correlation that turns negative.
+  std::mt19937_64 engine(8);
+  std::normal_distribution<double> normal;
+  std::vector<double> values(20000, 0.0);
+  for (std::size_t i = 2; i < values.size(); ++i)
+    values[i] = values[i - 1] - 0.5 * values[i - 2] + 0.3 * normal(engine);
+  const Autoregression found = pcor::autoregression(values, whole(values));
+  // The standard error of each coefficient is sqrt((1 - 0.25)/20000) = 0.006; higher orders may join in by
+  // chance.
+  ASSERT_GE(found.coefficients.size(), 2U);
+  EXPECT_NEAR(found.coefficients[0], 1.0, 0.03);
+  EXPECT_NEAR(found.coefficients[1], -0.5, 0.03);
+  EXPECT_NEAR(found.innovation_rms, 0.3, 0.01);
+}
+
+TEST(Autoregression, IsTheSameOverStretches) {
+  std::vector<double> values = first_order(20000, 0.7, 9);
+  for (std::size_t i = 100; i < values.size(); i += 101) values[i] = missing;
+  const Autoregression found = pcor::autoregression(values, whole(values));
+  ASSERT_GE(found.coefficients.size(), 1U);
+  EXPECT_NEAR(found.coefficients[0], 0.7, 0.03);
+  EXPECT_NEAR(found.samples_per_independent(1.0), 1.7 / 0.3, 1.0);
+}
+
+TEST(Autoregression, OfNothingIsNothing) {
+  EXPECT_TRUE(pcor::autoregression({}, {}).coefficients.empty());
+  const std::vector<double> zeros(100, 0.0);
+  EXPECT_TRUE(pcor::autoregression(zeros, whole(zeros)).coefficients.empty());
+}
+
+TEST(CovarianceOfSums, IsTheDoubleSumOverTheAutocovariance) {
+  // An independent computation: the autocovariance memory^|t-s| summed over all pairs.
+  const double memory = 0.8;
+  Autoregression noise;
+  noise.coefficients = {memory};
+  noise.innovation_rms = std::sqrt(1.0 - memory * memory);
+  std::vector<double> u(60);
+  std::vector<double> v(60);
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    u[i] = i % 7 == 3 ? 0.0 : 1.0;  // some samples are missing
+    v[i] = u[i] * std::sin(0.3 * static_cast<double>(i));
+  }
+  const std::vector<double> matrix =
+      pcor::covariance_of_sums(noise, {u.data(), v.data()}, {{0, 25}, {25, 35}});
+  const auto sum = [&](const std::vector<double>& a, const std::vector<double>& b) {
+    double total = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      for (std::size_t j = 0; j < b.size(); ++j) {
+        if ((i < 25) != (j < 25)) continue;
+        total += a[i] * b[j] * std::pow(memory, std::abs(static_cast<double>(i) - static_cast<double>(j)));
+      }
+    }
+    return total;
+  };
+  // The filter is cut off after 300 samples, where 0.8^300 is nothing: rounding alone is left.
+  EXPECT_NEAR(matrix[0], sum(u, u), 1e-10 * sum(u, u));
+  EXPECT_NEAR(matrix[1], sum(u, v), 1e-10 * sum(u, u));
+  EXPECT_NEAR(matrix[3], sum(v, v), 1e-10 * sum(u, u));
+  EXPECT_EQ(matrix[1], matrix[2]);
+}

@@ -1,0 +1,497 @@
+#include <pcor/process/process.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <netcdf.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <pcor/physics/lams.hpp>
+#include <pcor/realtime/low_pass.hpp>
+#include <pcor/words/error.hpp>
+#include "support/netcdf_file.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace pcor {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+// Equation 18 of the memo, in a C-130 with a laser.
+ModelFile lams_model() {
+  return parse_model(R"(
+format = "pcor-model/1"
+name = "test"
+[variables]
+static_pressure = "PSFD"
+dynamic_pressure = "QCF"
+recovery_temperature = "TTRR"
+vapor_pressure = "EDPC"
+radome_dynamic_pressure = "QCR"
+attack_differential_pressure = "ADIFR"
+lams_airspeed = "VLAMS"
+[lams]
+elevation = 1.5
+[radome]
+attack = [5.776, 15.031]
+[temperature]
+recovery_factor = 0.95
+[[effect]]
+id = "static-constant"
+parameters = { a0 = 0.004127875 }
+[[effect]]
+id = "static-alpha"
+parameters = { a1 = 0.021279816 }
+[[effect]]
+id = "static-qp"
+parameters = { a2 = 0.030849643 }
+)",
+                     "test.toml");
+}
+
+// What the instruments read in air that moves at `airspeed` with the static defect `defect`.
+struct Reading {
+  double static_pressure, dynamic_pressure, attack_pressure, recovery_temperature, beam_speed;
+};
+
+constexpr double vapor_pressure = 4.0;  // hPa
+constexpr double attack_ratio = -0.2;
+
+Reading reading(double airspeed, double defect) {
+  const double p = 700.0;
+  const double temperature = 270.0;
+  const MoistAir<double> air = moist_air(vapor_pressure / p);
+  const double q = dynamic_pressure_from_airspeed(p, airspeed, temperature, air);
+  const double mach = airspeed / speed_of_sound(temperature, air);
+  const double attack = 5.776 + 15.031 * attack_ratio;
+  return {p - defect, q + defect, attack_ratio * (q + defect),
+          recovery_temperature(temperature, mach, 0.95, air), airspeed * beam_cosine(1.5, 0.0, attack, 0.0)};
+}
+
+// Writes a flight of so many samples in which the true static pressure is 700 hPa and delta-p is 2 hPa.
+void write_flight(const std::filesystem::path& path, std::size_t records, int rate, double start = 50000.0) {
+  const std::size_t samples = records * static_cast<std::size_t>(rate);
+  std::vector<double> p, q, attack, temperature, beam;
+  for (std::size_t i = 0; i < samples; ++i) {
+    const Reading r = reading(110.0 + 20.0 * std::sin(0.001 * static_cast<double>(i)), 2.0);
+    p.push_back(r.static_pressure);
+    q.push_back(r.dynamic_pressure);
+    attack.push_back(r.attack_pressure);
+    temperature.push_back(r.recovery_temperature - 273.15);
+    beam.push_back(r.beam_speed);
+  }
+  test::NetcdfMaker maker(path);
+  maker.time(test::sequence(start, records));
+  maker.series("PSFD", "mbar", p, rate);
+  maker.series("QCF", "hPa", q, rate);
+  maker.series(
+      "QCR", "Pa",
+      [&] {
+        std::vector<double> pascal = q;
+        for (double& value : pascal) value *= 100.0;
+        return pascal;
+      }(),
+      rate);
+  maker.series("ADIFR", "mb", attack, rate);
+  maker.series("TTRR", "deg_C", temperature, rate);
+  maker.series("VLAMS", "M/s", beam, rate);
+  maker.series("EDPC", "hPa", std::vector<double>(records, vapor_pressure));
+}
+
+class Process : public testing::Test {
+ protected:
+  std::vector<double> read(const std::string& name, const std::string& unit) {
+    const Flight flight(output_);
+    std::vector<double> values(flight.records() * static_cast<std::size_t>(flight.variable(name).rate));
+    const UnitConversion conversion = unit.empty() ? UnitConversion() : flight.conversion(name, unit);
+    flight.read(name, {0, flight.records()}, conversion, values.data());
+    return values;
+  }
+
+  std::string attribute(const std::string& variable, const std::string& name) {
+    int file = 0, number = 0;
+    std::size_t length = 0;
+    EXPECT_EQ(nc_open(output_.c_str(), NC_NOWRITE, &file), NC_NOERR);
+    EXPECT_EQ(nc_inq_varid(file, variable.c_str(), &number), NC_NOERR);
+    EXPECT_EQ(nc_inq_attlen(file, number, name.c_str(), &length), NC_NOERR) << name;
+    std::string text(length, ' ');
+    EXPECT_EQ(nc_get_att_text(file, number, name.c_str(), text.data()), NC_NOERR);
+    nc_close(file);
+    return text;
+  }
+
+  test::TemporaryDirectory directory_;
+  std::filesystem::path input_ = directory_.path() / "in.nc";
+  std::filesystem::path output_ = directory_.path() / "out.nc";
+};
+
+// Values are stored as 32-bit floats: one part in 1.7e7, on each of a few inputs.
+TEST_F(Process, FindsTheAirBehindTheReadings) {
+  write_flight(input_, 200, 1);
+  ProcessOptions options;
+  options.correct_with = CorrectWith::lams;
+  process_flight(input_, lams_model(), output_, options);
+  EXPECT_THAT(read("PCOR_LAMS", "hPa"), testing::Each(testing::DoubleNear(2.0, 3e-4)));
+  EXPECT_THAT(read("PSXC", "hPa"), testing::Each(testing::DoubleNear(700.0, 3e-4)));
+  EXPECT_THAT(read("ATX", "K"), testing::Each(testing::DoubleNear(270.0, 1e-4)));
+  EXPECT_THAT(read("ATLAMS", "K"), testing::Each(testing::DoubleNear(270.0, 1e-3)));
+  EXPECT_THAT(read("TASX", "m/s")[0], testing::DoubleNear(110.0, 1e-4));
+  const std::vector<double> flags = read("PCORFLAG", "");
+  EXPECT_THAT(flags, testing::Each(static_cast<double>(Quality::corrected_with_lams)));
+}
+
+TEST_F(Process, KeepsTheTotalPressure) {
+  write_flight(input_, 100, 1);
+  process_flight(input_, lams_model(), output_);
+  const std::vector<double> p = read("PSXC", "hPa"), q = read("QCXC", "hPa");
+  const std::vector<double> measured_p = read("PSFD", "hPa"), measured_q = read("QCF", "hPa");
+  for (std::size_t i = 0; i < p.size(); ++i) EXPECT_NEAR(p[i] + q[i], measured_p[i] + measured_q[i], 2e-4);
+}
+
+TEST_F(Process, RunsHighRateFlightsAtTheirRate) {
+  write_flight(input_, 40, 25, 86390.0);  // ten seconds before midnight
+  const ProcessSummary summary = process_flight(input_, lams_model(), output_);
+  EXPECT_EQ(summary.rate, 25);
+  EXPECT_EQ(summary.samples, 1000U);
+  EXPECT_EQ(summary.corrected, 1000U);
+  EXPECT_EQ(summary.gaps, 0U);
+  EXPECT_EQ(Flight(output_).variable("PSXC").rate, 25);
+  EXPECT_THAT(read("PCOR_LAMS", "hPa"), testing::Each(testing::DoubleNear(2.0, 3e-4)));
+}
+
+// Blocks are an affair of the reader: a flight of many gives what its samples give one by one.
+TEST_F(Process, DoesNotDependOnBlocks) {
+  write_flight(input_, 2 * records_per_block + 17, 1);
+  process_flight(input_, lams_model(), output_);
+  EXPECT_THAT(read("PCOR_LAMS", "hPa"), testing::Each(testing::DoubleNear(2.0, 3e-4)));
+}
+
+TEST_F(Process, TellsItsProgress) {
+  write_flight(input_, records_per_block + 1, 1);
+  std::vector<std::size_t> done;
+  ProcessOptions options;
+  options.progress = [&done](std::size_t now, std::size_t) { done.push_back(now); };
+  process_flight(input_, lams_model(), output_, options);
+  EXPECT_THAT(done, testing::ElementsAre(records_per_block, records_per_block + 1));
+}
+
+TEST_F(Process, RenamesItsResults) {
+  write_flight(input_, 10, 1);
+  ModelFile model = lams_model();
+  model.output["PCOR"] = "PCORD";
+  ProcessOptions options;
+  options.suffix = "_NEW";
+  const ProcessSummary summary = process_flight(input_, model, output_, options);
+  EXPECT_THAT(summary.outputs, Contains("PCORD_NEW"));
+  EXPECT_THAT(summary.outputs, Contains("PSXC_NEW"));
+}
+
+TEST_F(Process, GoesOnWithoutALaser) {
+  write_flight(input_, 10, 1);
+  ModelFile model = lams_model();
+  model.variables[Quantity::lams_airspeed] = "BEAM1";
+  const ProcessSummary summary = process_flight(input_, model, output_);
+  EXPECT_THAT(summary.notes, Contains(HasSubstr("BEAM1 is not in this file")));
+  EXPECT_THAT(summary.outputs, testing::Not(Contains("PCOR_LAMS")));
+}
+
+TEST_F(Process, RefusesLamsWithoutALaser) {
+  write_flight(input_, 10, 1);
+  ModelFile model = lams_model();
+  model.variables.erase(Quantity::lams_airspeed);
+  ProcessOptions options;
+  options.correct_with = CorrectWith::lams;
+  EXPECT_THAT(test::message_of<Error>([&] { process_flight(input_, model, output_, options); }),
+              HasSubstr("lams_airspeed"));
+  EXPECT_FALSE(std::filesystem::exists(output_));
+}
+
+TEST_F(Process, TakesFormulasOfVariablesInTheFile) {
+  write_flight(input_, 10, 1);
+  ModelFile plain = lams_model();
+  process_flight(input_, plain, output_);
+  const std::vector<double> before = read("PCOR", "hPa");
+  ModelEffect thrust;
+  thrust.id = "thrust";
+  thrust.formula = "k * EDPC";
+  thrust.parameter_names = {"k"};
+  thrust.parameters = {0.25};
+  plain.model.effects.push_back(thrust);
+  process_flight(input_, plain, output_);
+  const std::vector<double> after = read("PCOR", "hPa");
+  for (std::size_t i = 0; i < after.size(); ++i) EXPECT_NEAR(after[i] - before[i], 1.0, 1e-6);
+}
+
+TEST_F(Process, CalibratesARecordedAmbientTemperature) {
+  {
+    test::NetcdfMaker maker(input_);
+    maker.time(test::sequence(100.0, 3));
+    maker.series("PSFD", "hPa", {700, 700, 700});
+    maker.series("QCF", "hPa", {60, 60, 60});
+    maker.series("ATX", "degC", {-20, 0, 10});
+  }
+  const auto model = [](const std::string& effect) {
+    return parse_model(R"(
+format = "pcor-model/1"
+[variables]
+static_pressure = "PSFD"
+dynamic_pressure = "QCF"
+ambient_temperature = "ATX"
+[humidity]
+moist = false
+)" + effect,
+                       "calibrated.toml");
+  };
+  const ModelFile plain = model(""), calibrated = model(R"(
+[[effect]]
+id = "temp-calibration"
+parameters = { a0 = 0.5, a1 = 0.01, a2 = 0.0005 }
+)");
+  EXPECT_THAT(process_flight(input_, plain, output_).outputs, testing::Not(Contains("ATX")));
+  const double airspeed = read("TASX", "m/s")[0];
+  EXPECT_THAT(test::message_of<Error>([&] { process_flight(input_, calibrated, output_); }),
+              testing::AllOf(HasSubstr("variable ATX"), HasSubstr("--suffix")));
+  ProcessOptions options;
+  options.suffix = "_NEW";
+  EXPECT_THAT(process_flight(input_, calibrated, output_, options).outputs, Contains("ATX_NEW"));
+  // 0.5 - 0.2 + 0.2, 0.5 and 0.5 + 0.1 + 0.05; 32-bit floats of some 10 degC.
+  EXPECT_THAT(read("ATX_NEW", "degC"),
+              testing::Pointwise(testing::DoubleNear(2e-6), std::vector<double>{-19.5, 0.5, 10.65}));
+  // At the same Mach number the airspeed goes as the root of the temperature.
+  EXPECT_NEAR(read("TASX_NEW", "m/s")[0] / airspeed, std::sqrt(253.65 / 253.15), 2e-7);
+}
+
+/// A flight of `lams_model` whose thermometer is at rest and whose laser airspeed swings with some period.
+class FilteredTemperature : public Process {
+ protected:
+  /// The samples `missing` have no laser airspeed; `time` holds one second for each record.
+  void write_swinging(const std::vector<double>& time, int rate, double period,
+                      const std::vector<std::size_t>& missing = {}) {
+    const std::size_t samples = time.size() * static_cast<std::size_t>(rate);
+    const Reading r = reading(120.0, 2.0);
+    std::vector<double> beam;
+    for (std::size_t i = 0; i < samples; ++i) {
+      const double seconds = static_cast<double>(i) / rate;
+      beam.push_back(r.beam_speed * (1.0 + 0.005 * std::sin(2.0 * 3.14159265358979 * seconds / period)));
+    }
+    for (const std::size_t gone : missing) beam[gone] = std::nan("");
+    test::NetcdfMaker maker(input_);
+    maker.time(time);
+    const auto constant = [&](double value) { return std::vector<double>(samples, value); };
+    maker.series("PSFD", "hPa", constant(r.static_pressure), rate);
+    maker.series("QCF", "hPa", constant(r.dynamic_pressure), rate);
+    maker.series("QCR", "hPa", constant(r.dynamic_pressure), rate);
+    maker.series("ADIFR", "hPa", constant(r.attack_pressure), rate);
+    maker.series("TTRR", "K", constant(r.recovery_temperature), rate);
+    maker.series("VLAMS", "m/s", beam, rate);
+    maker.series("EDPC", "hPa", std::vector<double>(time.size(), vapor_pressure));
+  }
+
+  std::vector<double> difference() {
+    const std::vector<double> filtered = read("ATLAMSF", "K"), unfiltered = read("ATLAMS", "K");
+    std::vector<double> difference;
+    for (std::size_t i = 0; i < filtered.size(); ++i) difference.push_back(filtered[i] - unfiltered[i]);
+    return difference;
+  }
+};
+
+// The swing is 2.7 K; the filter leaves 0.5 % more or less of a minute, and would show a shift of one sample
+// by 0.28 K at 1 Hz and 0.011 K at 25 Hz. At the ends it has part of its window.
+TEST_F(FilteredTemperature, IsNotShiftedWhateverTheBlocks) {
+  for (const int rate : {1, 25}) {
+    const std::size_t records = records_per_block + 1000;
+    write_swinging(test::sequence(50000.0, records), rate, 60.0);
+    const ProcessSummary summary = process_flight(input_, lams_model(), output_);
+    EXPECT_THAT(summary.outputs, Contains("ATLAMSF"));
+    const std::vector<double> found = difference();
+    ASSERT_EQ(found.size(), records * static_cast<std::size_t>(rate));
+    const std::size_t end = 7 * static_cast<std::size_t>(rate);
+    double square = 0.0, greatest = 0.0;
+    for (std::size_t i = end; i + end < found.size(); ++i) {
+      square += found[i] * found[i];
+      greatest = std::max(greatest, std::abs(found[i]));
+    }
+    EXPECT_LT(greatest, 0.02) << rate << " Hz";
+    EXPECT_LT(std::sqrt(square / static_cast<double>(found.size())), rate == 1 ? 0.012 : 0.010);
+    // Where half of the weights are within the flight there is a value: from 0.8 s on at 25 Hz.
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const std::size_t from_end = std::min(i, found.size() - 1 - i);
+      if (rate == 1 || from_end >= 20) {
+        ASSERT_FALSE(std::isnan(found[i])) << i;
+      } else if (from_end < 10) {
+        ASSERT_TRUE(std::isnan(found[i])) << i;
+      }
+    }
+  }
+}
+
+TEST_F(FilteredTemperature, LosesPeriodsUnderThreeSeconds) {
+  write_swinging(test::sequence(50000.0, 60), 25, 1.5);
+  process_flight(input_, lams_model(), output_);
+  const std::vector<double> filtered = read("ATLAMSF", "K"), unfiltered = read("ATLAMS", "K");
+  const auto swing = [](const std::vector<double>& values) {
+    const auto [least, greatest] = std::minmax_element(values.begin() + 200, values.end() - 200);
+    return *greatest - *least;
+  };
+  EXPECT_GT(swing(unfiltered), 4.0);
+  EXPECT_LT(swing(filtered), 0.003 * swing(unfiltered));
+}
+
+// Each stretch between gaps is as if it were alone.
+TEST_F(FilteredTemperature, TakesNothingAcrossGaps) {
+  for (const int rate : {1, 25}) {
+    std::vector<double> time = test::sequence(50000.0, 40);
+    // A short gap, which the filter has not left when the flight goes on; and a stretch shorter than it.
+    for (const double start : {50042.0, 50200.0, 60000.0}) {
+      const std::size_t length = start == 50200.0 ? 3 : 40;
+      for (const double each : test::sequence(start, length)) time.push_back(each);
+    }
+    write_swinging(time, rate, 5.0);
+    EXPECT_EQ(process_flight(input_, lams_model(), output_).gaps, 3U);
+    const std::vector<double> together = read("ATLAMSF", "K"), unfiltered = read("ATLAMS", "K");
+    const std::vector<double> flags = read("PCORFLAG", "");
+    const std::size_t samples = static_cast<std::size_t>(rate);
+    std::size_t first = 0;
+    for (const std::size_t records : {40U, 40U, 3U, 40U}) {
+      // The filter by hand, on that stretch alone.
+      LowPass filter(Quantity::lams_temperature, Quantity::filtered_lams_temperature, rate);
+      for (std::size_t i = 0; i < records * samples + filter.delay(); ++i) {
+        State<double> state;
+        QualityFlags quality;
+        if (i < records * samples) state[Quantity::lams_temperature] = unfiltered[first + i];
+        filter.compute(state, quality);
+        if (i < filter.delay()) continue;
+        const std::size_t place = first + i - filter.delay();
+        const double expected = state[Quantity::filtered_lams_temperature];
+        if (std::isnan(expected)) {
+          ASSERT_TRUE(std::isnan(together[place])) << place;
+        } else {
+          ASSERT_NEAR(together[place], expected, 1e-4) << place;  // 32-bit floats of degC
+        }
+        // The bit stands at the sample that has no value.
+        ASSERT_EQ(flags[place] == static_cast<double>(Quality::filter_window_incomplete),
+                  std::isnan(expected));
+      }
+      first += records * samples;
+    }
+  }
+}
+
+TEST_F(FilteredTemperature, IsMissingWithItsSample) {
+  write_swinging(test::sequence(50000.0, 60), 1, 60.0, {20, 40, 41, 42, 43, 44});
+  const ProcessSummary summary = process_flight(input_, lams_model(), output_);
+  const std::vector<double> filtered = read("ATLAMSF", "K"), flags = read("PCORFLAG", "");
+  const double lams_missing = static_cast<double>(Quality::lams_missing);
+  const double incomplete = static_cast<double>(Quality::filter_window_incomplete);
+  std::size_t flagged = 0;
+  for (const std::size_t i : {20U, 40U, 42U, 44U}) {
+    EXPECT_TRUE(std::isnan(filtered[i]));
+    EXPECT_EQ(flags[i], lams_missing);
+  }
+  for (std::size_t i = 0; i < flags.size(); ++i) {
+    if (flags[i] != incomplete) continue;
+    ++flagged;
+    EXPECT_TRUE(std::isnan(filtered[i]));
+  }
+  EXPECT_FALSE(std::isnan(filtered[30]));
+  EXPECT_GE(flagged, 2U) << "the neighbours of a single missing sample";
+  EXPECT_EQ(summary.flagged.back(), flagged);
+}
+
+// In air of one temperature the hydrostatic equation has a closed form: H = R_a T/g0 ln(p_0/p).
+TEST_F(Process, WritesHydrostaticStepsThatAddUpToTheHeight) {
+  const double nan = std::nan("");
+  const std::vector<double> p{900, 850, 800, 700, 600, nan, 500, 400};
+  {
+    test::NetcdfMaker maker(input_);
+    maker.time({100, 101, 102, 103, 104, 105, 106, 200});
+    maker.series("PSFD", "hPa", p);
+    maker.series("QCF", "hPa", std::vector<double>(8, 60.0));
+    maker.series("TTRR", "degC", std::vector<double>(8, 5.0));
+    maker.series("EDPC", "hPa", std::vector<double>(8, 0.0));
+  }
+  ModelFile model = parse_model(R"(
+format = "pcor-model/1"
+[variables]
+static_pressure = "PSFD"
+dynamic_pressure = "QCF"
+recovery_temperature = "TTRR"
+vapor_pressure = "EDPC"
+)",
+                                "plain.toml");
+  EXPECT_THAT(process_flight(input_, model, output_).outputs, testing::Not(Contains("HYDSTEP")));
+  model.model.effects.push_back({"temp-calibration", {0.5, -0.01, 0.0001}});
+  ProcessOptions options;
+  options.hydrostatic = true;
+  EXPECT_THAT(process_flight(input_, model, output_, options).outputs, Contains("HYDSTEP"));
+  const std::vector<double> steps = read("HYDSTEP", "m/K");
+  // 29.2712 m/K is R_d/g0 of dry air, 287.05/9.80665 in the US Standard Atmosphere: its scale height at
+  // 288.15 K is 8434.5 m.
+  EXPECT_NEAR((steps[1] + steps[2] + steps[3] + steps[4]) * 288.15, 8434.5 * std::log(900.0 / 600.0), 0.5);
+  for (const std::size_t none : {0U, 5U, 6U, 7U}) EXPECT_TRUE(std::isnan(steps[none])) << none;
+  EXPECT_EQ(Flight(output_).variable("HYDSTEP").units, "m/K");
+  EXPECT_EQ(attribute("HYDSTEP", "temperature_calibration"), "0.5 -0.01 0.0001");
+  EXPECT_EQ(attribute("HYDSTEP", "Dependencies"), "2 PSXC EDPC");
+  model.model.effects.clear();
+  process_flight(input_, model, output_, options);
+  EXPECT_EQ(attribute("HYDSTEP", "temperature_calibration"), "0 0 0");
+}
+
+// Vapour makes air lighter: R_a grows by 0.378 e/p.
+TEST_F(Process, HydrostaticStepsKnowTheVapour) {
+  {
+    test::NetcdfMaker maker(input_);
+    maker.time({100, 101});
+    maker.series("PSFD", "hPa", {900, 890});
+    maker.series("QCF", "hPa", {60, 60});
+    maker.series("TTRR", "degC", {20, 20});
+    maker.series("EDPC", "hPa", {9.0, 8.9});
+  }
+  ModelFile model = lams_model();
+  model.model.effects.clear();
+  model.variables.erase(Quantity::lams_airspeed);
+  model.variables.erase(Quantity::radome_dynamic_pressure);
+  model.variables.erase(Quantity::attack_differential_pressure);
+  ProcessOptions options;
+  options.hydrostatic = true;
+  process_flight(input_, model, output_, options);
+  const double dry = 8434.5 / 288.15 * std::log(900.0 / 890.0);
+  EXPECT_NEAR(read("HYDSTEP", "m/K")[1] / dry, 1.0 + 0.378 * 0.01, 1e-4);
+}
+
+// In a descent at a constant rate a lagging line reads tau dp/dt too low; only the first sample has no rate.
+TEST_F(Process, GivesRatesToEffectsFromTheSampleBefore) {
+  {
+    test::NetcdfMaker maker(input_);
+    maker.time({100, 101, 102, 103, 203, 204});
+    maker.series("PSFD", "hPa", {700, 701, 702, 703, 800, 801});
+    maker.series("QCF", "hPa", std::vector<double>(6, 60.0));
+  }
+  ModelFile model = parse_model(R"(
+format = "pcor-model/1"
+name = "lag"
+[variables]
+static_pressure = "PSFD"
+dynamic_pressure = "QCF"
+[humidity]
+moist = false
+[[effect]]
+id = "static-lag"
+parameters = { tau = 0.5 }
+)",
+                                "lag.toml");
+  const ProcessSummary summary = process_flight(input_, model, output_);
+  EXPECT_EQ(summary.gaps, 1U);
+  const std::vector<double> p = read("PSXC", "hPa");
+  EXPECT_THAT(p, testing::ElementsAre(testing::IsNan(), 701.5, 702.5, 703.5, testing::IsNan(), 801.5));
+  const double after_gap =
+      static_cast<double>(Quality::after_gap) + static_cast<double>(Quality::effect_input_missing);
+  EXPECT_THAT(read("PCORFLAG", ""), testing::ElementsAre(after_gap, 0, 0, 0, after_gap, 0));
+}
+
+}  // namespace
+}  // namespace pcor

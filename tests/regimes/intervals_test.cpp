@@ -1,0 +1,285 @@
+// The user's intervals: what the file may say, how it is refused, and what becomes of the found regimes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <pcor/regimes/regimes.hpp>
+#include <pcor/words/error.hpp>
+#include <pcor/words/utc.hpp>
+
+#include "support/temporary_directory.hpp"
+
+namespace pcor {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using testing::StartsWith;
+
+constexpr double day = 86400.0;
+constexpr double midnight = 1321488000.0;  // 2011-11-17 00:00:00 UTC
+constexpr double hour = 3600.0;
+
+const std::string format = "format = \"pcor-intervals/1\"\n";
+
+UserIntervals parse(const std::string& text) { return read_intervals_text(format + text, "own.toml"); }
+
+std::string message_of(const std::string& text) {
+  try {
+    read_intervals_text(text, "own.toml");
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+std::string refusal(const std::string& text) { return message_of(format + text); }
+
+// "level 1-3" and the like, in seconds.
+std::vector<std::string> in_words(const std::vector<Interval>& intervals) {
+  std::vector<std::string> words;
+  for (const Interval& interval : intervals) {
+    words.push_back(std::string(facts_of(interval.regime).name) + " " +
+                    std::to_string(static_cast<long>(interval.begin - midnight)) + "-" +
+                    std::to_string(static_cast<long>(interval.end - midnight)));
+  }
+  return words;
+}
+
+Interval found(Regime regime, double begin, double end, int pair = 0) {
+  return {regime, midnight + begin, midnight + end, pair, "", false};
+}
+
+UserIntervals veto(std::optional<Regime> regime, double begin, double end) {
+  UserIntervals user;
+  user.veto.push_back({regime, midnight + begin, midnight + end});
+  return user;
+}
+
+UserIntervals add(Regime regime, double begin, double end, int pair = 0) {
+  UserIntervals user;
+  user.add.push_back({regime, midnight + begin, midnight + end, pair, "", true});
+  return user;
+}
+
+TEST(IntervalsFile, HoldsWhatItSays) {
+  const UserIntervals user = parse(R"(
+flight = "DC3-TEST-rf01.nc"
+[[add]]
+regime = "pitch manoeuvre"
+begin = 2011-11-17T20:10:00Z
+end = 2011-11-17T20:13:00
+note = "seen in VSPD"
+[[add]]
+regime = "reverse heading"
+begin = "21:00:00"
+end = 21:04:00
+pair = 2
+[[veto]]
+regime = "turn"
+begin = 2011-11-17T13:20:00.5-07:00
+end = 2011-11-17T20:25:00Z
+[[veto]]
+begin = "22:00"
+end = "22:01:00.25"
+[[exclude]]
+begin = "20:30:00"
+end = "20:31:00"
+reason = "PSXC iced"
+)");
+  EXPECT_EQ(user.flight, "DC3-TEST-rf01.nc");
+  ASSERT_THAT(user.add, SizeIs(2));
+  EXPECT_EQ(user.add[0].regime, Regime::pitch_manoeuvre);
+  EXPECT_EQ(utc_text(user.add[0].begin), "2011-11-17 20:10:00");
+  EXPECT_EQ(utc_text(user.add[0].end), "2011-11-17 20:13:00");
+  EXPECT_EQ(user.add[0].note, "seen in VSPD");
+  EXPECT_TRUE(user.add[0].by_user);
+  EXPECT_EQ(user.add[1].pair, 2);
+  EXPECT_EQ(user.add[1].begin, 21 * hour);
+  EXPECT_EQ(user.add[1].end, 21 * hour + 240);
+  ASSERT_THAT(user.veto, SizeIs(2));
+  EXPECT_EQ(user.veto[0].regime, Regime::turn);
+  EXPECT_EQ(user.veto[0].begin, midnight + 20 * hour + 1200.5);
+  EXPECT_FALSE(user.veto[1].regime.has_value());
+  EXPECT_EQ(user.veto[1].end, 22 * hour + 60.25);
+  ASSERT_THAT(user.exclude, SizeIs(1));
+  EXPECT_EQ(user.exclude[0].reason, "PSXC iced");
+}
+
+TEST(IntervalsFile, MaySayNothing) {
+  const UserIntervals user = parse("");
+  EXPECT_THAT(user.add, IsEmpty());
+  EXPECT_THAT(user.veto, IsEmpty());
+  EXPECT_THAT(user.exclude, IsEmpty());
+}
+
+TEST(IntervalsFile, TellsDatesOfLeapYears) {
+  const UserIntervals user = parse(R"(
+[[veto]]
+begin = 2004-02-29T23:59:59Z
+end = 2004-03-01T00:00:00Z
+[[veto]]
+begin = 1999-12-31T23:59:59Z
+end = 2000-02-29T12:00:00Z
+)");
+  EXPECT_EQ(utc_text(user.veto[0].begin), "2004-02-29 23:59:59");
+  EXPECT_EQ(user.veto[0].end - user.veto[0].begin, 1.0);
+  EXPECT_EQ(utc_text(user.veto[1].begin), "1999-12-31 23:59:59");
+  EXPECT_EQ(utc_text(user.veto[1].end), "2000-02-29 12:00:00");
+}
+
+TEST(IntervalsFile, IsForOneFlightOrAny) {
+  UserIntervals user;
+  EXPECT_TRUE(user.is_for("flights/rf01.nc"));
+  user.flight = "rf01.nc";
+  EXPECT_TRUE(user.is_for("flights/rf01.nc"));
+  EXPECT_FALSE(user.is_for("flights/rf02.nc"));
+}
+
+TEST(IntervalsFile, IsReadFromDisk) {
+  const test::TemporaryDirectory directory;
+  const auto path = directory / "own.toml";
+  std::ofstream(path) << format << "[[exclude]]\nbegin = \"10:00\"\nend = \"10:01\"\nreason = \"ice\"\n";
+  EXPECT_THAT(read_intervals(path).exclude, SizeIs(1));
+  EXPECT_THROW(read_intervals(directory / "absent.toml"), Error);
+  EXPECT_THROW(read_intervals(directory.path()), Error);
+}
+
+TEST(IntervalsFile, IsRefusedWithThePlaceAndWhatToDo) {
+  EXPECT_THAT(message_of("[[add]]\n"), StartsWith("own.toml:1:1: the file does not say"));
+  EXPECT_THAT(message_of("format = \"pcor-model/1\"\n"), StartsWith("own.toml:1:10: "));
+  EXPECT_THAT(message_of("format = 1\n"), StartsWith("own.toml:1:10: "));
+  EXPECT_THAT(refusal("[[add]\n"), AllOf(StartsWith("own.toml:2:"), HasSubstr("syntax")));
+  EXPECT_THAT(refusal("[ = \"x"), StartsWith("own.toml:2:"));
+  EXPECT_THAT(refusal("[[veta]]\n"), AllOf(StartsWith("own.toml:2:3: "), HasSubstr("did you mean veto?")));
+  EXPECT_THAT(refusal("add = 1\n"), AllOf(StartsWith("own.toml:2:7: "), HasSubstr("[[add]]")));
+  EXPECT_THAT(refusal("add = [1]\n"), AllOf(StartsWith("own.toml:2:8: "), HasSubstr("[[add]]")));
+  EXPECT_THAT(refusal("flight = 7\n"), StartsWith("own.toml:2:10: 'flight' is not a text"));
+}
+
+TEST(IntervalsFile, RefusesWrongKeysAndValues) {
+  const std::string times = "begin = \"10:00\"\nend = \"10:01\"\n";
+  EXPECT_THAT(refusal("[[exclude]]\nbegin = \"10:00\"\n"), HasSubstr("has no 'end'"));
+  EXPECT_THAT(refusal("[[exclude]]\n" + times), HasSubstr("has no 'reason'"));
+  EXPECT_THAT(refusal("[[add]]\n" + times), HasSubstr("has no 'regime'"));
+  EXPECT_THAT(refusal("[[add]]\n" + times + "regime = \"pich manoeuvre\"\n"),
+              AllOf(StartsWith("own.toml:5:10: "), HasSubstr("did you mean pitch manoeuvre")));
+  EXPECT_THAT(refusal("[[veto]]\n" + times + "resaon = \"x\"\n"),
+              AllOf(StartsWith("own.toml:5:1: "), HasSubstr("there is no key 'resaon' in [[veto]]")));
+  EXPECT_THAT(refusal("[[add]]\n" + times + "regime = \"turn\"\npair = 1\n"),
+              AllOf(StartsWith("own.toml:6:8: "), HasSubstr("'reverse heading' only")));
+  EXPECT_THAT(refusal("[[add]]\n" + times + "regime = \"reverse heading\"\npair = 0\n"),
+              AllOf(StartsWith("own.toml:6:8: "), HasSubstr("whole number")));
+}
+
+TEST(IntervalsFile, RefusesWrongTimes) {
+  const auto times = [](const std::string& begin, const std::string& end) {
+    return refusal("[[veto]]\nbegin = " + begin + "\nend = " + end + "\n");
+  };
+  EXPECT_THAT(times("2011-11-17T20:10:00Z", "2011-11-17T20:10:00Z"), StartsWith("own.toml:4:7: 'end'"));
+  EXPECT_THAT(times("2011-11-17T20:10:00Z", "2011-11-17T20:09:00Z"), HasSubstr("'end' is not after 'begin'"));
+  EXPECT_THAT(times("\"20:10\"", "\"20:09\""), HasSubstr("'end' is before 'begin'"));
+  EXPECT_THAT(times("\"20:10\"", "\"20:10\""), HasSubstr("'end' is not after 'begin'"));
+  EXPECT_EQ(times("\"23:50\"", "\"00:10\""), "no error");
+  EXPECT_THAT(times("\"20:10\"", "2011-11-17T20:11:00Z"), HasSubstr("give both alike"));
+  EXPECT_THAT(times("\"25:00\"", "\"20:09\""), AllOf(StartsWith("own.toml:3:9: "), HasSubstr("not a time")));
+  EXPECT_THAT(times("\"8:00\"", "\"20:09\""), HasSubstr("not a time"));
+  EXPECT_THAT(times("2011-11-17", "\"20:09\""), HasSubstr("not a time"));
+  EXPECT_THAT(times("12", "\"20:09\""), HasSubstr("not a time"));
+  EXPECT_THAT(times("1969-11-17T20:10:00Z", "2011-11-17T20:10:00Z"), HasSubstr("1970"));
+}
+
+TEST(TimesOfTheDay, AreThoseOfTheFlight) {
+  UserIntervals user;
+  user.exclude = {
+      {20 * hour, 20 * hour + 60, "a"}, {23.9 * hour, 0.1 * hour, "b"}, {1 * hour, 2 * hour, "c"}};
+  const UserIntervals moments = placed(user, midnight + 19 * hour, midnight + day + 3 * hour);
+  EXPECT_EQ(moments.exclude[0].begin, midnight + 20 * hour);
+  EXPECT_EQ(moments.exclude[0].end, midnight + 20 * hour + 60);
+  EXPECT_EQ(moments.exclude[1].begin, midnight + 23.9 * hour);
+  EXPECT_EQ(moments.exclude[1].end, midnight + day + 0.1 * hour);
+  EXPECT_EQ(moments.exclude[2].begin, midnight + day + 1 * hour);
+  EXPECT_EQ(moments.exclude[2].end, midnight + day + 2 * hour);
+}
+
+TEST(TimesOfTheDay, OutsideTheFlightAreTheNearest) {
+  UserIntervals user;
+  user.exclude = {{13.9 * hour, 14.1 * hour, "before"}, {19.1 * hour, 19.2 * hour, "after"}};
+  const UserIntervals moments = placed(user, midnight + 14 * hour, midnight + 19 * hour);
+  EXPECT_EQ(moments.exclude[0].begin, midnight + 13.9 * hour);
+  EXPECT_EQ(moments.exclude[1].begin, midnight + 19.1 * hour);
+}
+
+TEST(Applied, NothingChangesNothing) {
+  const std::vector<Interval> regimes{found(Regime::level, 0, 100), found(Regime::turn, 20, 30)};
+  EXPECT_THAT(in_words(apply({}, regimes, midnight, midnight + 99)),
+              ElementsAre("level 0-100", "turn 20-30"));
+}
+
+TEST(Applied, AVetoCutsWhatItOverlaps) {
+  const std::vector<Interval> regimes{found(Regime::level, 0, 100), found(Regime::turn, 20, 40)};
+  EXPECT_THAT(in_words(apply(veto(Regime::turn, 30, 50), regimes, midnight, midnight + 99)),
+              ElementsAre("level 0-100", "turn 20-30"));
+  EXPECT_THAT(in_words(apply(veto(Regime::turn, 25, 35), regimes, midnight, midnight + 99)),
+              ElementsAre("level 0-100", "turn 20-25", "turn 35-40"));
+  EXPECT_THAT(in_words(apply(veto(std::nullopt, 10, 50), regimes, midnight, midnight + 99)),
+              ElementsAre("level 0-10", "level 50-100"));
+  EXPECT_THAT(in_words(apply(veto(Regime::turn, 40, 50), regimes, midnight, midnight + 99)), SizeIs(2));
+}
+
+TEST(Applied, AVetoTakesAllOfAManoeuvreAndBothLegsOfAPair) {
+  const std::vector<Interval> regimes{
+      found(Regime::pitch_manoeuvre, 0, 100), found(Regime::reverse_heading, 200, 300, 1),
+      found(Regime::reverse_heading, 400, 500, 1), found(Regime::reverse_heading, 600, 700, 2)};
+  EXPECT_THAT(in_words(apply(veto(Regime::pitch_manoeuvre, 90, 110), regimes, midnight, midnight + 999)),
+              SizeIs(3));
+  EXPECT_THAT(in_words(apply(veto(Regime::reverse_heading, 450, 460), regimes, midnight, midnight + 999)),
+              ElementsAre("pitch manoeuvre 0-100", "reverse heading 600-700"));
+}
+
+TEST(Applied, AnAdditionTakesThePlaceOfWhatWasFound) {
+  const std::vector<Interval> regimes{found(Regime::level, 0, 100), found(Regime::climb, 100, 200),
+                                      found(Regime::yaw_manoeuvre, 20, 40)};
+  const std::vector<Interval> yaw =
+      apply(add(Regime::yaw_manoeuvre, 10, 45), regimes, midnight, midnight + 199);
+  EXPECT_THAT(in_words(yaw), ElementsAre("level 0-100", "yaw manoeuvre 10-45", "climb 100-200"));
+  EXPECT_TRUE(yaw[1].by_user);
+  EXPECT_THAT(in_words(apply(add(Regime::descent, 90, 120), regimes, midnight, midnight + 199)),
+              ElementsAre("level 0-90", "yaw manoeuvre 20-40", "descent 90-120", "climb 120-200"));
+}
+
+TEST(Applied, AnAdditionIsCutToTheFlight) {
+  const std::vector<Interval> regimes{found(Regime::level, 0, 100)};
+  EXPECT_THAT(in_words(apply(add(Regime::climb, -50, 500), regimes, midnight, midnight + 99)),
+              ElementsAre("climb 0-100"));
+  EXPECT_THAT(in_words(apply(add(Regime::climb, 500, 600), regimes, midnight, midnight + 99)),
+              ElementsAre("level 0-100"));
+}
+
+TEST(Applied, PairsOfTheUserGetNumbersOfTheirOwn) {
+  const std::vector<Interval> regimes{found(Regime::reverse_heading, 200, 300, 1),
+                                      found(Regime::reverse_heading, 400, 500, 1)};
+  UserIntervals user = add(Regime::reverse_heading, 600, 700, 1);
+  user.add.push_back(add(Regime::reverse_heading, 800, 900, 1).add[0]);
+  const std::vector<Interval> all = apply(user, regimes, midnight, midnight + 999);
+  ASSERT_THAT(all, SizeIs(4));
+  EXPECT_EQ(all[0].pair, 1);
+  EXPECT_EQ(all[2].pair, 2);
+  EXPECT_EQ(all[3].pair, 2);
+}
+
+TEST(Applied, TimesOfTheDayWork) {
+  UserIntervals user;
+  user.veto.push_back({Regime::turn, 20.0, 30.0});
+  const std::vector<Interval> regimes{found(Regime::turn, 0, 100)};
+  EXPECT_THAT(in_words(apply(user, regimes, midnight, midnight + 99)),
+              ElementsAre("turn 0-20", "turn 30-100"));
+}
+
+}  // namespace
+}  // namespace pcor

@@ -1,0 +1,642 @@
+// The search for regimes on motions made here, of which begin and end are known, and on a real flight.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+#include <ostream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <pcor/flight/flight.hpp>
+#include <pcor/regimes/regimes.hpp>
+#include <pcor/words/error.hpp>
+
+namespace pcor {
+
+void PrintTo(const Interval& interval, std::ostream* stream) {
+  *stream << facts_of(interval.regime).name << " " << std::fixed << interval.begin << " to " << interval.end
+          << " (" << interval.note << ")";
+}
+
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double degrees = 180.0 / pi;
+constexpr double gravity = 9.80665;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+
+double wrapped(double heading) { return heading - 360.0 * std::floor(heading / 360.0); }
+
+// Noise that forgets itself after `memory` seconds.
+class Gusts {
+ public:
+  Gusts(double deviation, double memory, double step, unsigned seed)
+      : keep_(std::exp(-step / memory)), kick_(deviation * std::sqrt(1.0 - keep_ * keep_)), random_(seed) {}
+
+  double next() { return value_ = keep_ * value_ + kick_ * normal_(random_); }
+
+ private:
+  double keep_, kick_, value_ = 0.0;
+  std::mt19937 random_;
+  std::normal_distribution<double> normal_;
+};
+
+struct Weather {
+  double turbulence = 0.3;  // m/s rms of each component of the wind
+  unsigned seed = 1;
+};
+
+// Flies one manoeuvre after the other and records what the aircraft does.
+class Pilot {
+ public:
+  struct Start {
+    double time = 1321560000.0;  // 2011-11-17 20:00:00 UTC
+    double heading = 355.0;
+    double airspeed = 125.0;
+    double altitude = 4000.0;
+  };
+
+  explicit Pilot(double rate = 1.0, Weather weather = {}) : Pilot(rate, weather, Start{}) {}
+  Pilot(double rate, Weather weather, Start start)
+      : step_(1.0 / rate),
+        start_(start),
+        airspeed_(start.airspeed),
+        altitude_(start.altitude),
+        heading_(start.heading),
+        vertical_gust_(weather.turbulence, 3.0, step_, weather.seed),
+        lateral_gust_(weather.turbulence, 3.0, step_, weather.seed + 1),
+        head_gust_(weather.turbulence, 3.0, step_, weather.seed + 2),
+        rocking_(2.0 * weather.turbulence, 2.0, step_, weather.seed + 3) {}
+
+  double now() const { return start_.time + static_cast<double>(motion_.time.size()) * step_; }
+  const FlightMotion& motion() const { return motion_; }
+
+  void level(double seconds) {
+    fly(seconds, [](double) { return Moment{}; });
+  }
+
+  void climb(double rate, double seconds) {
+    fly(seconds, [&](double) { return Moment{0, rate}; });
+  }
+
+  void turn(double change, double roll) {
+    const double rate = gravity * std::tan(roll / degrees) / airspeed_ * degrees;
+    fly(std::abs(change / rate), [&](double) {
+      return Moment{0, 0, std::copysign(roll, change), std::copysign(rate, change)};
+    });
+  }
+
+  void pitch_manoeuvre(int cycles, double period, double height) {
+    fly(cycles * period, [&](double t) {
+      return Moment{0, height * 2.0 * pi / period * std::sin(2.0 * pi * t / period)};
+    });
+  }
+
+  void yaw_manoeuvre(int cycles, double period, double amplitude) {
+    fly(cycles * period, [&](double t) {
+      Moment moment;
+      moment.yaw = amplitude * std::sin(2.0 * pi * t / period);
+      return moment;
+    });
+  }
+
+  void accelerate(double to, double rate) {
+    const double sign = to > airspeed_ ? 1.0 : -1.0;
+    fly(std::abs(to - airspeed_) / rate, [&](double) { return Moment{sign * rate}; });
+  }
+
+  void stand(double seconds) {
+    airspeed_ = 0.0;
+    level(seconds);
+  }
+
+  void cloud(double seconds) {
+    water_ = 0.3;
+    level(seconds);
+    water_ = 0.0;
+  }
+
+ private:
+  struct Moment {
+    double acceleration = 0, vertical_speed = 0, roll = 0, heading_rate = 0, yaw = 0;
+  };
+
+  template <class Motion>
+  void fly(double seconds, Motion motion) {
+    const auto samples = static_cast<int>(std::lround(seconds / step_));
+    for (int i = 0; i < samples; ++i) {
+      const Moment moment = motion((i + 0.5) * step_);
+      airspeed_ += moment.acceleration * step_;
+      altitude_ += moment.vertical_speed * step_;
+      heading_ += moment.heading_rate * step_;
+      record(moment);
+    }
+  }
+
+  void record(const Moment& moment) {
+    const bool flying = airspeed_ > 50.0;
+    const double up = flying ? vertical_gust_.next() : 0.0, side = flying ? lateral_gust_.next() : 0.0;
+    const double ahead = flying ? head_gust_.next() : 0.0, rocking = flying ? rocking_.next() : 0.0;
+    const double divisor = std::max(airspeed_, 50.0);
+    motion_.time.push_back(now());
+    motion_.airspeed.push_back(airspeed_ + ahead);
+    motion_.altitude.push_back(altitude_);
+    motion_.vertical_speed.push_back(moment.vertical_speed + 0.3 * up);
+    motion_.roll.push_back(moment.roll + rocking);
+    motion_.pitch.push_back(2.0 + moment.vertical_speed / divisor * degrees + 0.3 * up / divisor * degrees);
+    motion_.attack.push_back(2.0 + up / divisor * degrees);
+    motion_.heading.push_back(wrapped(heading_ - moment.yaw + 0.2 * side / divisor * degrees));
+    motion_.sideslip.push_back(moment.yaw + side / divisor * degrees);
+    motion_.liquid_water.push_back(water_);
+  }
+
+  double step_;
+  Start start_;
+  double airspeed_, altitude_, heading_;
+  double water_ = 0.0;
+  Gusts vertical_gust_, lateral_gust_, head_gust_, rocking_;
+  FlightMotion motion_;
+};
+
+std::vector<Interval> of(Regime regime, const std::vector<Interval>& intervals) {
+  std::vector<Interval> found;
+  for (const Interval& interval : intervals) {
+    if (interval.regime == regime) found.push_back(interval);
+  }
+  return found;
+}
+
+std::vector<Interval> manoeuvres(const std::vector<Interval>& intervals) {
+  std::vector<Interval> found;
+  for (const Interval& interval : intervals) {
+    if (is_manoeuvre(interval.regime)) found.push_back(interval);
+  }
+  return found;
+}
+
+void expect_one(Regime regime, const std::vector<Interval>& intervals, double begin, double end,
+                double tolerance) {
+  const std::vector<Interval> found = of(regime, intervals);
+  ASSERT_THAT(found, SizeIs(1)) << facts_of(regime).name;
+  EXPECT_NEAR(found[0].begin, begin, tolerance) << facts_of(regime).name << ": " << found[0].note;
+  EXPECT_NEAR(found[0].end, end, tolerance) << facts_of(regime).name << ": " << found[0].note;
+}
+
+void expect_phases_cover(const FlightMotion& motion, const std::vector<Interval>& intervals) {
+  double reached = motion.time.front();
+  for (const Interval& interval : intervals) {
+    if (!is_phase(interval.regime)) continue;
+    EXPECT_DOUBLE_EQ(interval.begin, reached);
+    EXPECT_LT(interval.begin, interval.end);
+    reached = interval.end;
+  }
+  EXPECT_GT(reached, motion.time.back());
+  EXPECT_LE(reached, motion.time.back() + 1.001);
+}
+
+// What happened when, in one flight with a bit of everything.
+struct Story {
+  FlightMotion motion;
+  double roll, off, climb_end, pitch, pitch_end, yaw, yaw_end, run, run_end, first_leg_end, second_leg,
+      second_leg_end, circle, circle_end, cloud, cloud_end, descent, descent_end, landing;
+};
+
+Story tell(double rate = 1.0, Weather weather = {}, double heading = 355.0, double shift = 0.0) {
+  Pilot::Start start;
+  start.heading = heading;
+  start.time += shift;
+  start.airspeed = 0.0;
+  start.altitude = 1500.0;
+  Pilot pilot(rate, weather, start);
+  Story story;
+  pilot.stand(300);
+  story.roll = pilot.now();
+  pilot.accelerate(70.0, 2.0);
+  story.off = pilot.now();
+  pilot.climb(7.0, 30);
+  pilot.accelerate(110.0, 1.0);
+  pilot.climb(7.0, 500);
+  story.climb_end = pilot.now();
+  pilot.level(400);
+  story.pitch = pilot.now();
+  pilot.pitch_manoeuvre(6, 24.0, 40.0);
+  story.pitch_end = pilot.now();
+  pilot.level(300);
+  story.yaw = pilot.now();
+  pilot.yaw_manoeuvre(15, 10.0, 3.0);
+  story.yaw_end = pilot.now();
+  pilot.level(300);
+  story.run = pilot.now();
+  pilot.accelerate(100.0, 0.25);
+  pilot.level(30);
+  pilot.accelerate(150.0, 0.25);
+  pilot.level(30);
+  pilot.accelerate(110.0, 0.25);
+  story.run_end = pilot.now();
+  pilot.level(400);
+  story.first_leg_end = pilot.now();
+  pilot.turn(90.0, 25.0);
+  pilot.turn(-270.0, 25.0);
+  story.second_leg = pilot.now();
+  pilot.level(240);
+  story.second_leg_end = pilot.now();
+  pilot.turn(30.0, 20.0);
+  pilot.level(200);
+  story.circle = pilot.now();
+  pilot.turn(360.0, 26.7);
+  story.circle_end = pilot.now();
+  pilot.level(100);
+  story.cloud = pilot.now();
+  pilot.cloud(90);
+  story.cloud_end = pilot.now();
+  pilot.level(100);
+  story.descent = pilot.now();
+  pilot.climb(-5.0, 600);
+  story.descent_end = pilot.now();
+  pilot.level(120);
+  pilot.accelerate(75.0, 1.0);
+  pilot.climb(-3.0, 70);
+  pilot.accelerate(60.0, 1.0);
+  story.landing = pilot.now();
+  pilot.accelerate(10.0, 2.0);
+  pilot.stand(200);
+  story.motion = pilot.motion();
+  return story;
+}
+
+void expect_told(const Story& story, const std::vector<Interval>& found) {
+  expect_one(Regime::pitch_manoeuvre, found, story.pitch, story.pitch_end, 6.0);
+  expect_one(Regime::yaw_manoeuvre, found, story.yaw, story.yaw_end, 8.0);
+  expect_one(Regime::speed_run, found, story.run, story.run_end, 10.0);
+  expect_one(Regime::circle, found, story.circle, story.circle_end, 4.0);
+  expect_one(Regime::cloud, found, story.cloud, story.cloud_end, 1.0);
+  expect_one(Regime::take_off, found, story.roll + 7.5, story.off + 42.0, 14.0);
+
+  const std::vector<Interval> legs = of(Regime::reverse_heading, found);
+  ASSERT_THAT(legs, SizeIs(2));
+  EXPECT_EQ(legs[0].pair, 1);
+  EXPECT_EQ(legs[1].pair, 1);
+  EXPECT_NEAR(legs[0].end, story.first_leg_end, 6.0);
+  EXPECT_NEAR(legs[0].end - legs[0].begin, 300.0, 6.0);
+  EXPECT_NEAR(legs[1].begin, story.second_leg, 6.0);
+  EXPECT_NEAR(legs[1].end, story.second_leg_end, 6.0);
+
+  const std::vector<Interval> ground = of(Regime::ground, found);
+  ASSERT_THAT(ground, SizeIs(2));
+  EXPECT_NEAR(ground[0].end, story.roll + 7.5, 3.0);
+  EXPECT_NEAR(ground[1].begin, story.landing, 3.0);
+
+  const std::vector<Interval> climbs = of(Regime::climb, found);
+  ASSERT_THAT(climbs, SizeIs(1));
+  EXPECT_NEAR(climbs[0].end, story.climb_end, 3.0);
+
+  const std::vector<Interval> descents = of(Regime::descent, found);
+  ASSERT_FALSE(descents.empty());
+  EXPECT_NEAR(descents[0].begin, story.descent, 3.0);
+  EXPECT_NEAR(descents[0].end, story.descent_end, 3.0);
+
+  EXPECT_THAT(of(Regime::turn, found), SizeIs(4));
+  expect_phases_cover(story.motion, found);
+}
+
+TEST(Regimes, HaveNames) {
+  for (std::size_t i = 0; i < regime_count; ++i) {
+    const auto regime = static_cast<Regime>(i);
+    EXPECT_EQ(regime_named(facts_of(regime).name), regime);
+    EXPECT_FALSE(facts_of(regime).criterion.empty());
+  }
+  EXPECT_EQ(regime_named("loop"), Regime::count);
+}
+
+TEST(Regimes, AreFoundInAFlightWithAllOfThem) {
+  const Story story = tell();
+  expect_told(story, find_regimes(story.motion));
+}
+
+TEST(Regimes, AreFoundInTurbulence) {
+  for (const unsigned seed : {1U, 20U, 300U}) {
+    const Story story = tell(1.0, {1.0, seed});
+    SCOPED_TRACE(seed);
+    expect_told(story, find_regimes(story.motion));
+  }
+}
+
+TEST(Regimes, AreFoundAtOtherRates) {
+  for (const double rate : {0.5, 5.0, 25.0}) {
+    SCOPED_TRACE(rate);
+    const Story story = tell(rate);
+    expect_told(story, find_regimes(story.motion));
+  }
+}
+
+TEST(Regimes, DoNotDependOnTheHeading) {
+  const std::vector<Interval> reference = find_regimes(tell().motion);
+  for (const double heading : {0.0, 90.0, 177.0, 359.9}) {
+    SCOPED_TRACE(heading);
+    const std::vector<Interval> found = find_regimes(tell(1.0, {}, heading).motion);
+    ASSERT_EQ(found.size(), reference.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_EQ(found[i].regime, reference[i].regime);
+      EXPECT_EQ(found[i].begin, reference[i].begin);
+      EXPECT_EQ(found[i].end, reference[i].end);
+    }
+  }
+}
+
+TEST(Regimes, MoveWithTheTime) {
+  const std::vector<Interval> reference = find_regimes(tell().motion);
+  const std::vector<Interval> found = find_regimes(tell(1.0, {}, 355.0, 4321.0).motion);
+  ASSERT_EQ(found.size(), reference.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_EQ(found[i].regime, reference[i].regime);
+    EXPECT_EQ(found[i].begin, reference[i].begin + 4321.0);
+    EXPECT_EQ(found[i].end, reference[i].end + 4321.0);
+  }
+}
+
+TEST(Regimes, AreFoundThoughValuesAndSamplesAreMissing) {
+  Story story = tell();
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> chance(0.0, 1.0);
+  FlightMotion& all = story.motion;
+  for (std::vector<double>* series : {&all.airspeed, &all.altitude, &all.vertical_speed, &all.roll,
+                                      &all.pitch, &all.heading, &all.sideslip, &all.liquid_water}) {
+    for (double& value : *series) {
+      if (chance(random) < 0.1) value = missing;
+    }
+  }
+  expect_told(story, find_regimes(all));
+}
+
+TEST(Regimes, OfAFlightWithLongGapsCoverIt) {
+  Story story = tell();
+  FlightMotion& all = story.motion;
+  for (std::size_t i = 0; i < all.time.size(); ++i) {
+    if (i > 1000) all.time[i] += 200.0;
+    if (i > 2000) all.time[i] += 1e8;
+  }
+  std::fill(all.vertical_speed.begin() + 900, all.vertical_speed.begin() + 1500, missing);
+  std::fill(all.pitch.begin() + 900, all.pitch.begin() + 1500, missing);
+  std::fill(all.airspeed.begin() + 3000, all.airspeed.begin() + 3100, missing);
+  expect_phases_cover(all, find_regimes(all));
+}
+
+TEST(Regimes, CanDoWithTheHeightAlone) {
+  Story story = tell();
+  story.motion.vertical_speed.clear();
+  expect_told(story, find_regimes(story.motion));
+}
+
+TEST(Regimes, CanDoWithoutRoll) {
+  Story story = tell();
+  story.motion.roll.clear();
+  const std::vector<Interval> found = find_regimes(story.motion);
+  expect_one(Regime::circle, found, story.circle, story.circle_end, 5.0);
+  EXPECT_THAT(of(Regime::reverse_heading, found), SizeIs(2));
+}
+
+TEST(Regimes, ThatCannotBeToldAreAbsent) {
+  Story story = tell();
+  FlightMotion motion = story.motion;
+  motion.sideslip.clear();
+  motion.liquid_water.clear();
+  std::vector<Interval> found = find_regimes(motion);
+  EXPECT_THAT(of(Regime::yaw_manoeuvre, found), IsEmpty());
+  EXPECT_THAT(of(Regime::cloud, found), IsEmpty());
+  EXPECT_THAT(of(Regime::pitch_manoeuvre, found), SizeIs(1));
+
+  FlightMotion only_time;
+  only_time.time = story.motion.time;
+  EXPECT_THAT(find_regimes(only_time), IsEmpty());
+  EXPECT_THAT(find_regimes({}), IsEmpty());
+
+  motion = {};
+  motion.time = {0.0};
+  motion.airspeed = {120.0};
+  motion.altitude = {1000.0};
+  EXPECT_NO_THROW(find_regimes(motion));
+}
+
+TEST(Regimes, OfALevelFlightInTurbulenceAreNoManoeuvres) {
+  for (const double turbulence : {0.1, 0.5, 1.0, 1.5}) {
+    for (const unsigned seed : {11U, 12U, 13U, 14U, 15U}) {
+      SCOPED_TRACE(testing::Message() << turbulence << " m/s, seed " << seed);
+      Pilot pilot(1.0, {turbulence, seed});
+      pilot.level(7200);
+      const std::vector<Interval> found = find_regimes(pilot.motion());
+      EXPECT_THAT(manoeuvres(found), IsEmpty());
+      EXPECT_THAT(of(Regime::level, found), SizeIs(1));
+      EXPECT_THAT(of(Regime::turn, found), IsEmpty());
+    }
+  }
+}
+
+TEST(Regimes, OfOrdinaryFlightsAreNoManoeuvres) {
+  for (unsigned seed = 0; seed < 25; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    const auto between = [&](double low, double high) {
+      return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    Pilot pilot(1.0, {between(0.1, 1.5), seed});
+    for (int leg = 0; leg < 20; ++leg) {
+      pilot.level(between(60.0, 900.0));
+      const double next = between(0.0, 3.0);
+      if (next < 1.0) pilot.turn(between(-120.0, 120.0), between(15.0, 30.0));
+      if (next > 2.0) pilot.climb(between(-8.0, 8.0), between(60.0, 400.0));
+      if (next > 1.0 && next < 2.0) pilot.accelerate(between(110.0, 140.0), between(0.2, 0.6));
+    }
+    EXPECT_THAT(manoeuvres(find_regimes(pilot.motion())), IsEmpty());
+  }
+}
+
+TEST(Regimes, OfArbitraryNumbersAreOrderly) {
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    const auto between = [&](double low, double high) {
+      return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    FlightMotion motion;
+    const double step = std::pow(10.0, between(-1.4, 1.0));
+    double time = between(0.0, 2e9);
+    for (int i = 0; i < 3000; ++i)
+      motion.time.push_back(time += step * (between(0.0, 1.0) < 0.002 ? 500.0 : 1.0));
+    for (std::vector<double>* series :
+         {&motion.airspeed, &motion.altitude, &motion.vertical_speed, &motion.roll, &motion.pitch,
+          &motion.heading, &motion.sideslip, &motion.liquid_water}) {
+      if (between(0.0, 1.0) < 0.2) continue;
+      const double size = std::pow(10.0, between(-1.0, 2.5));
+      Gusts gusts(size, between(1.0, 100.0), step, seed + 100);
+      const double often = between(0.0, 0.3);
+      for (int i = 0; i < 3000; ++i) {
+        const bool absent = between(0.0, 1.0) < often;
+        series->push_back(absent ? (i % 7 == 0 ? infinity : missing) : size / 2.0 + gusts.next());
+      }
+    }
+    const std::vector<Interval> found = find_regimes(motion);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_LT(found[i].begin, found[i].end);
+      EXPECT_GE(found[i].begin, motion.time.front());
+      EXPECT_LE(found[i].end, motion.time.back() + 1.001);
+      EXPECT_GE(found[i].begin, found[i - std::min<std::size_t>(i, 1)].begin);
+    }
+    const bool tells_phases =
+        !motion.airspeed.empty() && !(motion.vertical_speed.empty() && motion.altitude.empty());
+    if (tells_phases) expect_phases_cover(motion, found);
+  }
+}
+
+TEST(Regimes, OfAClimbAreNoManoeuvres) {
+  Pilot pilot;
+  pilot.climb(6.0, 600);
+  pilot.level(300);
+  pilot.climb(-6.0, 600);
+  const std::vector<Interval> found = find_regimes(pilot.motion());
+  EXPECT_THAT(manoeuvres(found), IsEmpty());
+  EXPECT_THAT(found, SizeIs(3));
+}
+
+TEST(Regimes, AHalfTurnBetweenDifferentHeightsIsNoReverseHeading) {
+  Pilot pilot;
+  pilot.level(300);
+  pilot.turn(180.0, 20.0);
+  pilot.climb(5.0, 60);
+  pilot.level(300);
+  EXPECT_THAT(of(Regime::reverse_heading, find_regimes(pilot.motion())), IsEmpty());
+}
+
+TEST(Regimes, AQuarterTurnIsNoReverseHeading) {
+  Pilot pilot;
+  pilot.level(300);
+  pilot.turn(90.0, 20.0);
+  pilot.level(300);
+  EXPECT_THAT(of(Regime::reverse_heading, find_regimes(pilot.motion())), IsEmpty());
+}
+
+TEST(Regimes, PitchManoeuvreSaysItsPeriod) {
+  for (const double period : {20.0, 24.0, 30.0}) {
+    Pilot pilot;
+    pilot.level(300);
+    const double begin = pilot.now();
+    pilot.pitch_manoeuvre(7, period, 40.0);
+    const double end = pilot.now();
+    pilot.level(300);
+    const std::vector<Interval> found = find_regimes(pilot.motion());
+    expect_one(Regime::pitch_manoeuvre, found, begin, end, 6.0);
+    EXPECT_THAT(of(Regime::pitch_manoeuvre, found)[0].note,
+                HasSubstr("7 cycles of " + std::to_string(static_cast<int>(period)).substr(0, 1)));
+    EXPECT_THAT(of(Regime::level, found), SizeIs(1)) << "not chopped into climbs and descents";
+  }
+}
+
+TEST(Regimes, YawManoeuvreIsFoundAtItsPeriods) {
+  for (const double period : {5.0, 8.0, 15.0}) {
+    SCOPED_TRACE(period);
+    Pilot pilot(25.0, {0.8, 5});
+    pilot.level(300);
+    const double begin = pilot.now();
+    pilot.yaw_manoeuvre(static_cast<int>(150.0 / period), period, 3.0);
+    const double end = pilot.now();
+    pilot.level(300);
+    expect_one(Regime::yaw_manoeuvre, find_regimes(pilot.motion()), begin, end, 8.0);
+  }
+}
+
+TEST(Regimes, OfTheGvAskForMoreAcceleration) {
+  Pilot::Start start;
+  start.airspeed = 200.0;
+  start.altitude = 12000.0;
+  Pilot pilot(1.0, {}, start);
+  pilot.level(300);
+  pilot.accelerate(250.0, 0.25);
+  pilot.level(300);
+  EXPECT_THAT(of(Regime::speed_run, find_regimes(pilot.motion(), RegimeCriteria::c130())), SizeIs(1));
+  EXPECT_THAT(of(Regime::speed_run, find_regimes(pilot.motion(), RegimeCriteria::gv())), IsEmpty());
+}
+
+TEST(Regimes, RefuseWhatIsNoMotion) {
+  FlightMotion motion;
+  motion.time = {1.0, 2.0, 2.0};
+  EXPECT_THROW(find_regimes(motion), Error);
+  motion.time = {1.0, 2.0, 3.0};
+  motion.roll = {0.0, 0.0};
+  EXPECT_THROW(find_regimes(motion), Error);
+}
+
+TEST(Regimes, OfSamplesBeginWithTheirIntervalAndEndBeforeItsEnd) {
+  const std::vector<Interval> intervals{{Regime::level, 1.0, 3.0}, {Regime::turn, 2.0, 10.0}};
+  const std::vector<RegimeSet> regimes = regimes_of_samples({0.0, 1.0, 2.0, 3.0}, intervals);
+  const auto has = [&](std::size_t sample, Regime regime) {
+    return regimes[sample].test(static_cast<std::size_t>(regime));
+  };
+  EXPECT_TRUE(regimes[0].none());
+  EXPECT_TRUE(has(1, Regime::level));
+  EXPECT_FALSE(has(1, Regime::turn));
+  EXPECT_TRUE(has(2, Regime::level) && has(2, Regime::turn));
+  EXPECT_FALSE(has(3, Regime::level));
+}
+
+TEST(Regimes, OfALongFlightTakeLittleTime) {
+  Pilot pilot(25.0);
+  pilot.level(5 * 3600);
+  const auto before = std::chrono::steady_clock::now();
+  find_regimes(pilot.motion());
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - before;
+  RecordProperty("seconds", std::to_string(taken.count()));
+  EXPECT_LT(taken.count(), 5.0) << "generous: other work may run beside, and sanitizers";
+}
+
+std::vector<double> read_all(const Flight& flight, const std::string& name, const std::string& unit) {
+  std::vector<double> values(flight.records());
+  flight.read(name, {0, flight.records()}, flight.conversion(name, unit), values.data());
+  return values;
+}
+
+TEST(Regimes, OfTheFlightOf2004ArePlausible) {
+  const char* folder = std::getenv("PCOR_FLIGHTS");
+  if (folder == nullptr) GTEST_SKIP() << "PCOR_FLIGHTS does not name a folder of flights";
+  const auto path = std::filesystem::path(folder) / "GOTEX-rf06-C130-2004.nc";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
+  const Flight flight(path);
+  FlightMotion motion;
+  motion.time.resize(flight.records());
+  flight.read_sample_times({0, flight.records()}, 1, motion.time.data());
+  motion.airspeed = read_all(flight, "TASX", "m/s");
+  motion.altitude = read_all(flight, "PALT", "m");
+  motion.roll = read_all(flight, "ROLL", "degree");
+  motion.pitch = read_all(flight, "PITCH", "degree");
+  motion.heading = read_all(flight, "THDG", "degree");
+  motion.sideslip = read_all(flight, "SSLIP", "degree");
+  motion.liquid_water = read_all(flight, "PLWCC", "gram/m3");
+  const std::vector<Interval> found = find_regimes(motion);
+  expect_phases_cover(motion, found);
+  EXPECT_THAT(manoeuvres(found), IsEmpty()) << "none was flown";
+  EXPECT_THAT(of(Regime::cloud, found), IsEmpty()) << "PLWCC stays below 0.06 g/m3";
+
+  // Read off the series: 15 m/s at 44 s, VSPD above 1 m/s from 90 s, PALT 300 m higher at 137 s, wheels down
+  // at 2990 s.
+  const double first = motion.time.front();
+  expect_one(Regime::take_off, found, first + 45.0, first + 137.0, 10.0);
+  const std::vector<Interval> ground = of(Regime::ground, found);
+  ASSERT_THAT(ground, SizeIs(2));
+  EXPECT_NEAR(ground[1].begin, first + 2990.0, 10.0);
+  EXPECT_GE(of(Regime::climb, found).size(), 2U) << "to 2400 m and to 2900 m";
+  EXPECT_GE(of(Regime::descent, found).size(), 2U);
+  EXPECT_GE(of(Regime::level, found).size(), 2U);
+  EXPECT_GE(of(Regime::turn, found).size(), 3U);
+}
+
+}  // namespace
+}  // namespace pcor

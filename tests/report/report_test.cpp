@@ -1,0 +1,227 @@
+#include <pcor/report/report.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include <pcor/words/error.hpp>
+#include "support/temporary_directory.hpp"
+
+namespace pcor {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double start = 1054468800.0;
+
+Report report_of(std::size_t samples, std::size_t columns) {
+  Report report;
+  report.title = "A report";
+  for (std::size_t i = 0; i < samples; ++i) report.time.push_back(start + static_cast<double>(i));
+  for (std::size_t c = 0; c < columns; ++c) {
+    ReportColumn column{"c" + std::to_string(c), "Column " + std::to_string(c), "hPa", {}};
+    for (std::size_t i = 0; i < samples; ++i)
+      column.values.push_back(1000.0 * std::sin(static_cast<double>(i * (c + 1)) * 0.37));
+    report.columns.push_back(column);
+  }
+  report.items.push_back(TimePanel{"Lines", "Over time.", {"c0"}});
+  return report;
+}
+
+// What the page's script reads.
+nlohmann::json data_of(const std::string& html) {
+  const std::string opening = "id=\"data\">";
+  const std::size_t begin = html.find(opening) + opening.size();
+  return nlohmann::json::parse(html.substr(begin, html.find("</script>", begin) - begin));
+}
+
+std::vector<std::uint8_t> from_base64(const std::string& text) {
+  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::vector<std::uint8_t> bytes;
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (const char letter : text) {
+    if (letter == '=') break;
+    bits = bits << 6 | static_cast<std::uint32_t>(digits.find(letter));
+    count += 6;
+    if (count >= 8) bytes.push_back(static_cast<std::uint8_t>(bits >> (count -= 8)));
+  }
+  return bytes;
+}
+
+std::vector<double> values_of(const nlohmann::json& column) {
+  const auto bytes = from_base64(column["values"]);
+  std::vector<double> values;
+  for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) {
+    const int number = bytes[i] | bytes[i + 1] << 8;
+    values.push_back(number == 65535 ? nan
+                                     : column["least"].get<double>() + number * column["step"].get<double>());
+  }
+  return values;
+}
+
+std::string reason(const Report& report) {
+  try {
+    report_html(report);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Report, IsSmall) { EXPECT_LT(report_html(report_of(18000, 12)).size(), 1'500'000U); }
+
+TEST(Report, AsksNothingOfTheNetwork) {
+  std::string html = report_html(report_of(100, 2));
+  const std::string svg = "http://www.w3.org/2000/svg";
+  html.erase(html.find(svg), svg.size());
+  for (const char* fetch : {"http:", "https:", "src=", "@import", "fetch(", "XMLHttpRequest", "url(//"})
+    EXPECT_THAT(html, Not(HasSubstr(fetch)));
+}
+
+TEST(Report, KeepsTheValuesToHalfAStep) {
+  Report report = report_of(1000, 1);
+  report.columns[0].values[17] = nan;
+  report.columns[0].values[18] = std::numeric_limits<double>::infinity();
+  const auto column = data_of(report_html(report))["columns"][0];
+  const std::vector<double> kept = values_of(column);
+  ASSERT_EQ(kept.size(), 1000U);
+  EXPECT_NEAR(column["step"].get<double>(), 2000.0 / 65534, 1e-4);
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    if (i == 17 || i == 18)
+      EXPECT_TRUE(std::isnan(kept[i]));
+    else
+      EXPECT_LE(std::abs(kept[i] - report.columns[0].values[i]), 0.5000001 * column["step"].get<double>());
+}
+
+TEST(Report, KeepsAConstantColumnExactly) {
+  Report report = report_of(3, 1);
+  report.columns[0].values.assign(3, 0.1);
+  EXPECT_EQ(values_of(data_of(report_html(report))["columns"][0]), std::vector<double>(3, 0.1));
+}
+
+TEST(Report, KeepsTheTimeOfEachFlightToAMillisecond) {
+  Report report = report_of(4, 1);
+  report.time = {start, start + 0.04, start + 9e6, start + 9e6 + 1.5};
+  report.flight_starts = {0, 2};
+  report.flight_names = {"rf01", "rf02"};
+  const auto flights = data_of(report_html(report))["flights"];
+  ASSERT_EQ(flights.size(), 2U);
+  EXPECT_EQ(flights[1]["start"], start + 9e6);
+  EXPECT_EQ(from_base64(flights[0]["milliseconds"]), (std::vector<std::uint8_t>{0, 0, 0, 0, 40, 0, 0, 0}));
+  EXPECT_EQ(from_base64(flights[1]["milliseconds"]), (std::vector<std::uint8_t>{0, 0, 0, 0, 220, 5, 0, 0}));
+}
+
+TEST(Report, EscapesEveryText) {
+  const std::string bad = "</script><script>\"'&é\xff";
+  Report report = report_of(3, 2);
+  report.columns[0].name = report.columns[0].title = report.columns[0].unit = bad;
+  report.title = report.subtitle = bad;
+  report.summary = {bad};
+  report.facts = {{bad, bad}};
+  report.intervals = {{bad, start, start + 1}};
+  report.flight_names = {bad};
+  report.items = {TimePanel{bad, bad, {bad}, bad},       BinnedPanel{bad, bad, {bad}, {"c1"}},
+                  PlanePanel{bad, bad, bad, "c1", bad},  PairPanel{bad, bad, bad, "c1", {{1, 0, bad}}},
+                  RegimeTable{bad, bad, {bad}},          BarPanel{bad, bad, {{bad, 1}}, bad, bad},
+                  ReportTable{bad, bad, {bad}, {{bad}}}, ReportText{bad, {bad}}};
+  const std::string html = report_html(report);
+  EXPECT_THAT(html, Not(HasSubstr("</script><script>\"")));
+  EXPECT_THAT(html, HasSubstr("<h1>&lt;/script&gt;&lt;script&gt;&quot;&#39;&amp;é"));
+  EXPECT_EQ(data_of(html)["columns"][0]["name"], "</script><script>\"'&é\uFFFD");
+}
+
+TEST(Report, RefusesAnUnknownColumn) {
+  Report report = report_of(3, 1);
+  report.items = {TimePanel{"Lines", "", {"c0", "absent"}}};
+  EXPECT_THAT(reason(report), HasSubstr("panel 'Lines' shows column 'absent'"));
+  report.items = {BinnedPanel{"Bins", "", {"c0"}, {"c0", "absent"}}};
+  EXPECT_THAT(reason(report), HasSubstr("'absent'"));
+}
+
+TEST(Report, RefusesAColumnOfAnotherLength) {
+  Report report = report_of(3, 1);
+  report.columns[0].values.pop_back();
+  EXPECT_THAT(reason(report), HasSubstr("column 'c0' has 2 values for 3 samples"));
+}
+
+TEST(Report, RefusesTwoColumnsOfOneName) {
+  Report report = report_of(3, 2);
+  report.columns[1].name = "c0";
+  EXPECT_THAT(reason(report), HasSubstr("two columns are named 'c0'"));
+}
+
+TEST(Report, RefusesAnEmptyPanel) {
+  Report report = report_of(4, 2);
+  report.columns[0].values = {nan, nan, 1, 2};
+  report.columns[1].values = {1, 2, nan, nan};
+  const std::vector<ReportItem> empty{TimePanel{"Empty", "", {}},
+                                      BinnedPanel{"Empty", "", {"c0"}, {"c1"}},
+                                      BinnedPanel{"Empty", "", {"c0"}, {"c0", "c1"}},
+                                      BinnedPanel{"Empty", "", {"c0"}, {}},
+                                      PlanePanel{"Empty", "", "c0", "c0", "c1"},
+                                      PairPanel{"Empty", "", "c0", "c1"},
+                                      RegimeTable{"Empty", "", {}},
+                                      BarPanel{"Empty", "", {{"bar", nan}}}};
+  for (const ReportItem& item : empty) {
+    report.items = {item};
+    EXPECT_THAT(reason(report), HasSubstr("panel 'Empty' would be empty")) << item.index();
+  }
+  report.items = {ReportTable{"Empty", "", {"a"}, {}}};
+  EXPECT_THAT(reason(report), HasSubstr("has no rows"));
+}
+
+TEST(Report, RefusesATableWithCellsMissing) {
+  Report report = report_of(3, 1);
+  report.items = {ReportTable{"Table", "", {"a", "b"}, {{"1"}}}};
+  EXPECT_THAT(reason(report), HasSubstr("a row of 1 cells under 2 headers"));
+}
+
+TEST(Report, RefusesTimeThatDoesNotIncrease) {
+  Report report = report_of(4, 1);
+  report.time[2] = report.time[1];
+  EXPECT_THAT(reason(report), HasSubstr("time does not increase at sample 2"));
+  report.flight_starts = {0, 2};
+  EXPECT_EQ(reason(report), "");
+  report.flight_starts = {0, 4};
+  EXPECT_THAT(reason(report), HasSubstr("correct flight_starts"));
+  report.flight_starts = {0, 2};
+  report.flight_names = {"rf01"};
+  EXPECT_THAT(reason(report), HasSubstr("1 names for 2 flights"));
+}
+
+TEST(Report, MayHaveNoSamples) {
+  Report report;
+  report.title = "Bars only";
+  report.items = {BarPanel{"Bars", "", {{"a", 1.0, 0.1}}, "rms", "hPa"}};
+  EXPECT_THAT(report_html(report), HasSubstr("<h1>Bars only</h1>"));
+}
+
+TEST(Report, IsWrittenWholeOrNotAtAll) {
+  const test::TemporaryDirectory directory;
+  const auto path = directory / "report.html";
+  Report report = report_of(3, 1);
+  write_report(report, path);
+  std::ifstream stream(path);
+  const std::string before{std::istreambuf_iterator<char>(stream), {}};
+  EXPECT_EQ(before, report_html(report));
+  report.items = {TimePanel{"Lines", "", {"absent"}}};
+  EXPECT_THROW(write_report(report, path), Error);
+  std::ifstream again(path);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(again), {}), before);
+  EXPECT_EQ(directory.entries(), 1U);
+  EXPECT_THROW(write_report(report_of(3, 1), directory / "absent" / "report.html"), Error);
+}
+
+}  // namespace
+}  // namespace pcor

@@ -1,0 +1,325 @@
+#include <ceres/jet.h>
+#include <gtest/gtest.h>
+#include <pcor/realtime/chain.hpp>
+
+#include "support/input_range.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+// Automatic derivatives, of which fits are made, against central differences.
+
+using pcor::Chain;
+using pcor::effect_facts;
+using pcor::effect_functions;
+using pcor::EffectFacts;
+using pcor::Model;
+using pcor::ModelEffect;
+using pcor::Quantity;
+using pcor::State;
+using pcor::Where;
+
+namespace {
+
+constexpr int most = 4;
+using Jet = ceres::Jet<double, most>;
+
+// With a step of 1e-5 of the range of x, a central difference errs by 1e-10 of f''' x^3/6 and by 1e-11 of
+// rounding of f: 1e-6 of f/x covers both for powers up to the fourth.
+template <class Function>
+double difference(const Function& f, double x, double h) {
+  return (f(x + h) - f(x - h)) / (2 * h);
+}
+
+class Draw {
+ public:
+  double operator()(double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(engine_);
+  }
+
+ private:
+  std::mt19937_64 engine_{20120106};
+};
+
+State<double> draw_state(const EffectFacts& facts, Draw& draw) {
+  State<double> state;
+  for (std::size_t i = 0; i < facts.need_count(); ++i) {
+    const InputRange range = input_range(facts.needs[i]);
+    state[facts.needs[i]] = draw(range.lower, range.upper);
+  }
+  return state;
+}
+
+std::vector<double> draw_parameters(const EffectFacts& facts, Draw& draw) {
+  std::vector<double> result;
+  for (std::size_t i = 0; i < facts.parameter_count(); ++i)
+    result.push_back(draw(facts.parameters[i].lower, facts.parameters[i].upper));
+  return result;
+}
+
+class EveryEffect : public testing::TestWithParam<std::size_t> {
+ protected:
+  const EffectFacts& facts() const { return effect_facts[GetParam()]; }
+  double value(const State<double>& state, const std::vector<double>& parameters) const {
+    return effect_functions<double, double>[GetParam()](state, parameters.data());
+  }
+};
+
+}  // namespace
+
+TEST_P(EveryEffect, HasItsDerivativeByEachParameter) {
+  Draw draw;
+  for (int n = 0; n < 20; ++n) {
+    const State<double> state = draw_state(facts(), draw);
+    std::vector<double> parameters = draw_parameters(facts(), draw);
+    std::vector<Jet> dual;
+    for (std::size_t i = 0; i < parameters.size(); ++i) dual.emplace_back(parameters[i], static_cast<int>(i));
+    const Jet result = effect_functions<double, Jet>[GetParam()](state, dual.data());
+    const double plain = value(state, parameters);
+    EXPECT_NEAR(result.a, plain, 1e-14 * std::abs(plain));
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      const auto along = [&](double x) {
+        std::vector<double> moved = parameters;
+        moved[i] = x;
+        return value(state, moved);
+      };
+      const double width = facts().parameters[i].upper - facts().parameters[i].lower;
+      const double expected = difference(along, parameters[i], 1e-3 * width);
+      EXPECT_NEAR(result.v[static_cast<Eigen::Index>(i)], expected, 1e-9 * (1 + std::abs(expected)))
+          << facts().parameters[i].name;
+    }
+  }
+}
+
+TEST_P(EveryEffect, HasItsDerivativeByEachInput) {
+  Draw draw;
+  for (int n = 0; n < 20; ++n) {
+    const State<double> state = draw_state(facts(), draw);
+    const std::vector<double> parameters = draw_parameters(facts(), draw);
+    State<Jet> dual;
+    for (std::size_t i = 0; i < facts().need_count(); ++i)
+      dual[facts().needs[i]] = Jet(state[facts().needs[i]], static_cast<int>(i));
+    const Jet result = effect_functions<Jet, double>[GetParam()](dual, parameters.data());
+    const double plain = value(state, parameters);
+    EXPECT_NEAR(result.a, plain, 1e-14 * std::abs(plain));
+    for (std::size_t i = 0; i < facts().need_count(); ++i) {
+      const Quantity need = facts().needs[i];
+      const InputRange range = input_range(need);
+      const auto along = [&](double x) {
+        State<double> moved = state;
+        moved[need] = x;
+        return value(moved, parameters);
+      };
+      const double expected = difference(along, state[need], 1e-5 * (range.upper - range.lower));
+      EXPECT_NEAR(result.v[static_cast<Eigen::Index>(i)], expected, 1e-6 * (1 + std::abs(expected)))
+          << facts_of(need).name;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEffect, testing::Range<std::size_t>(0, pcor::catalogue_size),
+                         [](const auto& effect) {
+                           std::string name(effect_facts[effect.param].id);
+                           name.erase(std::remove(name.begin(), name.end(), '-'), name.end());
+                           return name;
+                         });
+
+namespace {
+
+ModelEffect effect(std::string id, double parameter) {
+  ModelEffect result;
+  result.id = std::move(id);
+  result.parameters = {parameter};
+  return result;
+}
+
+// The C-130 of the memo, with the effects that act before the static ports.
+Model memo_model(bool upstream) {
+  Model model;
+  model.effects = {effect("static-constant", .004127875), effect("static-alpha", .021279816),
+                   effect("static-qp", .030849643)};
+  if (upstream)
+    model.effects = {effect("lams-elevation", 0.3), effect("recovery-factor", 0.01),
+                     effect("static-lag", 0.1)};
+  model.recovery = {{0.988, 0.053, 0.090, 0.091}};
+  model.lams = {1.5, -0.8, pcor::LamsApproach::simultaneous};
+  return model;
+}
+
+const std::pair<Quantity, double> record[] = {{Quantity::static_pressure, 697},
+                                              {Quantity::dynamic_pressure, 70},
+                                              {Quantity::radome_dynamic_pressure, 69},
+                                              {Quantity::attack_differential_pressure, -20},
+                                              {Quantity::sideslip_differential_pressure, -5},
+                                              {Quantity::static_pressure_rate, -0.8},
+                                              {Quantity::dynamic_pressure_rate, 0.4},
+                                              {Quantity::recovery_temperature_rate, -0.05},
+                                              {Quantity::time, 5000},
+                                              {Quantity::normal_acceleration, 2},
+                                              {Quantity::longitudinal_acceleration, 0.5},
+                                              {Quantity::roll, 20},
+                                              {Quantity::flaps, 30},
+                                              {Quantity::engine_torque, 60},
+                                              {Quantity::height_above_ground, 30},
+                                              {Quantity::liquid_water, 0.3},
+                                              {Quantity::transducer_temperature, 300},
+                                              {Quantity::cabin_pressure, 900},
+                                              {Quantity::recovery_temperature, 276},
+                                              {Quantity::vapor_pressure, 3},
+                                              {Quantity::attack, 2.5},
+                                              {Quantity::sideslip, -1},
+                                              {Quantity::lams_airspeed, 119.5}};
+
+Chain build(const Model& model) {
+  std::vector<Quantity> recorded;
+  for (const auto& [quantity, value] : record) recorded.push_back(quantity);
+  std::string error;
+  auto chain = Chain::build(model, recorded, &error);
+  if (!chain) throw std::runtime_error(error);
+  return *chain;
+}
+
+template <class S>
+State<S> recorded_state() {
+  State<S> state;
+  for (const auto& [quantity, value] : record) state[quantity] = S(value);
+  return state;
+}
+
+// What a fit compares: delta-p from LAMS, and the temperature of the corrected pressures.
+template <class S>
+State<S> run(const Chain& chain, const std::vector<S>& parameters) {
+  State<S> state = recorded_state<S>();
+  pcor::NoQualityFlags none;
+  chain.measure(state, parameters.data(), none);
+  state[Quantity::static_defect] = chain.static_defect(state, parameters.data(), none);
+  state[Quantity::lams_static_defect] = chain.lams_static_defect(state, parameters.data(), none);
+  chain.correct(state, state[Quantity::static_defect], none);
+  chain.air(state, parameters.data(), none);
+  chain.lams_air(state, parameters.data());
+  return state;
+}
+
+std::vector<Jet> dual(const std::vector<double>& parameters) {
+  std::vector<Jet> result;
+  for (std::size_t i = 0; i < parameters.size(); ++i) result.emplace_back(parameters[i], static_cast<int>(i));
+  return result;
+}
+
+}  // namespace
+
+TEST(Chain, StaticDefectKeepsAStateOfNumbersApartFromParametersThatVary) {
+  // The Jacobian of eq. 18 is its basis: p, ADIFR/QCR p and q.
+  const Chain chain = build(memo_model(false));
+  State<double> state = recorded_state<double>();
+  pcor::NoQualityFlags none;
+  chain.measure(state, chain.parameters().data(), none);
+  const std::vector<Jet> parameters = dual(chain.parameters());
+  const Jet defect = chain.static_defect(state, parameters.data(), none);
+  EXPECT_EQ(defect.a, chain.static_defect(state, chain.parameters().data(), none));
+  EXPECT_NEAR(defect.v[0], 697, 1e-12);
+  EXPECT_NEAR(defect.v[1], -20.0 / 69 * 697, 1e-12);
+  EXPECT_NEAR(defect.v[2], 70, 1e-12);
+}
+
+TEST(Chain, StaticDefectHasItsDerivativeUnderThePolicy) {
+  Model model = memo_model(false);
+  model.policy.taper_below = 140;  // the sample is at half of it
+  Chain chain = build(model);
+  State<double> state = recorded_state<double>();
+  pcor::NoQualityFlags none;
+  chain.measure(state, chain.parameters().data(), none);
+  Jet defect = chain.static_defect(state, dual(chain.parameters()).data(), none);
+  EXPECT_NEAR(defect.v[0], 697.0 / 8, 1e-10);
+
+  model.policy.taper_below = 0;
+  model.policy.minimum = 20;
+  chain = build(model);
+  defect = chain.static_defect(state, dual(chain.parameters()).data(), none);
+  EXPECT_EQ(defect.a, 20);
+  EXPECT_EQ(defect.v[0], 0) << "on the floor nothing moves";
+}
+
+TEST(Chain, EveryStageHasItsDerivative) {
+  // The whole chain with every number dual: 1e-6 relative, from the central difference.
+  for (const bool upstream : {false, true}) {
+    const Chain chain = build(memo_model(upstream));
+    const State<Jet> state = run(chain, dual(chain.parameters()));
+    const State<double> plain = run(chain, chain.parameters());
+    for (const Quantity quantity :
+         {Quantity::port_static_pressure, Quantity::static_defect, Quantity::lams_static_defect,
+          Quantity::corrected_static_pressure, Quantity::corrected_mach, Quantity::ambient_temperature,
+          Quantity::corrected_airspeed, Quantity::lams_temperature, Quantity::lams_dynamic_pressure}) {
+      EXPECT_NEAR(state[quantity].a, plain[quantity], 1e-9) << facts_of(quantity).name;
+      for (std::size_t i = 0; i < chain.parameters().size(); ++i) {
+        const auto along = [&, quantity = quantity](double x) {
+          std::vector<double> parameters = chain.parameters();
+          parameters[i] = x;
+          return run(chain, parameters)[quantity];
+        };
+        const double expected = difference(along, chain.parameters()[i], 1e-5);
+        EXPECT_NEAR(state[quantity].v[static_cast<Eigen::Index>(i)], expected,
+                    1e-6 * (1 + std::abs(expected)))
+            << facts_of(quantity).name << " by parameter " << i << (upstream ? ", upstream" : "");
+      }
+    }
+  }
+}
+
+TEST(Chain, TheLagOfTheLineMovesLamsByTheRateOfThePressure) {
+  // An error of the line leaves pt, so delta-p from LAMS loses the whole of it: d/dtau = -dp/dt.
+  const Chain chain = build(memo_model(true));
+  const State<Jet> state = run(chain, dual(chain.parameters()));
+  EXPECT_NEAR(state[Quantity::lams_static_defect].v[2], 0.8, 1e-3) << "and p in e/p moves a little";
+}
+
+namespace {
+
+// What a fit with the laser makes zero: delta-p that the laser asks for less that of the law.
+template <class S>
+S residual(const Chain& chain, const std::vector<S>& parameters) {
+  const State<S> state = run(chain, parameters);
+  return state[Quantity::lams_static_defect] - state[Quantity::static_defect];
+}
+
+}  // namespace
+
+TEST_P(EveryEffect, MovesTheResidualByItsDerivative) {
+  // Each in the law of the memo with its typical coefficients; the shape of one that does not act here, below
+  // the onset of the transonic pocket, alone moves nothing.
+  Model model = memo_model(false);
+  model.moist = facts().constants != pcor::GasConstants::dry;
+  ModelEffect added;
+  added.id = std::string(facts().id);
+  for (std::size_t i = 0; i < facts().parameter_count(); ++i)
+    added.parameters.push_back(facts().parameters[i].typical);
+  if (facts().id == "static-transonic") added.parameters[1] = 0.3;
+  // A law has each effect once.
+  const auto same = [&](const ModelEffect& each) { return each.id == added.id; };
+  model.effects.erase(std::remove_if(model.effects.begin(), model.effects.end(), same), model.effects.end());
+  model.effects.insert(model.effects.begin(), added);
+  const Chain chain = build(model);
+  std::vector<Jet> parameters(chain.parameters().begin(), chain.parameters().end());
+  for (std::size_t i = 0; i < facts().parameter_count(); ++i)
+    parameters[i] = Jet(chain.parameters()[i], static_cast<int>(i));
+  const Jet result = residual(chain, parameters);
+  EXPECT_NEAR(result.a, residual(chain, chain.parameters()), 1e-9);
+  for (std::size_t i = 0; i < facts().parameter_count(); ++i) {
+    const auto along = [&](double x) {
+      std::vector<double> moved = chain.parameters();
+      moved[i] = x;
+      return residual(chain, moved);
+    };
+    const double width = facts().parameters[i].upper - facts().parameters[i].lower;
+    const double expected = difference(along, chain.parameters()[i], 1e-4 * width);
+    // Of the range of the coefficient 1e-7 hPa, a thousandth of what a fit can see, and 1e-6 of the
+    // derivative.
+    EXPECT_NEAR(result.v[static_cast<Eigen::Index>(i)] * width, expected * width,
+                1e-7 + 1e-6 * std::abs(expected * width))
+        << facts().parameters[i].name;
+    EXPECT_GT(std::abs(expected * width), 1e-3) << facts().parameters[i].name << " moves nothing";
+  }
+}

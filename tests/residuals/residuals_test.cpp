@@ -1,0 +1,226 @@
+#include <gmock/gmock.h>
+#include <pcor/residuals/residuals.hpp>
+#include <pcor/simulate/simulate.hpp>
+#include <pcor/words/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "support/temporary_directory.hpp"
+
+using pcor::Mask;
+using pcor::MaskOptions;
+using pcor::ModelFile;
+using pcor::Quantity;
+using pcor::Reference;
+using pcor::Residuals;
+using testing::HasSubstr;
+
+namespace {
+
+const std::filesystem::path data = std::filesystem::path(PCOR_SOURCE_DIR) / "data";
+
+/// A short simulated flight of the C-130 with the laser, the same for all tests.
+const std::filesystem::path& flight_file() {
+  static const pcor::test::TemporaryDirectory directory;
+  static const std::filesystem::path path = [] {
+    pcor::simulate_flight(pcor::read_scenario(data / "scenarios" / "c130-short.toml"),
+                          directory / "short.nc");
+    return directory / "short.nc";
+  }();
+  return path;
+}
+
+ModelFile laser_model() { return pcor::read_model(data / "scenarios" / "models" / "c130-psfd-eq18.toml"); }
+
+Residuals residuals(const ModelFile& model, const Reference& reference, const MaskOptions& options = {}) {
+  const auto samples = std::make_shared<const pcor::FlightSamples>(
+      pcor::read_samples(pcor::Flight(flight_file()), model, reference, options));
+  return Residuals(samples, model, reference, options);
+}
+
+Reference static_reference() {
+  Reference reference;
+  reference.kind = Reference::Kind::static_system;
+  reference.system = pcor::read_model(data / "models" / "c130-psfrd-eq18.toml");
+  return reference;
+}
+
+Reference pressure_reference(const std::string& variable) {
+  Reference reference;
+  reference.kind = Reference::Kind::pressure;
+  reference.variable = variable;
+  return reference;
+}
+
+std::vector<std::size_t> used(const Residuals& residuals) {
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    if (residuals.mask()[i] == Mask::none) places.push_back(i);
+  }
+  return places;
+}
+
+double rms_of(const Residuals& residuals, const std::vector<double>& values) {
+  double squares = 0.0;
+  const std::vector<std::size_t> places = used(residuals);
+  for (const std::size_t i : places) squares += values[i] * values[i];
+  return std::sqrt(squares / static_cast<double>(places.size()));
+}
+
+void expect_derivatives(const Residuals& tested) {
+  const std::vector<std::size_t> places = used(tested);
+  ASSERT_GT(places.size(), 500U);
+  std::vector<std::size_t> wanted(tested.parameters().size());
+  std::iota(wanted.begin(), wanted.end(), 0);
+  std::vector<double> values(places.size());
+  std::vector<double> derivatives(places.size() * wanted.size());
+  const std::vector<double>& at = tested.parameters();
+  tested.evaluate(places.data(), places.size(), at.data(), wanted, values.data(), derivatives.data());
+  const std::vector<double> all = tested.values(at.data());
+  for (std::size_t i = 0; i < places.size(); ++i) EXPECT_NEAR(values[i], all[places[i]], 1e-10);
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    // A centred difference over 3e-4 hPa: rounding leaves 1e-9 of the derivative, curvature less than 1e-6.
+    double largest = 0.0;
+    for (std::size_t i = 0; i < places.size(); ++i)
+      largest = std::max(largest, std::abs(derivatives[k * places.size() + i]));
+    ASSERT_GT(largest, 0.0) << k;
+    const double step = 3e-4 / largest;
+    std::vector<double> moved = at;
+    moved[k] = at[k] + step;
+    const std::vector<double> above = tested.values(moved.data());
+    moved[k] = at[k] - step;
+    const std::vector<double> below = tested.values(moved.data());
+    for (std::size_t i = 0; i < places.size(); i += 7) {
+      const double difference = (above[places[i]] - below[places[i]]) / (2.0 * step);
+      EXPECT_NEAR(derivatives[k * places.size() + i], difference, 1e-5 * largest) << k;
+    }
+  }
+}
+
+}  // namespace
+
+TEST(Residuals, AgainstTheTruePressureAreThoseOfTheSensors) {
+  const Residuals tested = residuals(laser_model(), pressure_reference("TRUE_PS"));
+  // The model has the law of the truth: what is left is the noise of PSFD, 0.01 to 0.02 hPa, and a little
+  // from the other sensors of the law.
+  EXPECT_LT(rms_of(tested, tested.values(tested.parameters().data())), 0.03);
+}
+
+TEST(Residuals, AgainstLamsAreTheDefectOfTheLaserLessThatOfTheModel) {
+  const Residuals tested = residuals(laser_model(), Reference{});
+  const double* const at = tested.parameters().data();
+  const std::vector<double> values = tested.values(at);
+  const std::vector<double> laser = tested.quantity(Quantity::lams_static_defect, at);
+  const std::vector<double> model = tested.quantity(Quantity::static_defect, at);
+  const std::vector<double> wanted = tested.wanted_defect(at);
+  for (const std::size_t i : used(tested)) {
+    EXPECT_NEAR(values[i], laser[i] - model[i], 1e-12);
+    EXPECT_NEAR(wanted[i], laser[i], 1e-12);
+  }
+}
+
+TEST(Residuals, OfTwoSystemsAreOppositeWhenTheyChangePlaces) {
+  const Residuals forth = residuals(laser_model(), static_reference());
+  Reference other;
+  other.kind = Reference::Kind::static_system;
+  other.system = laser_model();
+  const Residuals back = residuals(*static_reference().system, other);
+  const std::vector<double> a = forth.values(forth.parameters().data());
+  const std::vector<double> b = back.values(back.parameters().data());
+  for (const std::size_t i : used(forth)) EXPECT_NEAR(a[i], -b[i], 1e-11);
+}
+
+TEST(Residuals, HaveTheDerivativesOfTheWholeChain) {
+  ModelFile model = laser_model();
+  for (const char* id : {"static-mach2", "lams-elevation", "recovery-factor", "static-lag"})
+    model.model.effects.push_back(pcor::neutral_effect(id));
+  pcor::ModelEffect bend;
+  bend.id = "bend";
+  bend.formula = "k * exp(-(attack - c)^2)";
+  bend.parameter_names = {"k", "c"};
+  bend.parameters = {0.3, 2.0};
+  model.model.effects.push_back(bend);
+  const Residuals tested = residuals(model, Reference{});
+  const std::vector<bool> linear{true, true, true, true, false, false, false, false, false};
+  EXPECT_EQ(tested.is_linear(), linear);
+  expect_derivatives(tested);
+}
+
+TEST(Residuals, HaveTheDerivativesOfTheReferenceToo) {
+  const Residuals tested = residuals(laser_model(), static_reference());
+  ASSERT_EQ(tested.parameters().size(), 6U);
+  expect_derivatives(tested);
+  EXPECT_EQ(pcor::residual_parameter_names(laser_model(), static_reference())[4],
+            "reference:static-alpha.a1");
+}
+
+TEST(Masks, SayWhyEverySampleIsNotUsed) {
+  MaskOptions options;
+  options.exclude = {pcor::Regime::climb};
+  const Residuals tested = residuals(laser_model(), Reference{}, options);
+  const auto counts = tested.mask_counts();
+  EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), std::size_t{0}), tested.size());
+  EXPECT_GT(counts[static_cast<std::size_t>(Mask::ground)], 0U);
+  EXPECT_GT(counts[static_cast<std::size_t>(Mask::flaps)], 0U);
+  EXPECT_GT(counts[static_cast<std::size_t>(Mask::regime)], 0U);
+  const std::vector<pcor::RegimeSet> regimes =
+      pcor::regimes_of_samples(tested.samples().time, tested.samples().intervals);
+  for (const std::size_t i : used(tested)) {
+    EXPECT_FALSE(regimes[i][static_cast<std::size_t>(pcor::Regime::climb)]);
+    EXPECT_FALSE(regimes[i][static_cast<std::size_t>(pcor::Regime::ground)]);
+    EXPECT_GE(tested.samples().motion.airspeed[i], options.least_airspeed);
+  }
+}
+
+TEST(Masks, KnowALaserThatIsOffOrAstray) {
+  const ModelFile model = laser_model();
+  pcor::FlightSamples samples = pcor::read_samples(pcor::Flight(flight_file()), model, Reference{});
+  const std::vector<std::size_t> places = used(residuals(model, Reference{}));
+  for (auto& [quantity, values] : samples.model.columns) {
+    if (quantity != Quantity::lams_airspeed) continue;
+    values[places[100]] = std::nan("");
+    values[places[101]] += 30.0;
+  }
+  const Residuals tested(std::make_shared<const pcor::FlightSamples>(samples), model, Reference{});
+  EXPECT_EQ(tested.mask()[places[100]], Mask::reference);
+  EXPECT_EQ(tested.mask()[places[101]], Mask::laser_unlocked);
+  EXPECT_EQ(tested.mask()[places[102]], Mask::none);
+}
+
+TEST(Masks, CountAMissingInputAsMissing) {
+  const ModelFile model = laser_model();
+  pcor::FlightSamples samples = pcor::read_samples(pcor::Flight(flight_file()), model, Reference{});
+  const std::vector<std::size_t> places = used(residuals(model, Reference{}));
+  for (auto& [quantity, values] : samples.model.columns) {
+    if (quantity == Quantity::static_pressure) values[places[200]] = std::nan("");
+    if (quantity == Quantity::attack_differential_pressure) values[places[201]] = std::nan("");
+    if (quantity == Quantity::recovery_temperature) values[places[202]] = std::nan("");
+  }
+  const Residuals tested(std::make_shared<const pcor::FlightSamples>(samples), model, Reference{});
+  EXPECT_EQ(tested.mask()[places[200]], Mask::missing);
+  EXPECT_EQ(tested.mask()[places[201]], Mask::missing);
+  EXPECT_EQ(tested.mask()[places[202]], Mask::reference) << "the law needs no thermometer, the laser does";
+}
+
+TEST(Reference, IsReadFromItsName) {
+  EXPECT_EQ(pcor::read_reference("", laser_model()).kind, Reference::Kind::lams);
+  EXPECT_EQ(pcor::read_reference("pressure:PS_A", laser_model()).variable, "PS_A");
+  const ModelFile without = pcor::read_model(data / "models" / "c130-psfd-eq18.toml");
+  const auto message_of = [](const std::string& text, const ModelFile& model) -> std::string {
+    try {
+      pcor::read_reference(text, model);
+    } catch (const pcor::Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(message_of("", without), HasSubstr("lams_airspeed"));
+  EXPECT_THAT(message_of("lams", without), HasSubstr("--reference static:OTHER.toml"));
+  EXPECT_THAT(message_of("static:", without), HasSubstr("pressure:VARIABLE"));
+  EXPECT_THAT(message_of("static:absent.toml", without), HasSubstr("absent.toml"));
+  EXPECT_THAT(message_of("PS_A", without), HasSubstr("pressure:VARIABLE"));
+}

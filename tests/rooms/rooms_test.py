@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+"""Holds the library to its floors: rooms_test.py SOURCE_FOLDER
+
+Every folder of include/pcor, src and tests is a room of floors.txt or a workshop (tests of the whole); a room includes
+rooms of lower floors and itself; no files include each other in a circle; and a header of src, which is not installed,
+is included by no installed one.
+"""
+import pathlib
+import re
+import sys
+
+root = pathlib.Path(sys.argv[1])
+floors = [line.split() for line in (root / "tests/rooms/floors.txt").read_text().splitlines() if line and line[0] != "#"]
+floor_of = {room: number for number, floor in enumerate(floors) for room in floor}
+workshops = {"clients", "hidden", "package", "rooms", "support", "tool"}  # tests of no single room
+trouble = []
+
+
+def sources(folder):
+    return sorted(path for path in (root / folder).rglob("*.[ch]pp"))
+
+
+def included_by(path):
+    for number, line in enumerate(path.read_text().splitlines(), 1):
+        match = re.match(r'\s*#\s*include\s*(?:<(pcor/[^>]+)>|"([^"]+)")', line)
+        if match:
+            public, private = match.groups()
+            target = root / "include" / public if public else root / "src" / private
+            yield number, target
+
+
+for folder in ("include/pcor", "src", "tests"):
+    for child in sorted((root / folder).iterdir()):
+        known = set(floor_of) | (workshops if folder == "tests" else set())
+        if child.is_dir() and child.name not in known:
+            trouble.append(f"{folder}/{child.name} is no room of tests/rooms/floors.txt")
+
+includes = {}
+for folder in ("include/pcor", "src"):
+    base = root / folder
+    for path in sources(folder):
+        room = path.relative_to(base).parts[0]
+        where = path.relative_to(root)
+        includes[path] = []
+        for number, target in included_by(path):
+            if not target.exists():
+                trouble.append(f"{where}:{number}: there is no {target.relative_to(root)}; name headers of src from src")
+                continue
+            includes[path].append(target)
+            area = root / "include/pcor" if (root / "include") in target.parents else root / "src"
+            other = target.relative_to(area).parts[0]
+            if other != room and floor_of.get(other, 99) >= floor_of.get(room, -1):
+                trouble.append(f"{where}:{number}: the room {room} includes {target.relative_to(root)}, "
+                               f"of the room {other}, which is not below it")
+            if folder == "include/pcor" and area == root / "src":
+                trouble.append(f"{where}:{number}: an installed header includes one that is not installed")
+
+done = set()
+
+
+def follow(path, way):
+    if path in way:
+        circle = way[way.index(path):] + [path]
+        trouble.append("a circle: " + " includes ".join(str(each.relative_to(root)) for each in circle))
+        return
+    if path in done:
+        return
+    for target in includes.get(path, []):
+        follow(target, way + [path])
+    done.add(path)
+
+
+for path in includes:
+    follow(path, [])
+
+print("\n".join(trouble) if trouble else f"{len(includes)} files keep to {len(floors)} floors of {len(floor_of)} rooms")
+sys.exit(1 if trouble else 0)

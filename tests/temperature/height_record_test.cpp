@@ -1,0 +1,240 @@
+#include "temperature/height_record.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include <pcor/words/error.hpp>
+#include "support/made_air.hpp"
+
+namespace {
+
+using pcor::height_record;
+using pcor::HeightBlock;
+using pcor::HeightRecord;
+using pcor::WayKnown;
+using testing::HasSubstr;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+HeightRecord record_of(const pcor::FlightAir& air, double least_climb_rate = 0.0) {
+  pcor::HeightRecordOptions options;
+  options.least_climb_rate = least_climb_rate;
+  return height_record(air, {}, options);
+}
+
+double range_of_excess(const HeightRecord& record) {
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -lowest;
+  for (const HeightBlock& block : record.blocks) {
+    lowest = std::min(lowest, block.excess);
+    highest = std::max(highest, block.excess);
+  }
+  return highest - lowest;
+}
+
+std::string message_for(const pcor::FlightAir& air) {
+  try {
+    record_of(air);
+  } catch (const pcor::Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(HeightRecord, IntegralClosesInAirThatIsKnownInClosedForm) {
+  const HeightRecord record = record_of(made::air({}));
+  EXPECT_EQ(record.stretches, 1U);
+  EXPECT_EQ(record.samples, 5400U);
+  // The trapezium rule over 3 m errs by less than 1e-8 of the height; rounding of 5400 steps is smaller.
+  EXPECT_LT(range_of_excess(record), 1e-3);
+}
+
+TEST(HeightRecord, ErrorOfTheThermometerIsWhatTheColumnsSay) {
+  made::AirPlan plan;
+  const HeightRecord truth = record_of(made::air(plan));
+  plan.offset = 0.5;
+  plan.gain = 0.01;
+  const HeightRecord wrong = record_of(made::air(plan));
+  // T = (T_m - offset')/(1 + gain) with t_m = t + offset + gain t: the correction that undoes it exactly.
+  const double a0 = -0.5 / 1.01;
+  const double a1 = -0.01 / 1.01;
+  ASSERT_EQ(truth.blocks.size(), wrong.blocks.size());
+  for (std::size_t i = 0; i < truth.blocks.size(); ++i) {
+    const HeightBlock& block = wrong.blocks[i];
+    // Exact but for rounding: the integral is linear in the coefficients.
+    EXPECT_NEAR(block.excess - a0 * block.columns[0] - a1 * block.columns[1], truth.blocks[i].excess, 1e-6);
+  }
+}
+
+TEST(HeightRecord, ErrorOfTheStaticPressureIsWhatItSays) {
+  pcor::FlightAir air = made::air({});
+  const HeightRecord truth = record_of(air);
+  for (double& p : air.pressure) p += 0.1;
+  const HeightRecord wrong = record_of(air);
+  for (std::size_t i = 0; i < truth.blocks.size(); ++i) {
+    // To first order in 0.1 hPa, which is 1e-4 to 2e-4 of the pressure, of at most 0.8 m.
+    EXPECT_NEAR(wrong.blocks[i].excess - truth.blocks[i].excess, 0.1 * truth.blocks[i].pressure_error, 3e-4);
+  }
+}
+
+TEST(HeightRecord, BeginsAnewAfterAGapAndCrossesAShortOne) {
+  pcor::FlightAir air = made::air({});
+  for (std::size_t i = 1000; i < 1005; ++i) air.pressure[i] = nan;
+  EXPECT_EQ(record_of(air).stretches, 1U);
+  EXPECT_LT(range_of_excess(record_of(air)), 2e-3);
+  for (std::size_t i = 2000; i < 2030; ++i) air.temperature[i] = nan;
+  const HeightRecord record = record_of(air);
+  EXPECT_EQ(record.stretches, 2U);
+  EXPECT_EQ(std::count_if(record.blocks.begin(), record.blocks.end(),
+                          [](const HeightBlock& block) { return block.starts_stretch; }),
+            2);
+}
+
+TEST(HeightRecord, MissingHeightIsNotAGap) {
+  pcor::FlightAir air = made::air({});
+  for (std::size_t i = 1000; i < 1600; ++i) air.geopotential_height[i] = nan;
+  const HeightRecord record = record_of(air);
+  EXPECT_EQ(record.stretches, 1U);
+  EXPECT_EQ(record.missing_heights, 600U);
+  EXPECT_LT(range_of_excess(record), 1e-3);
+}
+
+TEST(HeightRecord, SpikesAreLeftOutAndStepsBeginAnew) {
+  pcor::FlightAir air = made::air({});
+  for (std::size_t i = 500; i < 520; ++i) air.geopotential_height[i] += 40.0;
+  for (std::size_t i = 3000; i < air.size(); ++i) air.geopotential_height[i] -= 15.0;
+  const HeightRecord record = record_of(air);
+  EXPECT_EQ(record.height_spikes, 20U);
+  EXPECT_EQ(record.height_steps, 1U);
+  EXPECT_EQ(record.stretches, 2U);
+}
+
+TEST(HeightRecord, KeepsOnlyWhatClimbsFastEnough) {
+  const HeightRecord all = record_of(made::air({}));
+  const HeightRecord climbs = record_of(made::air({}), 2.0);
+  EXPECT_LT(climbs.blocks.size(), all.blocks.size());
+  EXPECT_GE(climbs.stretches, 3U);  // three climbs and descents in one and a half periods
+  for (const HeightBlock& block : climbs.blocks) EXPECT_GE(std::abs(block.climb), 2.0);
+}
+
+TEST(HeightRecord, ArchivedStepsTakeThePlaceOfPressureAndHumidity) {
+  const pcor::FlightAir air = made::air({});
+  std::vector<double> steps(air.size(), nan);
+  for (std::size_t i = 1; i < air.size(); ++i)
+    steps[i] = -air.gas_constant[i] / 9.80665 * std::log(air.pressure[i] / air.pressure[i - 1]);
+  const HeightRecord direct = record_of(air);
+  const HeightRecord archived = height_record(air, steps, {});
+  ASSERT_EQ(direct.blocks.size(), archived.blocks.size());
+  for (std::size_t i = 0; i < direct.blocks.size(); ++i)
+    EXPECT_NEAR(direct.blocks[i].excess, archived.blocks[i].excess, 1e-6);  // rounding
+}
+
+TEST(HeightRecord, SlopeOfTheGeostrophicWindHasItsSign) {
+  pcor::FlightAir air = made::air({});
+  // A wind from the west of 10 m/s: in the north, high pressure lies to its right, in the south.
+  for (double& speed : air.east_speed) speed += 10.0;
+  const HeightRecord record = record_of(air);
+  ASSERT_TRUE(record.has_wind);
+  for (const HeightBlock& block : record.blocks) {
+    EXPECT_NEAR(block.slope_east, 0.0, 1e-9);
+    // f v/g at 40 degrees is 9.56e-5 for 10 m/s (R79: just its 10 m in 100 km).
+    EXPECT_NEAR(block.slope_north, -9.56e-5, 1e-7);
+  }
+}
+
+/// The same way, for rounding of sums over 200 km.
+void expect_same_way(const HeightRecord& one, const HeightRecord& other) {
+  ASSERT_EQ(one.blocks.size(), other.blocks.size());
+  for (std::size_t i = 0; i < one.blocks.size(); ++i) {
+    EXPECT_NEAR(one.blocks[i].east, other.blocks[i].east, 1e-6);
+    EXPECT_NEAR(one.blocks[i].north, other.blocks[i].north, 1e-6);
+  }
+}
+
+TEST(HeightRecord, WayThroughTheAirStandsInForThatOverTheGround) {
+  pcor::FlightAir air = made::air({});  // in calm air
+  const HeightRecord over_ground = record_of(air);
+  EXPECT_EQ(over_ground.way, WayKnown::over_ground);
+  air.east_speed.clear();
+  air.north_speed.clear();
+  const HeightRecord through_air = record_of(air);
+  EXPECT_EQ(through_air.way, WayKnown::through_air);
+  EXPECT_FALSE(through_air.has_wind);
+  expect_same_way(through_air, over_ground);
+}
+
+TEST(HeightRecord, WayThroughTheAirFillsGapsOfThatOverTheGround) {
+  pcor::FlightAir air = made::air({});
+  const HeightRecord whole = record_of(air);
+  EXPECT_EQ(whole.unknown_ways, 0U);
+  for (std::size_t i = 2000; i < 3000; ++i) air.east_speed[i] = nan;
+  const HeightRecord gap = record_of(air);
+  EXPECT_EQ(gap.unknown_ways, 1000U);
+  EXPECT_EQ(gap.way, WayKnown::over_ground);
+  expect_same_way(gap, whole);
+}
+
+TEST(HeightRecord, WithoutHeadingTheWayIsOneDirection) {
+  pcor::FlightAir air = made::air({});
+  air.east_speed.clear();
+  air.north_speed.clear();
+  auto samples = std::make_shared<pcor::FlightSamples>(*air.samples);
+  samples->motion.heading.clear();
+  air.samples = samples;
+  const HeightRecord record = record_of(air);
+  EXPECT_EQ(record.way, WayKnown::length);
+  EXPECT_FALSE(record.returns);
+  const double start = record.blocks.front().north;
+  for (const HeightBlock& block : record.blocks) {
+    EXPECT_EQ(block.east, 0.0);
+    // 120 m/s, as it is made.
+    EXPECT_NEAR(block.north - start, 120.0 * (block.time - record.blocks.front().time), 1e-3);
+  }
+}
+
+TEST(HeightRecord, KnowsWhetherTheFlightComesBack) {
+  made::AirPlan plan;
+  plan.seconds = 4500;  // three times round
+  EXPECT_TRUE(record_of(made::air(plan)).returns);
+  pcor::FlightAir through_air = made::air(plan);
+  through_air.east_speed.clear();
+  through_air.north_speed.clear();
+  EXPECT_FALSE(record_of(through_air).returns);  // the wind may have taken it anywhere
+  plan.turning = 1e9;                            // straight on
+  EXPECT_FALSE(record_of(made::air(plan)).returns);
+}
+
+TEST(HeightRecord, SaysWhatIsWrongWithTheHeight) {
+  pcor::FlightAir feet = made::air({});
+  for (double& height : feet.geopotential_height) height /= 0.3048;
+  EXPECT_THAT(message_for(feet), HasSubstr("in feet"));
+  EXPECT_THAT(message_for(feet), HasSubstr("[units] altitude = \"ft\""));
+
+  pcor::FlightAir rising = made::air({});
+  std::reverse(rising.pressure_altitude.begin(), rising.pressure_altitude.end());
+  for (double& p : rising.pressure_altitude) p = 7000.0 - p;
+  for (std::size_t i = 0; i < rising.size(); ++i) rising.pressure_altitude[i] = 7000.0 - rising.height[i];
+  EXPECT_THAT(message_for(rising), HasSubstr("no atmosphere"));
+
+  made::AirPlan level;
+  level.low = 3000.0;
+  level.high = 3100.0;
+  EXPECT_THAT(message_for(made::air(level)), HasSubstr("climbs by 100 m only"));
+
+  pcor::FlightAir none = made::air({});
+  none.height.clear();
+  EXPECT_THAT(message_for(none), HasSubstr("GGALT has no unit"));
+  none.height_variable.clear();
+  EXPECT_THAT(message_for(none), HasSubstr("no GPS height"));
+
+  pcor::FlightAir cold = made::air({});
+  cold.temperature.clear();
+  EXPECT_THAT(message_for(cold), HasSubstr("thermometer"));
+}
+
+}  // namespace

@@ -1,0 +1,148 @@
+#include "temperature/isobar_slope.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "support/made_air.hpp"
+
+namespace {
+
+using pcor::HeightBlock;
+using pcor::HeightRecord;
+using pcor::IsobarSlope;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+made::AirPlan sloping() {
+  made::AirPlan plan;
+  plan.seconds = 10800;
+  plan.turning = 5000.0;
+  plan.slope_east = 1e-4;
+  plan.slope_north = -5e-5;
+  return plan;
+}
+
+HeightRecord record_of(const made::AirPlan& plan) { return pcor::height_record(made::air(plan), {}, {}); }
+
+double range_of_excess(const HeightRecord& record) {
+  const auto [least, greatest] =
+      std::minmax_element(record.blocks.begin(), record.blocks.end(),
+                          [](const HeightBlock& a, const HeightBlock& b) { return a.excess < b.excess; });
+  return greatest->excess - least->excess;
+}
+
+TEST(IsobarSlope, ClimbsAndDescentsAndTheWholeFlightFindIt) {
+  for (const IsobarSlope option : {IsobarSlope::climb_descent, IsobarSlope::whole_flight}) {
+    const pcor::IsobarSlopeEstimate slope = estimate_isobar_slope(record_of(sloping()), option);
+    // Surfaces are met again over some tens of km: the usual slope draws the estimate by a few per cent.
+    EXPECT_NEAR(slope.east, 1e-4, 1e-5);
+    EXPECT_NEAR(slope.north, -5e-5, 1e-5);
+    EXPECT_GT(slope.blocks, 100U);
+  }
+}
+
+TEST(IsobarSlope, LevelLegsFindIt) {
+  made::AirPlan plan = sloping();
+  plan.low = 3000.0;
+  plan.high = 3310.0;
+  plan.period = 10800.0;  // 0.06 m/s: level, but enough of a climb to be a record
+  const pcor::IsobarSlopeEstimate slope = estimate_isobar_slope(record_of(plan), IsobarSlope::level_legs);
+  EXPECT_NEAR(slope.east, 1e-4, 1e-5);
+  EXPECT_NEAR(slope.north, -5e-5, 1e-5);
+}
+
+TEST(IsobarSlope, WhatIsTakenOffLeavesNothing) {
+  HeightRecord record = record_of(sloping());
+  const double before = range_of_excess(record);
+  take_off_isobar_slope(record, IsobarSlope::whole_flight);
+  EXPECT_LT(range_of_excess(record), 0.15 * before);
+}
+
+TEST(IsobarSlope, NothingIsTakenOffForNoneAndFitted) {
+  for (const IsobarSlope option : {IsobarSlope::none, IsobarSlope::fitted}) {
+    HeightRecord record = record_of(sloping());
+    const double before = range_of_excess(record);
+    take_off_isobar_slope(record, option);
+    EXPECT_EQ(range_of_excess(record), before);
+  }
+}
+
+TEST(IsobarSlope, GeostrophicWindOfTheSlopeTakesItOff) {
+  made::AirPlan plan = sloping();
+  pcor::FlightAir air = made::air(plan);
+  // The wind that belongs to the slope: v = (g/f) dz/dx, u = -(g/f) dz/dy.
+  const double over = 9.80665 / pcor::coriolis_parameter(plan.latitude);
+  auto samples = std::make_shared<pcor::FlightSamples>(*air.samples);
+  for (std::size_t i = 0; i < air.size(); ++i) {
+    const double wind_east = -over * plan.slope_north;
+    const double wind_north = over * plan.slope_east;
+    // The way over the ground stays as it is: the aircraft heads into the wind.
+    const double through_east = air.east_speed[i] - wind_east;
+    const double through_north = air.north_speed[i] - wind_north;
+    air.airspeed[i] = std::hypot(through_east, through_north);
+    samples->motion.heading[i] =
+        std::atan2(through_east, through_north) / pcor::constants::radians_per_degree;
+  }
+  air.samples = samples;
+  HeightRecord record = pcor::height_record(air, {}, {});
+  const double before = range_of_excess(record);
+  take_off_isobar_slope(record, IsobarSlope::geostrophic);
+  // Slopes are taken at the middles of steps along a curved way: a per cent.
+  EXPECT_LT(range_of_excess(record), 0.02 * before);
+}
+
+TEST(IsobarSlope, EstimatesLeaveAPartForTheLikelihood) {
+  for (const IsobarSlope option : {IsobarSlope::level_legs, IsobarSlope::climb_descent,
+                                   IsobarSlope::whole_flight, IsobarSlope::geostrophic}) {
+    HeightRecord record = record_of(sloping());
+    take_off_isobar_slope(record, option);
+    EXPECT_GT(record.slope_left, 0.0);
+    EXPECT_LT(record.slope_left, 1.0);
+  }
+  HeightRecord record = record_of(sloping());
+  take_off_isobar_slope(record, IsobarSlope::fitted);
+  EXPECT_EQ(record.slope_left, 1.0);
+}
+
+TEST(IsobarSlope, WhatTheFlightDoesNotTellIsLeftToTheLikelihood) {
+  pcor::FlightAir air = made::air(sloping());
+  air.east_speed.clear();
+  air.north_speed.clear();
+  HeightRecord no_wind = pcor::height_record(air, {}, {});
+  const double before = range_of_excess(no_wind);
+  take_off_isobar_slope(no_wind, IsobarSlope::geostrophic);
+  EXPECT_EQ(no_wind.slope_left, 1.0);
+  EXPECT_EQ(range_of_excess(no_wind), before);
+  EXPECT_THAT(no_wind.notes, ElementsAre(HasSubstr("through the air"), HasSubstr("no wind")));
+
+  auto samples = std::make_shared<pcor::FlightSamples>(*air.samples);
+  samples->motion.heading.clear();
+  air.samples = samples;
+  HeightRecord no_directions = pcor::height_record(air, {}, {});
+  take_off_isobar_slope(no_directions, IsobarSlope::whole_flight);
+  EXPECT_EQ(no_directions.slope_left, 1.0);
+  EXPECT_EQ(range_of_excess(no_directions), before);
+  EXPECT_THAT(no_directions.notes, ElementsAre(HasSubstr("heading"), HasSubstr("without directions")));
+}
+
+TEST(IsobarSlope, AFlightAlongALineTakesTheOtherDirectionForLevel) {
+  made::AirPlan plan = sloping();
+  plan.turning = 1e9;  // to the north only
+  const pcor::IsobarSlopeEstimate slope = estimate_isobar_slope(record_of(plan), IsobarSlope::whole_flight);
+  EXPECT_NEAR(slope.east, 0.0, 1e-9);
+  EXPECT_NEAR(slope.north, -5e-5, 5e-6);
+}
+
+TEST(IsobarSlope, NamesAreReadBack) {
+  for (const IsobarSlope option :
+       {IsobarSlope::fitted, IsobarSlope::none, IsobarSlope::level_legs, IsobarSlope::climb_descent,
+        IsobarSlope::whole_flight, IsobarSlope::geostrophic})
+    EXPECT_EQ(pcor::isobar_slope_named(name_of(option)), option);
+  EXPECT_FALSE(pcor::isobar_slope_named("steep"));
+}
+
+}  // namespace

@@ -1,0 +1,114 @@
+#include <gmock/gmock.h>
+#include <pcor/units/units.hpp>
+#include <pcor/words/error.hpp>
+
+#include <cmath>
+#include <limits>
+
+using pcor::Error;
+using pcor::UnitConversion;
+using pcor::UnitOwner;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+namespace {
+
+const UnitOwner owner{"PSFD", "flight.nc", "static_pressure"};
+
+std::string message(const std::string& from, const std::string& to, const UnitOwner& who = owner) {
+  try {
+    UnitConversion::between(from, to, who);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+double convert(double value, const std::string& from, const std::string& to) {
+  return UnitConversion::between(from, to, owner)(value);
+}
+
+}  // namespace
+
+TEST(Units, TheSpellingsOfRealFilesMeanWhatTheirAuthorsMeant) {
+  EXPECT_DOUBLE_EQ(convert(10, "C", "K"), 283.15);
+  EXPECT_DOUBLE_EQ(convert(10, "deg_C", "degC"), 10);
+  EXPECT_DOUBLE_EQ(convert(10, "degC", "K"), 283.15);
+  EXPECT_DOUBLE_EQ(convert(850, "mb", "hPa"), 850);
+  EXPECT_DOUBLE_EQ(convert(850, "mbar", "Pa"), 85000);
+  EXPECT_DOUBLE_EQ(convert(3, "M/s", "m/s"), 3);
+  EXPECT_DOUBLE_EQ(convert(3, "M/s2", "m/s2"), 3);
+  EXPECT_DOUBLE_EQ(convert(3, "M", "m"), 3);
+  EXPECT_DOUBLE_EQ(convert(1000, "feet", "m"), 304.8);
+  EXPECT_NEAR(convert(100, "knots", "m/s"), 100 * 1852. / 3600, 1e-12);
+  EXPECT_DOUBLE_EQ(convert(45, "deg", "degree"), 45);
+  EXPECT_DOUBLE_EQ(convert(45, "degree_T", "degree"), 45);
+  EXPECT_DOUBLE_EQ(convert(2, "none", "1"), 2);
+  EXPECT_DOUBLE_EQ(convert(7, "#/cm3", "cm-3"), 7);
+  EXPECT_DOUBLE_EQ(convert(7, "N/cm3", "cm-3"), 7) << "N counts particles, it is not newton";
+  EXPECT_DOUBLE_EQ(convert(7, "cnt", "1"), 7) << "counts, not centinit";
+  EXPECT_NEAR(convert(29.92126, "inHg", "hPa"), 1013.25, 0.003);
+}
+
+TEST(Units, EveryUnitOfTheReferenceFlightIsKnown) {
+  for (const char* unit :
+       {"%",     "C",         "K",    "Lpm",   "M",     "M-1",  "M/s",  "M/s2", "N/L",   "N/cM3",   "N/cm3",
+        "Vdc",   "W",         "W/M2", "cnt",   "cnts",  "day",  "deg",  "feet", "g/M3",  "g/kg",    "hours",
+        "knots", "mbar",      "none", "month", "ppbv",  "s",    "slpm", "splm", "uM",    "minutes", "vlpm",
+        "year",  "std cm3/s", "hPa",  "mb",    "deg_C", "degC", "m/s",  "m",    "degree"})
+    EXPECT_TRUE(pcor::is_known_unit(unit)) << unit;
+  EXPECT_FALSE(pcor::is_known_unit(""));
+  EXPECT_FALSE(pcor::is_known_unit("furlong-ish"));
+}
+
+TEST(Units, StandardSpellingChangesOnlyWhatNeedsIt) {
+  EXPECT_EQ(pcor::standard_unit("C"), "degC");
+  EXPECT_EQ(pcor::standard_unit("M/s"), "m/s");
+  EXPECT_EQ(pcor::standard_unit("hPa"), "hPa");
+  EXPECT_EQ(pcor::standard_unit("c"), "c") << "the table is case-sensitive";
+}
+
+TEST(Units, TheSameUnitChangesNothingToTheLastBit) {
+  for (const auto& [from, to] :
+       {std::pair{"hPa", "hPa"}, {"mbar", "hPa"}, {"C", "degC"}, {"deg", "degree"}}) {
+    const UnitConversion conversion = UnitConversion::between(from, to, owner);
+    EXPECT_EQ(conversion.scale(), 1) << from;
+    EXPECT_EQ(conversion.offset(), 0) << from;
+  }
+}
+
+TEST(Units, ConversionThereAndBackIsTheIdentity) {
+  const auto there = UnitConversion::between("degF", "K", owner),
+             back = UnitConversion::between("K", "degF", owner);
+  for (const double value : {-459.67, -40.0, 0.0, 32.0, 212.0}) EXPECT_NEAR(back(there(value)), value, 1e-10);
+}
+
+TEST(Units, MissingStaysMissing) {
+  EXPECT_TRUE(std::isnan(convert(std::numeric_limits<double>::quiet_NaN(), "C", "K")));
+}
+
+TEST(Units, AnUnknownUnitSaysHowToStateIt) {
+  EXPECT_EQ(message("furlong-ish", "hPa"),
+            "flight.nc: PSFD has the unit \"furlong-ish\", which is not known; add unit.static_pressure = "
+            "\"hPa\", or "
+            "the unit it is in, to the [units] table of the model file");
+}
+
+TEST(Units, AnAbsentUnitSaysHowToStateIt) {
+  EXPECT_THAT(message("", "hPa"),
+              AllOf(HasSubstr("PSFD has no unit"), HasSubstr("unit.static_pressure = \"hPa\"")));
+}
+
+TEST(Units, AnotherQuantityIsRefused) {
+  EXPECT_THAT(message("K", "hPa"),
+              AllOf(HasSubstr("\"K\", which cannot be converted to hPa"), HasSubstr("PSFD")));
+  EXPECT_THAT(message("degC", "degree"), HasSubstr("cannot be converted"));
+}
+
+TEST(Units, ALogarithmicUnitIsRefused) { EXPECT_THAT(message("dBZ", "m3"), HasSubstr("not proportional")); }
+
+TEST(Units, WithoutARoleTheMessageNamesNoTable) {
+  EXPECT_THAT(message("", "hPa", {"PSFD", "", ""}),
+              AllOf(HasSubstr("PSFD has no unit"), Not(HasSubstr("[units]"))));
+}
