@@ -10,6 +10,9 @@
 #include "batch/batch_kernel.hpp"
 
 namespace pcor {
+
+using namespace internal;
+
 namespace {
 
 Chain built(const Model& model, const std::vector<Quantity>& recorded, CorrectWith with) {
@@ -44,9 +47,8 @@ bool has_avx2() {
 #endif
 }
 
-detail::BatchKernel kernel() {
-  static const detail::BatchKernel best =
-      detail::run_batch_avx2 != nullptr && has_avx2() ? detail::run_batch_avx2 : &detail::run_batch;
+BatchKernel kernel() {
+  static const BatchKernel best = run_batch_avx2 != nullptr && has_avx2() ? run_batch_avx2 : &run_batch;
   return best;
 }
 
@@ -66,7 +68,7 @@ void Batch::run(const std::vector<Input>& inputs, const std::vector<Output>& out
         "the values of '{}' are missing",
         place < quantity_count ? facts_of(needed).name : chain_.extra_names()[place - quantity_count]));
   }
-  detail::BatchJob job;
+  BatchJob job;
   job.chain = &chain_;
   job.parameters = parameters != nullptr ? parameters : chain_.parameters().data();
   job.corrects_with_lams = with_ == CorrectWith::lams;

@@ -5,14 +5,14 @@
 #if defined(__AVX2__) && defined(__FMA__)
 #include "batch/pack.hpp"
 
-namespace pcor::detail {
+namespace pcor::internal {
 const BatchKernel run_batch_avx2 = &run_batch_in<Pack<xsimd::fma3<xsimd::avx2>>>;
-}  // namespace pcor::detail
+}  // namespace pcor::internal
 
 #else
 
-namespace pcor::detail {
+namespace pcor::internal {
 const BatchKernel run_batch_avx2 = nullptr;
-}  // namespace pcor::detail
+}  // namespace pcor::internal
 
 #endif

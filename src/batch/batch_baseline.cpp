@@ -1,8 +1,8 @@
 #include "batch/batch_kernel.hpp"
 #include "batch/pack.hpp"
 
-namespace pcor::detail {
+namespace pcor::internal {
 
 void run_batch(const BatchJob& job) { run_batch_in<Pack<xsimd::default_arch>>(job); }
 
-}  // namespace pcor::detail
+}  // namespace pcor::internal

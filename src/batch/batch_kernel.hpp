@@ -6,7 +6,7 @@
 #include <pcor/batch/batch.hpp>
 #include <pcor/realtime/chain.hpp>
 
-namespace pcor::detail {
+namespace pcor::internal {
 
 /// What a kernel does: plain pointers, because its code may be compiled for another processor than the rest.
 struct BatchJob {
@@ -58,4 +58,4 @@ void run_batch_in(const BatchJob& job) {
   }
 }
 
-}  // namespace pcor::detail
+}  // namespace pcor::internal

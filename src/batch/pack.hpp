@@ -9,7 +9,7 @@
 #include <pcor/physics/scalar.hpp>
 #include "batch/pack_math.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// One truth value for each lane of a pack.
 template <class Arch>
@@ -132,4 +132,4 @@ class Pack {
   Register second_;
 };
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -5,7 +5,7 @@
 #include <limits>
 #include <xsimd/xsimd.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// Powers, exponential and logarithm of a vector register. xsimd has the last two, too, but they take twice
 /// the time where a processor cannot convert between numbers and 64-bit integers, as with AVX2.
@@ -129,4 +129,4 @@ template <class Arch>
   return exponential(exponent * logarithm(Register(1.0) + part / whole)) - Register(1.0);
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -11,7 +11,7 @@
 #include <pcor/physics/geodesy.hpp>
 #include <pcor/words/utc.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -282,4 +282,4 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
   return result;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -5,7 +5,7 @@
 
 #include "checks/flown.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// What the model's pressure is held against in a manoeuvre that swings an angle.
 enum class Witness {
@@ -61,4 +61,4 @@ struct AngleCheck {
 
 CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& check);
 
-}  // namespace pcor
+}  // namespace pcor::internal

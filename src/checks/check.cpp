@@ -14,6 +14,9 @@
 #include "roles/recorded_model.hpp"
 
 namespace pcor {
+
+using namespace internal;
+
 namespace {
 
 struct NamedCheck {

@@ -7,7 +7,7 @@
 #include <pcor/checks/check.hpp>
 #include "residuals/flight_air.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// A pair of pressures as measured, hPa, one value for each record.
 struct MeasuredPair {
@@ -41,4 +41,4 @@ CheckResult check_layers(const CheckedFlights& flights);
 CheckResult check_lams_temperature(const CheckedFlights& flights);
 CheckResult check_spectrum(const CheckedFlights& flights);
 
-}  // namespace pcor
+}  // namespace pcor::internal

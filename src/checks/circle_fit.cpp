@@ -5,7 +5,7 @@
 
 #include <pcor/physics/constants.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 
 CircleFit fit_circle(const std::vector<double>& airspeed, const std::vector<double>& heading,
                      const std::vector<double>& east_speed, const std::vector<double>& north_speed,
@@ -52,4 +52,4 @@ CircleFit fit_circle(const std::vector<double>& airspeed, const std::vector<doub
   return circle;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

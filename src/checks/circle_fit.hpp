@@ -4,7 +4,7 @@
 
 #include "checks/statistics.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// What one circle says.
 struct CircleFit {
@@ -30,4 +30,4 @@ CircleFit fit_circle(const std::vector<double>& airspeed, const std::vector<doub
                      const std::vector<double>& east_speed, const std::vector<double>& north_speed,
                      const std::vector<double>& time, double step);
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -8,7 +8,7 @@
 #include "checks/flown.hpp"
 #include "checks/leg_pair.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 /// As for the reverse heading, m/s.
@@ -159,4 +159,4 @@ CheckResult check_circles(const CheckedFlights& flights) {
   return result;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

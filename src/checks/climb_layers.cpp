@@ -13,7 +13,7 @@
 #include <pcor/words/error.hpp>
 #include "checks/statistics.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -448,4 +448,4 @@ LayerFit fit_layers(const std::vector<FlightLayers>& flights) {
   return fit;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

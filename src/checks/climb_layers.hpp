@@ -8,7 +8,7 @@
 
 #include "residuals/flight_air.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// Which climbs and descents make layers, and how well pressure and height are known.
 struct LayerOptions {
@@ -129,4 +129,4 @@ struct LayerFit {
 /// The fit over the layers of some flights. NaN where there is no layer.
 LayerFit fit_layers(const std::vector<FlightLayers>& flights);
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -8,7 +8,7 @@
 
 #include <pcor/words/utc.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -156,4 +156,4 @@ CheckResult not_run(std::string name, std::string reason) {
   return result;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

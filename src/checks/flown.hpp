@@ -9,7 +9,7 @@
 #include "checks/checks.hpp"
 #include "checks/statistics.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// A stretch of a flight in which something was flown, with the samples of it that may be used.
 struct Flown {
@@ -69,4 +69,4 @@ const std::vector<double>& sideslip_of(const FlightAir& air);
 /// A result with the name of its check, and why it did not run.
 CheckResult not_run(std::string name, std::string reason);
 
-}  // namespace pcor
+}  // namespace pcor::internal

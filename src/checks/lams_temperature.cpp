@@ -8,7 +8,7 @@
 #include <pcor/words/utc.hpp>
 #include "checks/flown.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -346,4 +346,4 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
   return result;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

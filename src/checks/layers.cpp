@@ -9,7 +9,7 @@
 #include <pcor/words/utc.hpp>
 #include "checks/flown.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -220,4 +220,4 @@ CheckResult check_layers(const CheckedFlights& flights) {
   return result;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

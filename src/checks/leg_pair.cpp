@@ -4,7 +4,7 @@
 
 #include <pcor/physics/constants.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 /// A wind from what a leg sees along its nose and to starboard of it, m/s.
@@ -54,4 +54,4 @@ LegPair pair_of(const LegMean& first, const LegMean& second) {
   return pair;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -4,7 +4,7 @@
 
 #include "checks/statistics.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// One leg of a reverse heading, as means over it.
 struct LegMean {
@@ -48,4 +48,4 @@ double pressure_per_airspeed(double pressure, double mach, double airspeed);
 /// is then taken out. Source: memo R58-R62.
 LegPair pair_of(const LegMean& first, const LegMean& second);
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -8,7 +8,7 @@
 
 #include <pcor/numerics/noise.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -134,4 +134,4 @@ ReportTable table_of(const RedundantFit& fit, const std::string& title) {
   return table;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

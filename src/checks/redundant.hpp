@@ -7,7 +7,7 @@
 #include <pcor/numerics/line_fit.hpp>
 #include "checks/flown.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// Two measurements of one pressure over all flights, one flight after another, NaN where either may not be
 /// used.
@@ -56,4 +56,4 @@ void add_numbers(const RedundantFit& fit, CheckResult& result);
 /// The two fits as a table.
 ReportTable table_of(const RedundantFit& fit, const std::string& title);
 
-}  // namespace pcor
+}  // namespace pcor::internal

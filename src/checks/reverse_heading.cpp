@@ -10,7 +10,7 @@
 #include "checks/flown.hpp"
 #include "checks/leg_pair.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 /// The smallest error of the airspeed that matters, m/s: that of the memo's GV (R64), some 0.3 hPa.
@@ -301,4 +301,4 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
   return result;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -11,7 +11,7 @@
 #include <pcor/physics/geodesy.hpp>
 #include "checks/flown.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -269,4 +269,4 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
   return result;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

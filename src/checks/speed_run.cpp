@@ -9,7 +9,7 @@
 #include "checks/flown.hpp"
 #include "checks/leg_pair.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 /// The smallest error of delta-p from the slow to the fast end of a run that matters, hPa.
@@ -245,4 +245,4 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
   return result;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

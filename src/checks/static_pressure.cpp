@@ -5,7 +5,7 @@
 
 #include "checks/redundant.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 /// The smallest difference of two corrected static pressures that matters, hPa: the rms with which the memo's
@@ -80,4 +80,4 @@ CheckResult check_static_pressure(const CheckedFlights& flights) {
   return result;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

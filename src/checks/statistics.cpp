@@ -9,7 +9,7 @@
 
 #include <pcor/numerics/noise.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -129,4 +129,4 @@ std::string with_error(const Estimated& number, const std::string& unit, int dig
                      unit.empty() ? "" : " ", unit);
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

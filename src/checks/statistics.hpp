@@ -6,7 +6,7 @@
 
 #include <pcor/checks/check.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// A number with its standard error.
 struct Estimated {
@@ -50,4 +50,4 @@ CheckVerdict together(CheckVerdict a, CheckVerdict b);
 /// "+0.31 +- 0.04 hPa".
 std::string with_error(const Estimated& number, const std::string& unit, int digits = 2);
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -5,7 +5,7 @@
 
 #include "checks/redundant.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 /// The smallest difference of two total pressures that matters, hPa: twice what the transducers of two
@@ -90,4 +90,4 @@ CheckResult check_total_pressure(const CheckedFlights& flights) {
   return result;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -1,6 +1,6 @@
 #include "checks/angle_sensitivity.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 CheckResult check_yaw(const CheckedFlights& flights) {
   AngleCheck check;
@@ -18,4 +18,4 @@ CheckResult check_yaw(const CheckedFlights& flights) {
   return run_angle_check(flights, check);
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

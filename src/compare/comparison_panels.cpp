@@ -9,7 +9,7 @@
 
 #include <pcor/words/utc.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -282,4 +282,4 @@ void ComparisonPanels::summarise() {
   for (const std::string& note : comparison_.notes) report_.facts.emplace_back("Note", note);
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// The columns that all pictures of a comparison share, and the panels of every report of one.
 class ComparisonPanels {
@@ -32,4 +32,4 @@ class ComparisonPanels {
   std::vector<std::string> defects_;  // delta-p of the reference and of every model
 };
 
-}  // namespace pcor
+}  // namespace pcor::internal

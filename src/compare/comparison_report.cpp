@@ -4,6 +4,8 @@
 
 namespace pcor {
 
+using namespace internal;
+
 Report comparison_report(const Comparison& comparison) {
   ComparisonPanels panels(comparison);
   panels.report().title = "Pressure corrections against " + comparison.reference;

@@ -11,7 +11,7 @@
 #include "diagnose/manoeuvres.hpp"
 #include "numerics/triangular_factor.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double margin = 9.0;  // of chi2, as for aliases
@@ -176,4 +176,4 @@ void advise(const Analysis& analysis, const CandidateSet& set, const ModelFile& 
   }
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

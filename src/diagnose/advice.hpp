@@ -6,7 +6,7 @@
 #include "diagnose/analysis.hpp"
 #include "diagnose/candidates.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// Puts into every finding with aliases which manoeuvre would tell it from them, and how surely.
 ///
@@ -17,4 +17,4 @@ namespace pcor {
 void advise(const Analysis& analysis, const CandidateSet& set, const ModelFile& model,
             const Reference& reference, const MaskOptions& mask, std::vector<Finding>& findings);
 
-}  // namespace pcor
+}  // namespace pcor::internal

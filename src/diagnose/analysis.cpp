@@ -7,7 +7,7 @@
 #include "diagnose/outliers.hpp"
 #include "numerics/triangular_factor.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -229,4 +229,4 @@ std::vector<double> Analysis::drift(std::size_t flight, const std::vector<std::s
   return result;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -10,7 +10,7 @@
 #include "diagnose/scores.hpp"
 #include "diagnose/search.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// The statistics of a diagnosis: noise and missing effects of some flights, found in turn, since each needs
 /// the other.
@@ -76,4 +76,4 @@ class Analysis {
   SearchResult result_{};
 };
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double width = 4.0;  // s
@@ -41,4 +41,4 @@ Binning::Binning(const std::vector<double>& residual, const std::vector<double>&
   count_ = Eigen::Map<const Eigen::VectorXd>(counts.data(), static_cast<Eigen::Index>(counts.size()));
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

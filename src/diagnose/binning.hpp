@@ -6,7 +6,7 @@
 
 #include <pcor/numerics/noise.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// Means over about four seconds: long enough that the noise of sensors is not what whitening amplifies,
 /// short enough for every manoeuvre.
@@ -42,4 +42,4 @@ class Binning {
   std::vector<Stretch> stretches_;
 };
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -11,7 +11,7 @@
 #include <pcor/words/error.hpp>
 #include "roles/usual_variables.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 bool has_effect(const ModelFile& model, std::string_view id) {
@@ -178,4 +178,4 @@ CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffe
   return set;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -7,7 +7,7 @@
 #include <pcor/flight/flight.hpp>
 #include <pcor/laws/model_file.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// A parameter of a candidate that is tested.
 struct CandidateParameter {
@@ -39,4 +39,4 @@ struct CandidateSet {
 CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffect>& formulas,
                              const std::vector<const Flight*>& flights);
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -15,7 +15,7 @@
 #include <pcor/words/error.hpp>
 #include "numerics/triangular_factor.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -291,4 +291,4 @@ FlightColumns find_columns(std::shared_ptr<const FlightSamples> extended, const 
   return columns;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

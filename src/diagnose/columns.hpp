@@ -9,7 +9,7 @@
 #include "diagnose/binning.hpp"
 #include "diagnose/candidates.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// What a diagnosis sees of a flight, one value for each record.
 ///
@@ -45,4 +45,4 @@ Eigen::MatrixXd binned_columns(const FlightColumns& flight, const Binning& bins)
 /// The names of the free coefficients of a model, like "static-qp.a2": the base of the columns.
 std::vector<std::string> base_names(const ModelFile& model);
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -18,6 +18,9 @@
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor {
+
+using namespace internal;
+
 namespace {
 
 constexpr std::size_t fewest_samples = 300;

@@ -9,7 +9,7 @@
 
 #include "diagnose/finding_page.hpp"
 
-namespace pcor::report {
+namespace pcor::internal::report {
 namespace {
 
 constexpr std::size_t rivals_in_title = 2;
@@ -331,4 +331,4 @@ void add_residual_panels(DiagnosisPanels& panels, const std::vector<std::string>
                          residuals});
 }
 
-}  // namespace pcor::report
+}  // namespace pcor::internal::report

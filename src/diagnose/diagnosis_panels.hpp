@@ -13,7 +13,7 @@
 #include <pcor/report/report.hpp>
 
 /// What reports of a diagnosis and of an improvement share: their columns, panels and tables.
-namespace pcor::report {
+namespace pcor::internal::report {
 
 using Flights = std::vector<FlightDiagnosis>;
 using Series = std::vector<double>;
@@ -150,4 +150,4 @@ void add_residual_panels(DiagnosisPanels& panels, const std::vector<std::string>
 /// The largest values that coefficients may have, 95 % confidence: "|a0| < 0.001".
 std::string coefficient_limits(const UpperLimit& limit);
 
-}  // namespace pcor::report
+}  // namespace pcor::internal::report

@@ -14,9 +14,12 @@
 #include "diagnose/finding_page.hpp"
 
 namespace pcor {
+
+using namespace internal;
+
 namespace {
 
-using namespace report;
+using namespace internal::report;
 
 constexpr std::size_t limits_in_summary = 3;
 

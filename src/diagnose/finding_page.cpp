@@ -12,7 +12,7 @@
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/words/utc.hpp>
 
-namespace pcor::report {
+namespace pcor::internal::report {
 namespace {
 
 constexpr std::size_t most_in_a_sentence = 3;
@@ -261,4 +261,4 @@ ReportText finding_page(const Finding& finding, double threshold, const std::str
   return page;
 }
 
-}  // namespace pcor::report
+}  // namespace pcor::internal::report

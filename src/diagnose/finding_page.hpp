@@ -6,7 +6,7 @@
 #include <pcor/diagnose/diagnose.hpp>
 #include <pcor/report/report.hpp>
 
-namespace pcor::report {
+namespace pcor::internal::report {
 
 /// Words that reports of a diagnosis share. Numbers that are not known are left out or called unknown.
 
@@ -55,4 +55,4 @@ std::vector<std::string> unexplained_text(const Unexplained& unexplained);
 /// @param threshold chi2 that an effect had to exceed
 ReportText finding_page(const Finding& finding, double threshold, const std::string& heading);
 
-}  // namespace pcor::report
+}  // namespace pcor::internal::report

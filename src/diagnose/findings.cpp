@@ -10,7 +10,7 @@
 #include <pcor/effects/catalogue.hpp>
 #include "numerics/triangular_factor.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double two_sided_95 = 1.959963984540054;  // standard deviations of a normal distribution
@@ -367,4 +367,4 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
   return limits;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -7,7 +7,7 @@
 #include "diagnose/analysis.hpp"
 #include "diagnose/candidates.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// The findings of an analysis, the strongest first, without advice.
 std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Candidate>& candidates);
@@ -27,4 +27,4 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
 /// What is flown between two times, e.g. "level, yaw manoeuvre".
 std::string regimes_between(const FlightSamples& samples, double begin, double end);
 
-}  // namespace pcor
+}  // namespace pcor::internal

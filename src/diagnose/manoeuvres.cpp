@@ -14,7 +14,7 @@
 #include "diagnose/manoeuvres/path.hpp"
 #include "diagnose/manoeuvres/recording.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 using namespace manoeuvres;
@@ -326,4 +326,4 @@ std::vector<Manoeuvre> standard_manoeuvres(const std::vector<std::shared_ptr<con
   return Programme(usable, flown, aircraft).all();
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -6,7 +6,7 @@
 
 #include <pcor/residuals/residuals.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// A manoeuvre that could be flown, as the aircraft of some flights would record it.
 struct Manoeuvre {
@@ -26,4 +26,4 @@ struct Manoeuvre {
 /// where the flights do not teach what it needs.
 std::vector<Manoeuvre> standard_manoeuvres(const std::vector<std::shared_ptr<const FlightSamples>>& flights);
 
-}  // namespace pcor
+}  // namespace pcor::internal

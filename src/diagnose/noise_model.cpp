@@ -5,7 +5,7 @@
 
 #include "numerics/triangular_factor.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -139,4 +139,4 @@ Eigen::MatrixXd whitened(const Eigen::Ref<const Eigen::MatrixXd>& columns, const
   return result;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -5,7 +5,7 @@
 
 #include "diagnose/binning.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// The noise of a series of binned residuals: an autoregression whose level changes every five minutes, and
 /// beside it a slow drift, a random walk.
@@ -29,4 +29,4 @@ Eigen::MatrixXd whitened(const Eigen::Ref<const Eigen::MatrixXd>& columns, const
 /// The shapes of slow drift over a flight, cos(pi k t/T)/k: periods down to five minutes, at most 48.
 Eigen::MatrixXd drift_shapes(const Binning& bins);
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -5,7 +5,7 @@
 
 #include <pcor/numerics/noise.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double limit = 4.5;
@@ -78,4 +78,4 @@ std::vector<double> without_outliers(const std::vector<double>& residual,
   return result;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// Replaces outliers of a residual by what the values before them predict. An outlier is a sample whose
 /// innovation is beyond 4.5 robust deviations of its five minutes: a sudden departure, never a large value
@@ -14,4 +14,4 @@ std::vector<double> without_outliers(const std::vector<double>& residual,
                                      const std::vector<double>& predicted, const std::vector<double>& time,
                                      double step, std::size_t& count);
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -6,7 +6,7 @@
 
 #include "numerics/triangular_factor.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double block_time = 60.0;  // s
@@ -143,4 +143,4 @@ DriftFit likely_drift(const std::vector<Binning>& bins, const std::vector<Eigen:
   return result;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -5,7 +5,7 @@
 
 #include "diagnose/noise_model.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// Whitened columns and residuals of all flights, and the sums that a search needs. Slow drift is
 /// marginalised: sums are those of a generalised least-squares problem whose noise holds the drift too.
@@ -41,4 +41,4 @@ struct DriftFit {
 DriftFit likely_drift(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
                       const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise);
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -10,7 +10,7 @@
 #include "numerics/pseudo_inverse.hpp"
 #include "numerics/triangular_factor.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double absorbed_below = 5e-3;   // of a variance: 7 % of the amplitude
@@ -471,4 +471,4 @@ void Search::fit(const std::vector<std::size_t>& chosen, Eigen::VectorXd& estima
 
 double Search::variance(const std::vector<std::size_t>& chosen) const { return given(chosen).variance; }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -8,7 +8,7 @@
 #include <pcor/laws/model_file.hpp>
 #include "diagnose/scores.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// Columns that belong together: the tested parameters of one effect.
 struct ColumnGroup {
@@ -124,4 +124,4 @@ class Search {
   double squares_ = 0.0;
 };
 
-}  // namespace pcor
+}  // namespace pcor::internal

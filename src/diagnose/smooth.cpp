@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr std::size_t degree = 2;
@@ -63,4 +63,4 @@ void Smooth::evaluate(double value, double* out) const {
   }
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

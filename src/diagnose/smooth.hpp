@@ -3,7 +3,7 @@
 #include <Eigen/Dense>
 #include <vector>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// Smooth functions of one variable: quadratic splines with knots where the values are, or one column for
 /// each value where there are only a few. The first column is the variable itself, centred and of unit
@@ -29,4 +29,4 @@ class Smooth {
   std::vector<double> knots_{};
 };
 
-}  // namespace pcor
+}  // namespace pcor::internal

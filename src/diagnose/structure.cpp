@@ -10,7 +10,7 @@
 #include "numerics/pseudo_inverse.hpp"
 #include "numerics/triangular_factor.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr std::size_t most_columns = 6;
@@ -211,4 +211,4 @@ bool shares_noise(const std::vector<std::vector<double>>& residuals,
   return std::abs(*middle) > level;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

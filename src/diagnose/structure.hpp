@@ -9,7 +9,7 @@
 #include "diagnose/noise_model.hpp"
 #include "diagnose/smooth.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// What a smooth function of a variable explains of residuals that a model leaves.
 struct Structure {
@@ -81,4 +81,4 @@ class StructureTest {
 bool shares_noise(const std::vector<std::vector<double>>& residuals,
                   const std::vector<const double*>& values);
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -10,7 +10,7 @@
 #include "diagnose/structure.hpp"
 #include "numerics/chi_squared.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double chance = 0.002;  // that any verdict comes of noise
@@ -295,4 +295,4 @@ UnexplainedStructure find_unexplained(const Analysis& analysis, const std::vecto
   return result;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -6,7 +6,7 @@
 #include <pcor/flight/flight.hpp>
 #include "diagnose/analysis.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// Structure that base and chosen effects leave.
 struct UnexplainedStructure {
@@ -26,4 +26,4 @@ UnexplainedStructure find_unexplained(const Analysis& analysis, const std::vecto
                                       const ModelFile& model, const Reference& reference,
                                       const DiagnoseOptions& options, double residual_rms, double noise_rms);
 
-}  // namespace pcor
+}  // namespace pcor::internal

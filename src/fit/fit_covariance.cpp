@@ -10,7 +10,7 @@
 
 #include <pcor/numerics/noise.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -132,4 +132,4 @@ FitCovariance fit_covariance(FitFlights& flights, const Eigen::VectorXd& paramet
   return found;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -5,7 +5,7 @@
 
 #include "fit/fit_flights.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 struct FitCovariance {
   Eigen::MatrixXd matrix{};  ///< of the wanted parameters; zero for those at a bound
@@ -27,4 +27,4 @@ FitCovariance fit_covariance(FitFlights& flights, const Eigen::VectorXd& paramet
                              const Eigen::MatrixXd& earlier, const std::vector<bool>& at_bound,
                              const Eigen::VectorXd& prior_weight, double prior_strength);
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -11,7 +11,7 @@
 
 #include <pcor/words/error.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -327,4 +327,4 @@ double FitFlights::deviation(const Eigen::VectorXd& parameters, const Eigen::Vec
   return std::sqrt(sum / static_cast<double>(samples_));
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -18,7 +18,7 @@ namespace ceres {
 class LossFunction;
 }
 
-namespace pcor {
+namespace pcor::internal {
 
 /// Passes over a flight take so many samples at a time, which fit into the processor's cache.
 inline constexpr std::size_t samples_per_chunk = 1024;
@@ -164,4 +164,4 @@ class FitFlights {
   Eigen::VectorXd noise_offsets_;
 };
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -8,7 +8,7 @@
 
 #include <pcor/words/error.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr unsigned long seed = 20120106;
@@ -118,4 +118,4 @@ Eigen::VectorXd global_search(FitFlights& flights, const FitSetup& setup, const 
   return trial.best();
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -7,7 +7,7 @@
 
 #include "fit/fit_flights.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// Where a global search may look for a parameter.
 struct SearchRange {
@@ -28,4 +28,4 @@ Eigen::VectorXd global_search(FitFlights& flights, const FitSetup& setup, const 
                               const std::vector<bool>& linear, const std::vector<SearchRange>& ranges,
                               const std::function<void()>& tell);
 
-}  // namespace pcor
+}  // namespace pcor::internal

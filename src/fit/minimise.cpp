@@ -10,7 +10,7 @@
 
 #include <pcor/words/error.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -134,4 +134,4 @@ void minimise(FitFlights& flights, const Eigen::VectorXd& parameters, const cere
   }
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

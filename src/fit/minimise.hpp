@@ -7,7 +7,7 @@
 #include <pcor/laws/model_file.hpp>
 #include "fit/fit_flights.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// What draws unknowns to their starting values: weight (x - start) as further residuals. Empty for none.
 struct Prior {
@@ -27,4 +27,4 @@ void minimise(FitFlights& flights, const Eigen::VectorXd& parameters, const cere
               const Prior& prior, const std::vector<Bounds>& bounds, const std::function<void()>& tell,
               Eigen::VectorXd& x);
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -25,6 +25,9 @@
 #include "numerics/bounded_least_squares.hpp"
 
 namespace pcor {
+
+using namespace internal;
+
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();

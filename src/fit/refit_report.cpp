@@ -9,6 +9,9 @@
 #include "compare/comparison_panels.hpp"
 
 namespace pcor {
+
+using namespace internal;
+
 namespace {
 
 /// With a capital letter and a full stop.

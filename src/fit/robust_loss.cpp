@@ -1,6 +1,6 @@
 #include "fit/robust_loss.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 // 95 % efficiency on normal noise, in robust deviations (Huber and Ronchetti 2009, Robust Statistics; Holland
@@ -27,4 +27,4 @@ std::unique_ptr<ceres::LossFunction> loss_function(Loss loss, double deviation) 
   return nullptr;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

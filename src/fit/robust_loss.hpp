@@ -6,7 +6,7 @@
 
 #include <pcor/fit/refit.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// Beyond so many robust deviations Tukey's loss gives a sample no weight: 95 % efficiency on normal noise
 /// (Holland and Welsch 1977, Communications in Statistics A6, 813).
@@ -16,4 +16,4 @@ inline constexpr double tukey_width = 4.685;
 /// deviation.
 std::unique_ptr<ceres::LossFunction> loss_function(Loss loss, double deviation);
 
-}  // namespace pcor
+}  // namespace pcor::internal

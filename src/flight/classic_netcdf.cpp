@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
@@ -148,4 +148,4 @@ std::optional<std::uintmax_t> promised_size_of_classic(const std::filesystem::pa
   return size;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -19,6 +19,9 @@
 #include "flight/time_source.hpp"
 
 namespace pcor {
+
+using namespace internal;
+
 namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();

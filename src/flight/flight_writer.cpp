@@ -18,6 +18,9 @@
 #include "flight/netcdf_file.hpp"
 
 namespace pcor {
+
+using namespace internal;
+
 namespace {
 
 constexpr float fill = -32767;

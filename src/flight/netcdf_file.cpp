@@ -13,7 +13,7 @@
 
 #include "flight/classic_netcdf.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr int closed = -1;
@@ -225,4 +225,4 @@ std::vector<double> NetcdfFile::number_attribute(int variable, const std::string
   return numbers;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// An open netCDF file: the netCDF C library behind errors of ours. Private to the reader and the writer.
 class NetcdfFile {
@@ -69,4 +69,4 @@ std::string netcdf_reason(int status);
 /// is larger.
 constexpr std::size_t classic_buffer_bytes = std::size_t{32} << 10;
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double day = 86400;
@@ -147,4 +147,4 @@ TimeSource find_time(const NetcdfFile& file) {
               name + ",o,c,\"seconds since 2004-02-18 00:00:00 +0000\" " + path);
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

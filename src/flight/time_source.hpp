@@ -4,7 +4,7 @@
 
 #include "flight/netcdf_file.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// How a file tells the time: seconds since 1970 UTC are `raw * scale + offset` of a variable over
 /// `dimension`.
@@ -19,4 +19,4 @@ struct TimeSource {
 /// Finds it, see Flight. @throws Error if the file has no records or does not tell the time.
 TimeSource find_time(const NetcdfFile& file);
 
-}  // namespace pcor
+}  // namespace pcor::internal

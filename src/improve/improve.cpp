@@ -15,6 +15,9 @@
 #include "improve/improve_loop.hpp"
 
 namespace pcor {
+
+using namespace internal;
+
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();

@@ -4,7 +4,7 @@
 
 #include <pcor/improve/improve.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// What the loop of `improve` is made of, so that it can be tried without flights.
 struct ImproveLoop {
@@ -21,4 +21,4 @@ struct ImproveLoop {
   Improvement run(const ModelFile& model) const;
 };
 
-}  // namespace pcor
+}  // namespace pcor::internal

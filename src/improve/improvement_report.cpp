@@ -15,9 +15,12 @@
 #include "diagnose/finding_page.hpp"
 
 namespace pcor {
+
+using namespace internal;
+
 namespace {
 
-using namespace report;
+using namespace internal::report;
 
 std::string rung_name(const ImproveStep& step) {
   return step.added.empty() ? "as it was" : "+ " + step.added;

@@ -10,7 +10,7 @@
 #include <pcor/words/error.hpp>
 #include "laws/calibration.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -74,4 +74,4 @@ std::string archived_difference(const std::string& archived, const std::string& 
                      at(here));
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

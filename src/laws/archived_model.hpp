@@ -6,7 +6,7 @@
 #include <pcor/laws/model_file.hpp>
 #include <pcor/realtime/functors.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// What a fit of temperature needs of a flight besides the quantities of the model: the height, the way, and
 /// how it was flown.
@@ -26,4 +26,4 @@ std::string archived_model(const ModelFile& model, CorrectWith correct_with);
 /// 0.005 } in the model". Empty where they are the same.
 std::string archived_difference(const std::string& archived, const std::string& given);
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -7,7 +7,7 @@
 
 #include "laws/covariance_blocks.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 std::string name_of_coefficient(std::size_t number) {
@@ -63,4 +63,4 @@ ModelFile with_calibration(ModelFile file, const std::vector<double>& coefficien
   return file;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -4,7 +4,7 @@
 
 #include <pcor/laws/model_file.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// The id of the effect that corrects the ambient temperature.
 inline constexpr const char* calibration_id = "temp-calibration";
@@ -21,4 +21,4 @@ ModelFile with_calibration(ModelFile file, const std::vector<double>& coefficien
                            const std::vector<double>& standard_errors,
                            const std::vector<std::vector<double>>& covariance);
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace pcor {
+namespace pcor::internal {
 
 Covariance part_of(const Covariance& covariance, const std::function<bool(const std::string&)>& kept) {
   std::vector<std::size_t> places;
@@ -29,4 +29,4 @@ void add_independent(Covariance& covariance, const Covariance& more) {
   }
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

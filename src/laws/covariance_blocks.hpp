@@ -5,7 +5,7 @@
 
 #include <pcor/laws/model_file.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// The rows and columns of the parameters that are `kept`, in their order.
 Covariance part_of(const Covariance& covariance, const std::function<bool(const std::string&)>& kept);
@@ -13,4 +13,4 @@ Covariance part_of(const Covariance& covariance, const std::function<bool(const 
 /// Adds parameters that nothing ties to those that are there: with covariances of zero between both.
 void add_independent(Covariance& covariance, const Covariance& more);
 
-}  // namespace pcor
+}  // namespace pcor::internal

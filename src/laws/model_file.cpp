@@ -16,6 +16,8 @@
 
 namespace pcor {
 
+using namespace internal;
+
 namespace fs = std::filesystem;
 
 std::vector<Quantity> ModelFile::roles() const {

@@ -1,6 +1,6 @@
 #include "laws/model_names.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 Names names_of_parameters(const EffectFacts& facts) {
   Names names = names_of(facts.parameters, &ParameterFacts::name);
@@ -15,4 +15,4 @@ const PublishedRecoveryFactor* published_recovery_factor(std::string_view name) 
   return nullptr;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -7,7 +7,7 @@
 
 #include "words/quoting.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// Names that the reader and the writer of model files share.
 
@@ -18,4 +18,4 @@ Names names_of_parameters(const EffectFacts& facts);
 /// The published law of that name, or nothing.
 const PublishedRecoveryFactor* published_recovery_factor(std::string_view name);
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -21,7 +21,7 @@
 #include "laws/model_names.hpp"
 #include "words/toml_reader.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double largest_recovery_factor = 1.2;
@@ -790,4 +790,4 @@ class Reader final : TomlReader {
 
 ModelFile read_model_text(std::string_view text, std::string_view name) { return Reader(name).read(text); }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -13,7 +13,7 @@
 
 #include "laws/model_names.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 // Writes a model file in a layout that does not depend on how it was read.
@@ -286,4 +286,4 @@ class Writer {
 
 std::string model_text(const ModelFile& file) { return Writer().write(file); }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -4,11 +4,11 @@
 
 #include <pcor/laws/model_file.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// The text of a model file, in a layout that does not depend on how it was read. It may say what the reader
 /// refuses.
 /// @throws Error for numbers that are not finite and for effects that do not exist.
 std::string model_text(const ModelFile& file);
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-namespace pcor {
+namespace pcor::internal {
 
 Eigen::VectorXd bounded_least_squares(const Eigen::MatrixXd& rows, const Eigen::VectorXd& right,
                                       const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
@@ -64,4 +64,4 @@ Eigen::VectorXd bounded_least_squares(const Eigen::MatrixXd& rows, const Eigen::
   return x.cwiseQuotient(length).cwiseMax(lower).cwiseMin(upper);
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

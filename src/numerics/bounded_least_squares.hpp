@@ -2,7 +2,7 @@
 
 #include <Eigen/Dense>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// The x within the bounds with the least |rows x - right|, exactly, by an active set: bounds that the free
 /// solution crosses are held one by one, and let go again where the gradient points inwards (Stark and Parker
@@ -12,4 +12,4 @@ Eigen::VectorXd bounded_least_squares(const Eigen::MatrixXd& rows, const Eigen::
                                       const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
                                       const Eigen::VectorXd& start);
 
-}  // namespace pcor
+}  // namespace pcor::internal

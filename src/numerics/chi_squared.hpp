@@ -3,7 +3,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// The probability that a chi-squared of `freedom` degrees exceeds `value`.
 inline double chi_squared_tail(double value, double freedom) {
@@ -24,4 +24,4 @@ inline double one_degree_equivalent(double value, double freedom) {
   return equivalent + (value - within);
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

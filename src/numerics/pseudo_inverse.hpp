@@ -2,7 +2,7 @@
 
 #include <Eigen/Dense>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// The inverse of a symmetric matrix over the directions whose eigenvalue is above `least`; zero over the
 /// others.
@@ -14,4 +14,4 @@ inline Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix, double leas
   return solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

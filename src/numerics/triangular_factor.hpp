@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// A size as Eigen counts.
 inline Eigen::Index as_index(std::size_t n) { return static_cast<Eigen::Index>(n); }
@@ -62,4 +62,4 @@ class TriangularFactor {
   Eigen::Index filled_ = 0;
 };
 
-}  // namespace pcor
+}  // namespace pcor::internal

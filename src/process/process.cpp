@@ -19,6 +19,9 @@
 #include "roles/usual_variables.hpp"
 
 namespace pcor {
+
+using namespace internal;
+
 namespace {
 
 /// A variable of the file that the loop reads.

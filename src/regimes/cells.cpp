@@ -10,7 +10,7 @@
 
 #include "regimes/series.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double longest_kept_gap = 300.0;        // s
@@ -147,4 +147,4 @@ Cells cells_of(const FlightMotion& motion) {
   return cells;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -5,7 +5,7 @@
 
 #include <pcor/regimes/regimes.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// A flight's motion as means over cells of one second, whatever the rate of its samples. Every series has
 /// one value for each cell, NaN where there is none; up to 5 s without a value are interpolated. A gap in the
@@ -27,4 +27,4 @@ struct Cells {
 /// @throws Error as `find_regimes`
 Cells cells_of(const FlightMotion& motion);
 
-}  // namespace pcor
+}  // namespace pcor::internal

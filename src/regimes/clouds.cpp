@@ -1,6 +1,6 @@
 #include "regimes/search.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 std::vector<Found> find_clouds(const Cells& cells, const std::vector<bool>& flying,
                                const RegimeCriteria& criteria) {
@@ -12,4 +12,4 @@ std::vector<Found> find_clouds(const Cells& cells, const std::vector<bool>& flyi
   return found;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -15,6 +15,9 @@
 #include "words/toml_reader.hpp"
 
 namespace pcor {
+
+using namespace internal;
+
 namespace {
 
 constexpr std::string_view intervals_format = "pcor-intervals/1";

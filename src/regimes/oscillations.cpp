@@ -6,7 +6,7 @@
 
 #include "regimes/search.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
@@ -195,4 +195,4 @@ std::vector<Found> find_yaw_manoeuvres(const Cells& cells, const std::vector<boo
   return found;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -5,7 +5,7 @@
 
 #include "regimes/search.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
@@ -163,4 +163,4 @@ std::vector<bool> in_flight(const std::vector<Regime>& phases) {
   return flying;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

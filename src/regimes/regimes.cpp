@@ -6,6 +6,9 @@
 #include "regimes/search.hpp"
 
 namespace pcor {
+
+using namespace internal;
+
 namespace {
 
 std::vector<Found> runs_of(const std::vector<Regime>& phases) {

@@ -10,7 +10,7 @@
 #include "regimes/cells.hpp"
 #include "regimes/series.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// A regime of consecutive cells.
 struct Found {
@@ -52,4 +52,4 @@ std::vector<Found> find_clouds(const Cells& cells, const std::vector<bool>& flyi
 /// A duration as a number of cells.
 inline std::size_t cells_in(double seconds) { return static_cast<std::size_t>(std::lround(seconds)); }
 
-}  // namespace pcor
+}  // namespace pcor::internal

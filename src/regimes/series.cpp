@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
@@ -102,4 +102,4 @@ std::vector<Run> not_shorter(std::vector<Run> runs, std::size_t length) {
   return runs;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// Arithmetic on series with one value each second, NaN where there is none.
 
@@ -64,4 +64,4 @@ std::vector<Run> bridged(const std::vector<Run>& runs, std::size_t gap);
 /// The runs of at least `length` cells.
 std::vector<Run> not_shorter(std::vector<Run> runs, std::size_t length);
 
-}  // namespace pcor
+}  // namespace pcor::internal

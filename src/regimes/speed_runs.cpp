@@ -6,7 +6,7 @@
 
 #include "regimes/search.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr std::size_t smoothing = 10;      // s
@@ -86,4 +86,4 @@ std::vector<Found> find_speed_runs(const Cells& cells, const std::vector<bool>& 
   return found;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

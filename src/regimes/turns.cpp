@@ -5,7 +5,7 @@
 
 #include "regimes/search.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr std::size_t roll_smoothing = 3;       // s: turbulence rocks the wings
@@ -144,4 +144,4 @@ std::vector<Found> find_reverse_headings(const Cells& cells, const std::vector<b
   return found;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

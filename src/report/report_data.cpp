@@ -14,7 +14,7 @@
 
 #include "report/report_data.hpp"
 
-namespace pcor::report {
+namespace pcor::internal::report {
 
 namespace {
 
@@ -157,4 +157,4 @@ std::string data_json(const Report& report) {
   return safe;
 }
 
-}  // namespace pcor::report
+}  // namespace pcor::internal::report

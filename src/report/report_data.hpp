@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace pcor::report {
+namespace pcor::internal::report {
 
 // Throws Error if the report cannot be drawn: see report_html.
 void check(const Report& report);
@@ -15,4 +15,4 @@ std::string data_json(const Report& report);
 // "time", "binned", ...: what the browser calls the kind of an item.
 const char* kind_of(const ReportItem& item);
 
-}  // namespace pcor::report
+}  // namespace pcor::internal::report

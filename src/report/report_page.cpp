@@ -15,6 +15,8 @@
 
 namespace pcor {
 
+using namespace internal;
+
 namespace {
 
 std::string escaped(std::string_view text) {

@@ -15,7 +15,7 @@
 #include <pcor/words/error.hpp>
 #include "roles/usual_variables.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -248,4 +248,4 @@ std::string trouble_with_height(const FlightAir& air) {
   return "";
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

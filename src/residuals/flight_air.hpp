@@ -7,7 +7,7 @@
 
 #include <pcor/residuals/residuals.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// What the laser says of a flight, one value for each record, NaN where missing.
 struct LaserAir {
@@ -69,4 +69,4 @@ FlightAir read_flight_air(const Flight& flight, const ModelFile& model, const Ma
 /// where it is well. Looks at the samples in the air only.
 std::string trouble_with_height(const FlightAir& air);
 
-}  // namespace pcor
+}  // namespace pcor::internal

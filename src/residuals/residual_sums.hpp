@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// Sums of residuals, from which statistics follow; those of flights add up.
 struct ResidualSums {
@@ -18,4 +18,4 @@ struct ResidualSums {
   Statistics statistics() const;
 };
 
-}  // namespace pcor
+}  // namespace pcor::internal

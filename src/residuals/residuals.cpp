@@ -17,6 +17,8 @@
 
 namespace pcor {
 
+using namespace internal;
+
 const std::array<MaskFacts, mask_count> mask_facts{{
     {"used", "used"},
     {"excluded", "in times that the user excluded"},

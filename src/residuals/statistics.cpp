@@ -7,6 +7,9 @@
 #include "residuals/residual_sums.hpp"
 
 namespace pcor {
+
+using namespace internal;
+
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();

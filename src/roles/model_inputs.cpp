@@ -8,7 +8,7 @@
 #include <pcor/words/suggest.hpp>
 #include <pcor/words/utc.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 
 std::vector<ModelInput> model_inputs(const Flight& flight, const ModelFile& file, const Chain& chain,
                                      const std::vector<Quantity>& roles, std::vector<std::string>& notes) {
@@ -71,4 +71,4 @@ std::vector<std::string> notes_on_law(const Flight& flight, const ModelFile& fil
   return notes;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -7,7 +7,7 @@
 #include <pcor/laws/model_file.hpp>
 #include <pcor/realtime/chain.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// A variable of a flight that a model reads, and the quantity that it is.
 struct ModelInput {
@@ -25,4 +25,4 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelFile& file
 /// What a user should know of a law that was made for another time or aircraft than the flight's.
 std::vector<std::string> notes_on_law(const Flight& flight, const ModelFile& file);
 
-}  // namespace pcor
+}  // namespace pcor::internal

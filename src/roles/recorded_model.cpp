@@ -5,7 +5,7 @@
 
 #include <pcor/words/error.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 /// Whether a flight has values of a variable whose unit fits.
@@ -78,4 +78,4 @@ std::optional<ModelFile> recorded_model(const Flight& flight) {
   return model;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -7,7 +7,7 @@
 #include <pcor/flight/flight.hpp>
 #include <pcor/laws/model_file.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// The variables of a pair of pressures.
 struct PressurePair {
@@ -34,4 +34,4 @@ std::optional<ModelFile> recorded_model(const Flight& flight);
 /// A model of a pair as it is measured: nothing is added.
 ModelFile model_of(const PressurePair& pair);
 
-}  // namespace pcor
+}  // namespace pcor::internal

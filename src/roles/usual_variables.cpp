@@ -2,7 +2,7 @@
 
 #include <map>
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -41,4 +41,4 @@ Names usual_variables(Quantity role) {
   return found == all_usual_variables().end() ? Names{} : found->second;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -5,7 +5,7 @@
 
 #include <pcor/model/quantity.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// The variables that NCAR's files usually have for a role, the likeliest first. Empty for the roles that a
 /// model must name itself, because several instruments measure them and the choice is a part of the model:
@@ -19,4 +19,4 @@ struct GroundVelocityVariables {
   std::vector<std::string> north{"GGVNS", "VNSC", "VNS"};
 };
 
-}  // namespace pcor
+}  // namespace pcor::internal

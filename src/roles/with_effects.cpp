@@ -14,6 +14,9 @@
 #include "roles/usual_variables.hpp"
 
 namespace pcor {
+
+using namespace internal;
+
 namespace {
 
 /// The role that a message of `Chain::build` says is needed.

@@ -4,7 +4,7 @@
 
 #include <pcor/physics/constants.hpp>
 
-namespace pcor::simulate {
+namespace pcor::internal::simulate {
 namespace {
 
 constexpr double dry_gas_constant = constants::gas_constant_dry_air;
@@ -69,4 +69,4 @@ double dew_point(double vapor_pressure) {
   return constants::ice_point + magnus_shift * logarithm / (magnus_slope - logarithm);
 }
 
-}  // namespace pcor::simulate
+}  // namespace pcor::internal::simulate

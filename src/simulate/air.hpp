@@ -1,6 +1,6 @@
 #pragma once
 
-namespace pcor::simulate {
+namespace pcor::internal::simulate {
 
 /// The physics of moist air on the truth side, written independently of pcor/physics: a mixture of dry air
 /// and vapour by their mass fractions.
@@ -42,4 +42,4 @@ double saturation_pressure(double temperature);
 /// The dew point over water, K, of a vapour pressure in hPa above zero.
 double dew_point(double vapor_pressure);
 
-}  // namespace pcor::simulate
+}  // namespace pcor::internal::simulate

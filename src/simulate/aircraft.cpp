@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace pcor::simulate {
+namespace pcor::internal::simulate {
 namespace {
 
 constexpr double standard_gravity = 9.80665;  // m/s2
@@ -105,4 +105,4 @@ double torque(const AircraftFacts& aircraft, double lift, double dynamic_pressur
   return std::clamp(100.0 * (drag * speed + energy_rate) / aircraft.power, 5.0, 100.0);
 }
 
-}  // namespace pcor::simulate
+}  // namespace pcor::internal::simulate

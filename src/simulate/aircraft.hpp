@@ -4,7 +4,7 @@
 #include <pcor/simulate/simulate.hpp>
 #include <string_view>
 
-namespace pcor::simulate {
+namespace pcor::internal::simulate {
 
 /// The differential ports of a radome: angle = offset + ratio (slope + slope_mach M), deg.
 struct Radome {
@@ -77,4 +77,4 @@ double lift_attack(const AircraftFacts& aircraft, double weight, double load_fac
 double torque(const AircraftFacts& aircraft, double lift, double dynamic_pressure, double speed,
               double energy_rate);
 
-}  // namespace pcor::simulate
+}  // namespace pcor::internal::simulate

@@ -7,7 +7,7 @@
 #include <pcor/physics/constants.hpp>
 #include <pcor/words/error.hpp>
 
-namespace pcor::simulate {
+namespace pcor::internal::simulate {
 namespace {
 
 constexpr double step = 10.0;  // m; interpolating ln p between levels then errs by 4e-8
@@ -94,4 +94,4 @@ double dissipation(const Scenario::Atmosphere& a, double height) {
   return std::pow(a.boundary_layer, 1.0 - free) * std::pow(a.turbulence, free);
 }
 
-}  // namespace pcor::simulate
+}  // namespace pcor::internal::simulate

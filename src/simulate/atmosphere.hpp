@@ -5,7 +5,7 @@
 
 #include "simulate/air.hpp"
 
-namespace pcor::simulate {
+namespace pcor::internal::simulate {
 
 /// Gravity, m/s2, at a latitude (deg) and height (m): Somigliana's formula of WGS 84, falling with height as
 /// the ellipsoid's field does to second order. Accuracy 1e-7 up to 20 km.
@@ -34,4 +34,4 @@ class Column {
 /// inversion, that of the free troposphere from 300 m above it, in between by their geometric mean.
 double dissipation(const Scenario::Atmosphere& atmosphere, double height);
 
-}  // namespace pcor::simulate
+}  // namespace pcor::internal::simulate

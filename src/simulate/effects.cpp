@@ -7,7 +7,7 @@
 #include "simulate/air.hpp"
 #include "simulate/aircraft.hpp"
 
-namespace pcor::simulate {
+namespace pcor::internal::simulate {
 namespace {
 
 using Effect = Scenario::Effect;
@@ -375,4 +375,4 @@ Faults faults_of(const Scenario& scenario, const Truth& truth) {
   return faults;
 }
 
-}  // namespace pcor::simulate
+}  // namespace pcor::internal::simulate

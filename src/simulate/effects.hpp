@@ -8,7 +8,7 @@
 
 #include "simulate/truth.hpp"
 
-namespace pcor::simulate {
+namespace pcor::internal::simulate {
 
 /// What is wrong with one pair of pressures, at the place where it acts.
 struct SystemFaults {
@@ -73,4 +73,4 @@ const Series Truth::*find_series(std::string_view name);
 /// What the scenario's effects do along a flight.
 Faults faults_of(const Scenario& scenario, const Truth& truth);
 
-}  // namespace pcor::simulate
+}  // namespace pcor::internal::simulate

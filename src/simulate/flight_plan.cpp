@@ -6,7 +6,7 @@
 
 #include "simulate/pilot.hpp"
 
-namespace pcor::simulate {
+namespace pcor::internal::simulate {
 namespace {
 
 using Leg = Scenario::Leg;
@@ -262,4 +262,4 @@ void complete(Leg& leg, const AircraftFacts& aircraft) {
 
 FlownPlan fly(const Scenario& scenario) { return Plan(scenario).result(); }
 
-}  // namespace pcor::simulate
+}  // namespace pcor::internal::simulate

@@ -8,7 +8,7 @@
 #include "simulate/aircraft.hpp"
 #include "simulate/truth.hpp"
 
-namespace pcor::simulate {
+namespace pcor::internal::simulate {
 
 /// A number that a leg takes.
 struct LegNumber {
@@ -74,4 +74,4 @@ struct FlownPlan {
 /// Flies the legs of a scenario one after another. @throws Error if one cannot be flown.
 FlownPlan fly(const Scenario& scenario);
 
-}  // namespace pcor::simulate
+}  // namespace pcor::internal::simulate

@@ -3,7 +3,7 @@
 #include "simulate/aircraft.hpp"
 #include "simulate/truth.hpp"
 
-namespace pcor::simulate {
+namespace pcor::internal::simulate {
 
 std::map<std::string, Scenario::Noise> usual_noise(const Scenario& scenario) {
   constexpr double minute = 60.0;  // s
@@ -34,4 +34,4 @@ std::map<std::string, Scenario::Noise> usual_noise(const Scenario& scenario) {
   return noise;
 }
 
-}  // namespace pcor::simulate
+}  // namespace pcor::internal::simulate

@@ -4,7 +4,7 @@
 #include <pcor/simulate/simulate.hpp>
 #include <string>
 
-namespace pcor::simulate {
+namespace pcor::internal::simulate {
 
 /// The usual noise of every variable that the scenario's instruments record, by name.
 ///
@@ -13,4 +13,4 @@ namespace pcor::simulate {
 /// minute.
 std::map<std::string, Scenario::Noise> usual_noise(const Scenario& scenario);
 
-}  // namespace pcor::simulate
+}  // namespace pcor::internal::simulate

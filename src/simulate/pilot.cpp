@@ -7,7 +7,7 @@
 #include <pcor/physics/constants.hpp>
 #include <pcor/words/error.hpp>
 
-namespace pcor::simulate {
+namespace pcor::internal::simulate {
 namespace {
 
 constexpr double radians = constants::radians_per_degree;
@@ -217,4 +217,4 @@ void Pilot::step(const Command& command, const Scenario::Leg& leg) {
   weight_ -= aircraft_.fuel_flow * time_step;
 }
 
-}  // namespace pcor::simulate
+}  // namespace pcor::internal::simulate

@@ -9,7 +9,7 @@
 #include "simulate/truth.hpp"
 #include "simulate/turbulence.hpp"
 
-namespace pcor::simulate {
+namespace pcor::internal::simulate {
 
 /// What the aircraft is told to do in one step.
 struct Command {
@@ -82,4 +82,4 @@ class Pilot {
   bool on_ground_ = true;
 };
 
-}  // namespace pcor::simulate
+}  // namespace pcor::internal::simulate

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace pcor::simulate {
+namespace pcor::internal::simulate {
 namespace {
 
 // FNV-1a over the name, started from the seed, then the finaliser of SplitMix64, which spreads every bit.
@@ -62,4 +62,4 @@ double variance_of_mean(double kept, std::size_t count) {
   return sum / (n * n);
 }
 
-}  // namespace pcor::simulate
+}  // namespace pcor::internal::simulate

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace pcor::simulate {
+namespace pcor::internal::simulate {
 
 /// A stream of random numbers that depends on a seed and a name alone, so that each sensor has its own.
 ///
@@ -45,4 +45,4 @@ class Drift {
 /// itself from value to value.
 double variance_of_mean(double kept, std::size_t count);
 
-}  // namespace pcor::simulate
+}  // namespace pcor::internal::simulate

@@ -19,6 +19,9 @@
 #include "words/toml_reader.hpp"
 
 namespace pcor {
+
+using namespace internal;
+
 namespace {
 
 using namespace simulate;

@@ -8,7 +8,7 @@
 #include "simulate/air.hpp"
 #include "simulate/random.hpp"
 
-namespace pcor::simulate {
+namespace pcor::internal::simulate {
 namespace {
 
 constexpr double radians = constants::radians_per_degree;
@@ -288,4 +288,4 @@ void Recorder::remove_gaps(const std::string& variable, std::vector<double>& val
   }
 }
 
-}  // namespace pcor::simulate
+}  // namespace pcor::internal::simulate

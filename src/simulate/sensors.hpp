@@ -8,7 +8,7 @@
 #include "simulate/effects.hpp"
 #include "simulate/truth.hpp"
 
-namespace pcor::simulate {
+namespace pcor::internal::simulate {
 
 /// What a pair of pressures reads before its noise.
 struct PairReading {
@@ -90,4 +90,4 @@ class Recorder {
   const Faults& faults_;
 };
 
-}  // namespace pcor::simulate
+}  // namespace pcor::internal::simulate

@@ -17,6 +17,9 @@
 #include "simulate/sensors.hpp"
 
 namespace pcor {
+
+using namespace internal;
+
 namespace {
 
 using namespace simulate;

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace pcor::simulate {
+namespace pcor::internal::simulate {
 
 /// Everything is simulated at this rate, samples a second.
 inline constexpr int internal_rate = 25;
@@ -95,4 +95,4 @@ inline constexpr std::array<TruthFacts, 30> truth_facts{{
     {"", "TRUE_HIDDEN", "1", "a slow wave that no instrument records", &Truth::hidden},
 }};
 
-}  // namespace pcor::simulate
+}  // namespace pcor::internal::simulate

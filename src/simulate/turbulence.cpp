@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace pcor::simulate {
+namespace pcor::internal::simulate {
 
 Turbulence::Turbulence(std::uint64_t seed, const std::string& name, bool across) {
   constexpr double longest = 3000.0;  // m
@@ -32,4 +32,4 @@ double Turbulence::next(double distance, double dissipation) {
   return std::cbrt(dissipation) * sum;
 }
 
-}  // namespace pcor::simulate
+}  // namespace pcor::internal::simulate

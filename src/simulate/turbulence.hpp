@@ -6,7 +6,7 @@
 
 #include "simulate/random.hpp"
 
-namespace pcor::simulate {
+namespace pcor::internal::simulate {
 
 /// One component of turbulence along the path, with the spectrum of the inertial range
 ///
@@ -31,4 +31,4 @@ class Turbulence {
   std::vector<Scale> scales_;
 };
 
-}  // namespace pcor::simulate
+}  // namespace pcor::internal::simulate

@@ -11,7 +11,7 @@
 #include <pcor/words/error.hpp>
 #include "laws/archived_model.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr const char* variable = "HYDSTEP";
@@ -92,4 +92,4 @@ std::vector<double> archived_steps(const Flight& flight, const ModelFile& model,
   return steps;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -4,7 +4,7 @@
 
 #include "residuals/flight_air.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// -R_a dp/(g p) from the mean of the record before to that of every record, as `pcor process --hydrostatic`
 /// wrote it, m/K; NaN where missing. Takes the correction of the temperature that the file's ATX has already
@@ -13,4 +13,4 @@ namespace pcor {
 /// `model`; the correction of the temperature may be another.
 std::vector<double> archived_steps(const Flight& flight, const ModelFile& model, FlightAir& air);
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -5,7 +5,7 @@
 
 #include "numerics/triangular_factor.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 /// Tells `see` the first and one past the last block of every stretch.
@@ -84,4 +84,4 @@ TemperatureFit fit_height_by_least_squares(const std::vector<HeightRecord>& reco
   return fit;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -5,7 +5,7 @@
 #include <pcor/temperature/temperature.hpp>
 #include "temperature/height_record.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// Least squares on height (memo eq. 23 and 24): the coefficients with which the integral keeps closest to
 /// the height by GPS, from the mean height of each stretch. Errors take every sample for independent, as the
@@ -15,4 +15,4 @@ TemperatureFit fit_height_by_least_squares(const std::vector<HeightRecord>& reco
 /// The height by GPS less the integral with a correction, about its mean in each stretch, m.
 std::vector<double> height_differences(const HeightRecord& record, const std::vector<double>& coefficients);
 
-}  // namespace pcor
+}  // namespace pcor::internal

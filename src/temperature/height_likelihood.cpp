@@ -10,7 +10,7 @@
 
 #include "numerics/triangular_factor.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -418,4 +418,4 @@ Eigen::MatrixXd covariance_over_noise(const std::vector<HeightRecord>& records, 
   return covariance + larger * larger.transpose();
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -6,7 +6,7 @@
 
 #include "temperature/height_record.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// The noise of heights: what the height by GPS less the integral of the hydrostatic equation does besides
 /// the error of the thermometer.
@@ -107,4 +107,4 @@ Eigen::MatrixXd covariance_over_noise(const std::vector<HeightRecord>& records, 
                                       const HeightPrior& prior, const MostLikely& likely,
                                       std::size_t threads);
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -11,7 +11,7 @@
 #include <pcor/physics/hydrostatic.hpp>
 #include <pcor/words/error.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -365,4 +365,4 @@ HeightRecord height_record(const FlightAir& air, const std::vector<double>& step
   return record;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

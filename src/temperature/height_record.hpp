@@ -7,7 +7,7 @@
 
 #include "residuals/flight_air.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// How many powers of the temperature a calibration may have: a0 + a1 t + a2 t^2.
 inline constexpr std::size_t calibration_terms = 3;
@@ -76,4 +76,4 @@ struct HeightRecordOptions {
 HeightRecord height_record(const FlightAir& air, const std::vector<double>& steps,
                            const HeightRecordOptions& options);
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -8,6 +8,9 @@
 #include "residuals/flight_air.hpp"
 
 namespace pcor {
+
+using namespace internal;
+
 namespace {
 
 constexpr int most_rounds = 12;

@@ -8,7 +8,7 @@
 
 #include <pcor/physics/geodesy.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 constexpr double level_climb = 1.0;     // m/s: slower is level
@@ -129,4 +129,4 @@ void take_off_isobar_slope(HeightRecord& record, IsobarSlope option) {
     block.excess -= slope.east * block.east + slope.north * block.north;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

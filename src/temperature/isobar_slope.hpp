@@ -3,7 +3,7 @@
 #include <pcor/temperature/temperature.hpp>
 #include "temperature/height_record.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// The slope of isobaric surfaces over a flight, and how it was found.
 struct IsobarSlopeEstimate {
@@ -24,4 +24,4 @@ IsobarSlopeEstimate estimate_isobar_slope(const HeightRecord& record, IsobarSlop
 /// flight does not record what it takes, of which it adds a note.
 void take_off_isobar_slope(HeightRecord& record, IsobarSlope option);
 
-}  // namespace pcor
+}  // namespace pcor::internal

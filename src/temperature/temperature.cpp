@@ -24,6 +24,9 @@
 #include "temperature/isobar_slope.hpp"
 
 namespace pcor {
+
+using namespace internal;
+
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();

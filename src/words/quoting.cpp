@@ -5,7 +5,7 @@
 
 #include <pcor/words/suggest.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 
 std::string one_line(std::string_view text) {
   std::string line;
@@ -27,4 +27,4 @@ std::string instead_of(std::string_view wrong, const Names& known) {
   return meant.empty() ? fmt::format("use one of {}", fmt::join(known, ", ")) : meant;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-namespace pcor {
+namespace pcor::internal {
 
 /// How messages quote names, and what they suggest where one is wrong.
 
@@ -27,4 +27,4 @@ Names names_of(const Facts& facts, Name name) {
   return names;
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

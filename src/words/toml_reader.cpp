@@ -7,7 +7,7 @@
 
 #include <pcor/words/error.hpp>
 
-namespace pcor {
+namespace pcor::internal {
 namespace {
 
 // Days from 1970-01-01 to a date of the Gregorian calendar. The year begins in March, so that the day of leap
@@ -92,4 +92,4 @@ Entry TomlReader::format_of(const toml::table& root, std::string_view is, std::s
        fmt::format("the file does not say that it {}; begin it with format = \"{}\"", is, format));
 }
 
-}  // namespace pcor
+}  // namespace pcor::internal

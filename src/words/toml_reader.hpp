@@ -16,7 +16,7 @@
 
 #include "words/quoting.hpp"
 
-namespace pcor {
+namespace pcor::internal {
 
 /// A key of a table with its value.
 struct Entry {
@@ -92,4 +92,4 @@ class TomlReader {
   std::string name_;
 };
 
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -14,6 +14,8 @@
 #include <pcor/words/error.hpp>
 #include "batch/batch_kernel.hpp"
 
+using namespace pcor::internal;
+
 namespace pcor {
 namespace {
 
@@ -292,7 +294,7 @@ TEST(Batch, IsTheSameInTheKernelForEveryProcessor) {
   for (const Quantity quantity : derived) found[quantity].resize(count);
   const std::vector<Batch::Input> inputs = inputs_of(recorded);
   const std::vector<Batch::Output> outputs = outputs_of(found);
-  detail::BatchJob job;
+  BatchJob job;
   job.chain = &batch.chain();
   job.parameters = batch.chain().parameters().data();
   job.finds_lams = job.finds_air = true;
@@ -301,7 +303,7 @@ TEST(Batch, IsTheSameInTheKernelForEveryProcessor) {
   job.outputs = outputs.data();
   job.output_count = outputs.size();
   job.samples = count;
-  detail::run_batch(job);
+  run_batch(job);
   expect_equal(found, expected);
 }
 

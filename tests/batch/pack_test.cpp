@@ -7,6 +7,8 @@
 #include <limits>
 #include <random>
 
+using namespace pcor::internal;
+
 namespace pcor {
 namespace {
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+using namespace pcor::internal;
+
 namespace pcor {
 namespace {
 

@@ -18,6 +18,8 @@
 #include <pcor/words/error.hpp>
 #include "support/temporary_directory.hpp"
 
+using namespace pcor::internal;
+
 namespace pcor {
 namespace {
 

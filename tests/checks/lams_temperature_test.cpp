@@ -11,6 +11,8 @@
 #include "checks/checks.hpp"
 #include "support/temporary_directory.hpp"
 
+using namespace pcor::internal;
+
 namespace pcor {
 namespace {
 

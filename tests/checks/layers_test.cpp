@@ -12,6 +12,8 @@
 #include <pcor/physics/standard_atmosphere.hpp>
 #include "checks/checks.hpp"
 
+using namespace pcor::internal;
+
 namespace pcor {
 namespace {
 

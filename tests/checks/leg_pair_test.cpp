@@ -12,6 +12,8 @@
 #include <pcor/physics/moist_air.hpp>
 #include <pcor/regimes/regimes.hpp>
 
+using namespace pcor::internal;
+
 namespace pcor {
 namespace {
 

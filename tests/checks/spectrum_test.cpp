@@ -12,6 +12,8 @@
 
 #include "checks/checks.hpp"
 
+using namespace pcor::internal;
+
 namespace pcor {
 namespace {
 

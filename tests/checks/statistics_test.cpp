@@ -8,6 +8,8 @@
 #include <random>
 #include <vector>
 
+using namespace pcor::internal;
+
 namespace pcor {
 namespace {
 

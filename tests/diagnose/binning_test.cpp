@@ -11,6 +11,8 @@
 
 #include "diagnose/outliers.hpp"
 
+using namespace pcor::internal;
+
 using pcor::Binning;
 
 namespace {

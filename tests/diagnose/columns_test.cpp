@@ -18,6 +18,8 @@
 
 #include "support/temporary_directory.hpp"
 
+using namespace pcor::internal;
+
 using pcor::Candidate;
 using pcor::CandidateSet;
 using pcor::FlightColumns;

@@ -24,6 +24,8 @@
 #include "support/made_samples.hpp"
 #include "support/temporary_directory.hpp"
 
+using namespace pcor::internal;
+
 namespace {
 
 using pcor::FlightSamples;

@@ -9,6 +9,8 @@
 #include <random>
 #include <vector>
 
+using namespace pcor::internal;
+
 using pcor::Binning;
 using pcor::NoiseModel;
 using pcor::Scores;

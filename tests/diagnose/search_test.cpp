@@ -11,6 +11,8 @@
 
 #include "numerics/chi_squared.hpp"
 
+using namespace pcor::internal;
+
 using pcor::Binning;
 using pcor::Bounds;
 using pcor::ColumnGroup;

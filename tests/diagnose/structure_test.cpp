@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+using namespace pcor::internal;
+
 using pcor::Binning;
 using pcor::NoiseModel;
 using pcor::Smooth;

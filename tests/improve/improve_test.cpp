@@ -10,6 +10,8 @@
 #include "improve/improve_loop.hpp"
 #include "support/made_samples.hpp"
 
+using namespace pcor::internal;
+
 using pcor::Diagnosis;
 using pcor::ImproveLoop;
 using pcor::Improvement;

@@ -9,6 +9,8 @@
 
 #include "laws/calibration.hpp"
 
+using namespace pcor::internal;
+
 namespace pcor {
 namespace {
 

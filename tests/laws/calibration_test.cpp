@@ -18,6 +18,8 @@
 #include <pcor/realtime/loop.hpp>
 #include "support/made_samples.hpp"
 
+using namespace pcor::internal;
+
 namespace pcor {
 namespace {
 

@@ -5,6 +5,8 @@
 #include <limits>
 #include <random>
 
+using namespace pcor::internal;
+
 namespace {
 
 /// The least squares of all ways to hold unknowns at a bound or leave them free: slow and sure.

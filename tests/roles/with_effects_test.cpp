@@ -10,6 +10,8 @@
 #include "roles/usual_variables.hpp"
 #include "support/made_samples.hpp"
 
+using namespace pcor::internal;
+
 using pcor::ModelEffect;
 using pcor::ModelFile;
 using pcor::Quantity;

@@ -21,6 +21,8 @@
 #include "simulate/turbulence.hpp"
 #include "support/temporary_directory.hpp"
 
+using namespace pcor::internal;
+
 namespace pcor {
 namespace {
 

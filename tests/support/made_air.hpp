@@ -15,6 +15,8 @@
 /// temperature over geopotential height, in hydrostatic balance.
 namespace made {
 
+using namespace pcor::internal;
+
 struct AirPlan {
   std::size_t seconds = 5400;
   unsigned seed = 1;

@@ -12,6 +12,8 @@
 #include "support/made_air.hpp"
 #include "temperature/height_least_squares.hpp"
 
+using namespace pcor::internal;
+
 namespace {
 
 using pcor::HeightBlock;

@@ -11,6 +11,8 @@
 #include <pcor/words/error.hpp>
 #include "support/made_air.hpp"
 
+using namespace pcor::internal;
+
 namespace {
 
 using pcor::height_record;

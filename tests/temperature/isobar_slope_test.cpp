@@ -9,6 +9,8 @@
 
 #include "support/made_air.hpp"
 
+using namespace pcor::internal;
+
 namespace {
 
 using pcor::HeightBlock;

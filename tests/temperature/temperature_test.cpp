@@ -24,6 +24,8 @@
 #include "residuals/flight_air.hpp"
 #include "support/temporary_directory.hpp"
 
+using namespace pcor::internal;
+
 namespace pcor {
 namespace {
 

@@ -9,7 +9,7 @@
 #include <pcor/physics/air_data.hpp>
 #include <pcor/physics/moist_air.hpp>
 
-namespace pcor::manoeuvres {
+namespace pcor::internal::manoeuvres {
 namespace {
 
 using Series = std::vector<double>;
@@ -188,4 +188,4 @@ Level Envelope::level_at(double pressure) const {
   return level;
 }
 
-}  // namespace pcor::manoeuvres
+}  // namespace pcor::internal::manoeuvres

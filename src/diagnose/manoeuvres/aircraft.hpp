@@ -3,7 +3,7 @@
 #include "diagnose/manoeuvres/flown.hpp"
 #include "diagnose/manoeuvres/statistics.hpp"
 
-namespace pcor::manoeuvres {
+namespace pcor::internal::manoeuvres {
 
 /// How an aircraft flies and what its sensors make of it, learnt from its flights. Where these do not teach a
 /// number, it is the usual one of the NSF/NCAR C-130.
@@ -58,4 +58,4 @@ class Envelope {
   double greatest_mach_;
 };
 
-}  // namespace pcor::manoeuvres
+}  // namespace pcor::internal::manoeuvres

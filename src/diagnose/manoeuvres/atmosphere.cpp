@@ -5,7 +5,7 @@
 
 #include <pcor/physics/moist_air.hpp>
 
-namespace pcor::manoeuvres {
+namespace pcor::internal::manoeuvres {
 namespace {
 
 /// m for a unit of ln p and a kelvin.
@@ -72,4 +72,4 @@ double Atmosphere::height_of(double pressure) const {
   return node.height - scale * up * (node.virtual_temperature + 0.5 * gradient * up);
 }
 
-}  // namespace pcor::manoeuvres
+}  // namespace pcor::internal::manoeuvres

@@ -5,7 +5,7 @@
 #include "diagnose/manoeuvres/flown.hpp"
 #include "diagnose/manoeuvres/statistics.hpp"
 
-namespace pcor::manoeuvres {
+namespace pcor::internal::manoeuvres {
 
 /// The air at some height.
 struct AirAt {
@@ -45,4 +45,4 @@ class Atmosphere {
   bool has_altitude_ = false;
 };
 
-}  // namespace pcor::manoeuvres
+}  // namespace pcor::internal::manoeuvres

@@ -10,7 +10,7 @@
 #include <pcor/physics/recovery_factor.hpp>
 #include "diagnose/manoeuvres/statistics.hpp"
 
-namespace pcor::manoeuvres {
+namespace pcor::internal::manoeuvres {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -128,4 +128,4 @@ double lift_number(double load, double mach, double dynamic_pressure) {
   return load * std::sqrt(std::max(1.0 - mach * mach, 0.0)) / dynamic_pressure;
 }
 
-}  // namespace pcor::manoeuvres
+}  // namespace pcor::internal::manoeuvres

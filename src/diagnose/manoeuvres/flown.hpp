@@ -6,7 +6,7 @@
 
 #include <pcor/residuals/residuals.hpp>
 
-namespace pcor::manoeuvres {
+namespace pcor::internal::manoeuvres {
 
 using Flights = std::vector<std::shared_ptr<const FlightSamples>>;
 
@@ -61,4 +61,4 @@ class Flown {
 /// linear in it (rule of Prandtl and Glauert), but for the part of q that compression adds.
 double lift_number(double load, double mach, double dynamic_pressure);
 
-}  // namespace pcor::manoeuvres
+}  // namespace pcor::internal::manoeuvres

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace pcor::manoeuvres {
+namespace pcor::internal::manoeuvres {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -44,4 +44,4 @@ Course steady_change(double rate, double begin, double end, double ramp) {
   return [=](double t) { return rate * (since(t - begin) - since(t - end + ramp)); };
 }
 
-}  // namespace pcor::manoeuvres
+}  // namespace pcor::internal::manoeuvres

@@ -6,7 +6,7 @@
 
 #include <pcor/regimes/regimes.hpp>
 
-namespace pcor::manoeuvres {
+namespace pcor::internal::manoeuvres {
 
 /// A value in the course of a manoeuvre, at s since its begin. Defined beyond both ends too.
 using Course = std::function<double(double)>;
@@ -38,4 +38,4 @@ struct Path {
   std::vector<Interval> regimes{};           ///< times in s since the begin
 };
 
-}  // namespace pcor::manoeuvres
+}  // namespace pcor::internal::manoeuvres

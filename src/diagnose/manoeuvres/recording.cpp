@@ -13,7 +13,7 @@
 #include <pcor/physics/moist_air.hpp>
 #include <pcor/physics/recovery_factor.hpp>
 
-namespace pcor::manoeuvres {
+namespace pcor::internal::manoeuvres {
 
 /// All that is known of one sample.
 struct Instant {
@@ -291,4 +291,4 @@ std::shared_ptr<const FlightSamples> Recorder::record(const std::string& name, c
   return std::make_shared<const FlightSamples>(std::move(samples));
 }
 
-}  // namespace pcor::manoeuvres
+}  // namespace pcor::internal::manoeuvres

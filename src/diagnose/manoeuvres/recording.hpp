@@ -8,7 +8,7 @@
 #include "diagnose/manoeuvres/atmosphere.hpp"
 #include "diagnose/manoeuvres/path.hpp"
 
-namespace pcor::manoeuvres {
+namespace pcor::internal::manoeuvres {
 
 /// All that is known of one sample.
 struct Instant;
@@ -57,4 +57,4 @@ class Recorder {
   Profile pressure_excess_;  // of a reference pressure over the static pressure
 };
 
-}  // namespace pcor::manoeuvres
+}  // namespace pcor::internal::manoeuvres

@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-namespace pcor::manoeuvres {
+namespace pcor::internal::manoeuvres {
 namespace {
 
 struct Point {
@@ -115,4 +115,4 @@ double Profile::at(double pressure) const {
   return values_[i - 1] + part * (values_[i] - values_[i - 1]);
 }
 
-}  // namespace pcor::manoeuvres
+}  // namespace pcor::internal::manoeuvres

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-namespace pcor::manoeuvres {
+namespace pcor::internal::manoeuvres {
 
 /// Standard gravity, m/s2.
 inline constexpr double gravity = 9.80665;
@@ -46,4 +46,4 @@ class Profile {
   std::vector<double> values_;
 };
 
-}  // namespace pcor::manoeuvres
+}  // namespace pcor::internal::manoeuvres
