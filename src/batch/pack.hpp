@@ -104,8 +104,8 @@ class Pack {
   friend Pack exp(const Pack& a) { return {exponential(a.first_), exponential(a.second_)}; }
   friend Pack log(const Pack& a) { return {logarithm(a.first_), logarithm(a.second_)}; }
   friend Pack power_less_one(const Pack& part, const Pack& whole, const Pack& exponent) {
-    return {pcor::power_less_one(part.first_, whole.first_, exponent.first_),
-            pcor::power_less_one(part.second_, whole.second_, exponent.second_)};
+    return {internal::power_less_one(part.first_, whole.first_, exponent.first_),
+            internal::power_less_one(part.second_, whole.second_, exponent.second_)};
   }
   friend Pack log10(const Pack& a) { return decimal_logarithm(a); }
   friend Pack sqrt(const Pack& a) { return {xsimd::sqrt(a.first_), xsimd::sqrt(a.second_)}; }

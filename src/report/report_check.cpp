@@ -12,7 +12,7 @@
 
 #include "report/report_data.hpp"
 
-namespace pcor::report {
+namespace pcor::internal::report {
 
 namespace {
 
@@ -145,4 +145,4 @@ void check(const Report& report) {
   for (const ReportItem& item : report.items) std::visit(CheckItem{columns}, item);
 }
 
-}  // namespace pcor::report
+}  // namespace pcor::internal::report
