@@ -13,7 +13,7 @@
 
 using namespace pcor::internal;
 
-using pcor::Binning;
+using pcor::internal::Binning;
 
 namespace {
 
@@ -39,8 +39,8 @@ std::vector<double> noise(std::size_t count, double size, unsigned seed) {
 }
 
 std::vector<double> without_outliers(const std::vector<double>& residual, std::size_t& count) {
-  return pcor::without_outliers(residual, std::vector<double>(residual.size(), 0.0), seconds(residual.size()),
-                                1.0, count);
+  return pcor::internal::without_outliers(residual, std::vector<double>(residual.size(), 0.0),
+                                          seconds(residual.size()), 1.0, count);
 }
 
 }  // namespace
@@ -179,7 +179,7 @@ TEST(Outliers, WhatIsPredictedIsNotAnOutlier) {
   for (std::size_t i = 500; i < 520; ++i) predicted[i] = 3.0;
   for (std::size_t i = 0; i < residual.size(); ++i) residual[i] += predicted[i];
   std::size_t count = 0;
-  pcor::without_outliers(residual, predicted, seconds(residual.size()), 1.0, count);
+  pcor::internal::without_outliers(residual, predicted, seconds(residual.size()), 1.0, count);
   EXPECT_LE(count, 1U);
 }
 

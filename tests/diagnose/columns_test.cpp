@@ -20,9 +20,6 @@
 
 using namespace pcor::internal;
 
-using pcor::Candidate;
-using pcor::CandidateSet;
-using pcor::FlightColumns;
 using pcor::FlightSamples;
 using pcor::ModelEffect;
 using pcor::ModelFile;
@@ -30,6 +27,9 @@ using pcor::NotTestable;
 using pcor::Quantity;
 using pcor::Reference;
 using pcor::Residuals;
+using pcor::internal::Candidate;
+using pcor::internal::CandidateSet;
+using pcor::internal::FlightColumns;
 using testing::HasSubstr;
 using testing::StrEq;
 
@@ -131,13 +131,13 @@ ModelEffect formula() {
 struct Made {
   ModelFile model = laser_model();
   Reference reference{};
-  CandidateSet set = pcor::find_candidates(model, {formula()}, {});
+  CandidateSet set = pcor::internal::find_candidates(model, {formula()}, {});
   std::shared_ptr<const FlightSamples> samples;
   FlightColumns columns;
 
   explicit Made(double laser_noise = 0.3)
       : samples(std::make_shared<const FlightSamples>(made_flight(set.extended.roles(), laser_noise))),
-        columns(pcor::find_columns(samples, model, set, reference, {}, 1.0)) {}
+        columns(pcor::internal::find_columns(samples, model, set, reference, {}, 1.0)) {}
 };
 
 /// The same samples with the laser where the model says that the air is.
@@ -185,7 +185,7 @@ const std::filesystem::path& flight_file() {
 
 CandidateSet candidates_of_file(const ModelFile& model, const std::vector<ModelEffect>& formulas = {}) {
   const pcor::Flight flight(flight_file());
-  return pcor::find_candidates(model, formulas, {&flight});
+  return pcor::internal::find_candidates(model, formulas, {&flight});
 }
 
 }  // namespace
@@ -239,7 +239,7 @@ TEST(Columns, OfTheBaseAreDifferencesToo) {
   const std::shared_ptr<const FlightSamples> quiet = without_laser_noise(made);
   const std::vector<double> parameters = Residuals(made.samples, made.model, made.reference).parameters();
   ASSERT_EQ(made.columns.base.cols(), 3);
-  EXPECT_THAT(pcor::base_names(made.model),
+  EXPECT_THAT(pcor::internal::base_names(made.model),
               testing::ElementsAre("static-constant.a0", "static-alpha.a1", "static-qp.a2"));
   for (Eigen::Index column = 0; column < 3; ++column) {
     const Eigen::VectorXd found = made.columns.base.col(column).cast<double>();
@@ -261,7 +261,7 @@ TEST(Columns, OfFixedCoefficientsAreNotThere) {
   for (pcor::EffectFit& fit : made.model.fits) fit.resize(1);
   made.model.fits[1][0].fixed = true;
   const FlightColumns columns =
-      pcor::find_columns(made.samples, made.model, made.set, made.reference, {}, 1.0);
+      pcor::internal::find_columns(made.samples, made.model, made.set, made.reference, {}, 1.0);
   EXPECT_EQ(columns.base.cols(), 2);
   EXPECT_TRUE(columns.base.col(1).isApprox(made.columns.base.col(2)));
 }
@@ -299,7 +299,8 @@ TEST(Columns, ResidualsAreThoseOfTheModel) {
 
 TEST(Columns, OfTheFirstPartEndWithIt) {
   Made made;
-  const FlightColumns half = pcor::find_columns(made.samples, made.model, made.set, made.reference, {}, 0.5);
+  const FlightColumns half =
+      pcor::internal::find_columns(made.samples, made.model, made.set, made.reference, {}, 0.5);
   for (std::size_t i = 0; i < half.given.size(); ++i) {
     EXPECT_EQ(std::isnan(half.given[i]), i >= 200) << i;
   }
@@ -315,7 +316,8 @@ TEST(Columns, FewMissingValuesAreBridgedAndManyAreNot) {
         std::fill(values.begin() + 100, values.begin() + 100 + static_cast<std::ptrdiff_t>(gap),
                   std::nan(""));
     }
-    const FlightColumns columns = pcor::find_columns(samples, made.model, made.set, made.reference, {}, 1.0);
+    const FlightColumns columns =
+        pcor::internal::find_columns(samples, made.model, made.set, made.reference, {}, 1.0);
     // The model itself does not need the cabin.
     EXPECT_EQ(std::count(columns.mask.begin(), columns.mask.end(), pcor::Mask::none), 400);
     Eigen::Index column = 0;
@@ -343,7 +345,7 @@ TEST(Candidates, AreTheCatalogueThatTheModelLacks) {
   for (const Candidate& candidate : set.candidates) {
     const pcor::EffectFacts& facts = pcor::effect_facts[pcor::effect_named(candidate.effect.id)];
     EXPECT_FALSE(candidate.tested.empty());
-    for (const pcor::CandidateParameter& parameter : candidate.tested) {
+    for (const pcor::internal::CandidateParameter& parameter : candidate.tested) {
       EXPECT_FALSE(facts.parameters[parameter.place].shape);
       EXPECT_EQ(candidate.effect.parameters[parameter.place], facts.parameters[parameter.place].neutral);
       EXPECT_LE(parameter.bounds.lower, 0.0) << candidate.effect.id;

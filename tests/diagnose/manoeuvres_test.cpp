@@ -29,8 +29,8 @@ using namespace pcor::internal;
 namespace {
 
 using pcor::FlightSamples;
-using pcor::Manoeuvre;
 using pcor::Quantity;
+using pcor::internal::Manoeuvre;
 using Series = std::vector<double>;
 
 constexpr double pi = 3.14159265358979323846;
@@ -136,7 +136,7 @@ FlightSamples flight(const Made& made = {}) {
 }
 
 std::vector<Manoeuvre> manoeuvres_of(FlightSamples samples) {
-  return pcor::standard_manoeuvres({std::make_shared<const FlightSamples>(std::move(samples))});
+  return pcor::internal::standard_manoeuvres({std::make_shared<const FlightSamples>(std::move(samples))});
 }
 
 /// Those of the flight that has everything.
@@ -552,15 +552,15 @@ TEST(Manoeuvres, HaveOnlyColumnsThatAllFlightsHave) {
   erase(less, Quantity::cabin_pressure);
   less.pressure.clear();
   less.flaps.clear();
-  const std::vector<Manoeuvre> all = pcor::standard_manoeuvres(
+  const std::vector<Manoeuvre> all = pcor::internal::standard_manoeuvres(
       {std::make_shared<const FlightSamples>(flight()), std::make_shared<const FlightSamples>(less)});
   expect_complete(all, less);
   for (const Manoeuvre& each : all) EXPECT_TRUE(each.samples->pressure.empty());
 }
 
 TEST(Manoeuvres, AreNoneWhereNothingWasFlown) {
-  EXPECT_TRUE(pcor::standard_manoeuvres({}).empty());
-  EXPECT_TRUE(pcor::standard_manoeuvres({nullptr}).empty());
+  EXPECT_TRUE(pcor::internal::standard_manoeuvres({}).empty());
+  EXPECT_TRUE(pcor::internal::standard_manoeuvres({nullptr}).empty());
   EXPECT_TRUE(manoeuvres_of({}).empty());
   FlightSamples empty = flight();
   for (auto& [quantity, values] : empty.model.columns) values.assign(values.size(), missing);
@@ -575,14 +575,14 @@ TEST(Manoeuvres, OfASimulatedFlightHaveTheAttackOfItsAircraft) {
   const pcor::ModelFile model = pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml");
   const auto flown = std::make_shared<const FlightSamples>(
       pcor::read_samples(pcor::Flight(directory / "flight.nc"), model, pcor::Reference{}));
-  const std::vector<Manoeuvre> all = pcor::standard_manoeuvres({flown});
+  const std::vector<Manoeuvre> all = pcor::internal::standard_manoeuvres({flown});
   expect_complete(all, *flown);
   for (const Manoeuvre& each : all) {
     const pcor::Residuals residuals(each.samples, model, pcor::Reference{});
     for (const pcor::Mask mask : residuals.mask()) ASSERT_EQ(mask, pcor::Mask::none) << each.name;
   }
 
-  const auto& aircraft = pcor::simulate::facts_of(pcor::Scenario::Aircraft::c130);
+  const auto& aircraft = pcor::internal::simulate::facts_of(pcor::Scenario::Aircraft::c130);
   const std::vector<const Manoeuvre*> pitches = named(all, "pitch manoeuvre");
   ASSERT_FALSE(pitches.empty());
   for (const Manoeuvre* each : pitches) {
@@ -595,7 +595,7 @@ TEST(Manoeuvres, OfASimulatedFlightHaveTheAttackOfItsAircraft) {
       const double p = column(*each, Quantity::static_pressure)[i];
       const double q = column(*each, Quantity::dynamic_pressure)[i];
       const double mach = pcor::mach_number(p, q, pcor::dry_air<double>());
-      const double attack = pcor::simulate::lift_attack(
+      const double attack = pcor::internal::simulate::lift_attack(
           aircraft, aircraft.weight, 1.0 + acceleration[i - 1] / gravity, 70.0 * p * mach * mach, mach, 0.0);
       greatest_attack = std::max(greatest_attack, attack);
       least_attack = std::min(least_attack, attack);

@@ -11,8 +11,8 @@
 
 using namespace pcor::internal;
 
-using pcor::Binning;
-using pcor::NoiseModel;
+using pcor::internal::Binning;
+using pcor::internal::NoiseModel;
 
 namespace {
 
@@ -90,7 +90,7 @@ TEST(Whitening, TurnsTheCovarianceOfTheProcessIntoUnity) {
     }
     covariance = level.asDiagonal() * covariance * level.asDiagonal();
     const Eigen::MatrixXd white =
-        pcor::whitened(Eigen::MatrixXd::Identity(level.size(), level.size()), bins, noise, 0);
+        pcor::internal::whitened(Eigen::MatrixXd::Identity(level.size(), level.size()), bins, noise, 0);
     const Eigen::MatrixXd left = white * covariance * white.transpose();
     // Rounding; the sums of the autocovariance are cut off where they are nothing.
     EXPECT_LT((left - Eigen::MatrixXd::Identity(level.size(), level.size())).cwiseAbs().maxCoeff(), 1e-10)
@@ -103,8 +103,8 @@ TEST(Whitening, OfEstimatedNoiseIsWhiteAndOfUnitVariance) {
   const auto level = [](std::size_t i) { return i < count / 2 ? 0.2 : 0.4; };
   const Eigen::VectorXd residual = second_order(count, 11, level);
   const std::vector<Binning> bins{bins_of(std::vector<double>(count, 0.0))};
-  const NoiseModel noise = pcor::estimate_noise(bins, {residual});
-  const Eigen::VectorXd white = pcor::whitened(residual, bins[0], noise, 0);
+  const NoiseModel noise = pcor::internal::estimate_noise(bins, {residual});
+  const Eigen::VectorXd white = pcor::internal::whitened(residual, bins[0], noise, 0);
   // Of white noise an autocorrelation has the deviation 1/sqrt(n); one of eight is beyond 3 of them once in
   // fifty, and this seed is not.
   for (Eigen::Index lag = 1; lag <= 8; ++lag)
@@ -120,7 +120,7 @@ TEST(NoiseModel, HasTheCoefficientsAndTheLevelsOfTheProcess) {
   constexpr std::size_t count = 3600;
   const auto level = [](std::size_t i) { return i < count / 2 ? 0.2 : 0.4; };
   const std::vector<Binning> bins{bins_of(std::vector<double>(count, 0.0))};
-  const NoiseModel noise = pcor::estimate_noise(bins, {second_order(count, 12, level)});
+  const NoiseModel noise = pcor::internal::estimate_noise(bins, {second_order(count, 12, level)});
   ASSERT_GE(noise.coefficients.size(), 2U);
   // Standard errors sqrt((1 - 0.25)/3600) = 0.015; what drift shapes take away of the slow noise adds as
   // much.
@@ -140,8 +140,8 @@ TEST(NoiseModel, IsNotDisturbedBySlowDrift) {
   Eigen::VectorXd drifting = residual;
   for (Eigen::Index i = 0; i < drifting.size(); ++i)
     drifting[i] += 2.0 * std::sin(2.0 * M_PI * static_cast<double>(i) * step / 1500.0);
-  const NoiseModel without = pcor::estimate_noise(bins, {residual});
-  const NoiseModel with = pcor::estimate_noise(bins, {drifting});
+  const NoiseModel without = pcor::internal::estimate_noise(bins, {residual});
+  const NoiseModel with = pcor::internal::estimate_noise(bins, {drifting});
   ASSERT_GE(with.coefficients.size(), 2U);
   // The drift is ten times the noise; what its shapes leave of it is below a twentieth of the noise.
   EXPECT_NEAR(with.coefficients[0], without.coefficients[0], 0.03);
@@ -153,8 +153,8 @@ TEST(NoiseModel, OfSeveralFlightsHasALevelForEach) {
   const std::vector<Binning> bins{bins_of(std::vector<double>(600, 0.0)),
                                   bins_of(std::vector<double>(900, 0.0))};
   const NoiseModel noise =
-      pcor::estimate_noise(bins, {second_order(600, 14, [](std::size_t) { return 0.1; }),
-                                  second_order(900, 15, [](std::size_t) { return 0.3; })});
+      pcor::internal::estimate_noise(bins, {second_order(600, 14, [](std::size_t) { return 0.1; }),
+                                            second_order(900, 15, [](std::size_t) { return 0.3; })});
   ASSERT_EQ(noise.level.size(), 2U);
   EXPECT_EQ(noise.level[0].size(), 600);
   EXPECT_EQ(noise.level[1].size(), 900);
@@ -165,7 +165,7 @@ TEST(NoiseModel, OfSeveralFlightsHasALevelForEach) {
 
 TEST(DriftShapes, SpanASlowWave) {
   const Binning bins = bins_of(std::vector<double>(1800, 0.0));  // two hours
-  const Eigen::MatrixXd shapes = pcor::drift_shapes(bins);
+  const Eigen::MatrixXd shapes = pcor::internal::drift_shapes(bins);
   EXPECT_GE(shapes.cols(), 46);
   EXPECT_LE(shapes.cols(), 48);
   for (const double period : {900.0, 2500.0, 10000.0}) {
@@ -181,7 +181,7 @@ TEST(DriftShapes, SpanASlowWave) {
 }
 
 TEST(DriftShapes, AreFewInShortFlights) {
-  EXPECT_EQ(pcor::drift_shapes(bins_of({1.0})).cols(), 0);
-  EXPECT_EQ(pcor::drift_shapes(bins_of(std::vector<double>(30, 0.0))).cols(), 0);
-  EXPECT_LE(pcor::drift_shapes(bins_of(std::vector<double>(300, 0.0))).cols(), 8);
+  EXPECT_EQ(pcor::internal::drift_shapes(bins_of({1.0})).cols(), 0);
+  EXPECT_EQ(pcor::internal::drift_shapes(bins_of(std::vector<double>(30, 0.0))).cols(), 0);
+  EXPECT_LE(pcor::internal::drift_shapes(bins_of(std::vector<double>(300, 0.0))).cols(), 8);
 }

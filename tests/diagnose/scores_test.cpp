@@ -11,9 +11,9 @@
 
 using namespace pcor::internal;
 
-using pcor::Binning;
-using pcor::NoiseModel;
-using pcor::Scores;
+using pcor::internal::Binning;
+using pcor::internal::NoiseModel;
+using pcor::internal::Scores;
 
 namespace {
 
@@ -64,7 +64,7 @@ struct Example {
         }
       }
     }
-    const Eigen::MatrixXd shapes = pcor::drift_shapes(bins[flight]);
+    const Eigen::MatrixXd shapes = pcor::internal::drift_shapes(bins[flight]);
     return result + noise.drift * noise.drift * shapes * shapes.transpose();
   }
 };
@@ -80,7 +80,7 @@ Eigen::VectorXd draw_noise(const Example& example, std::size_t flight, double dr
     values[i] = level[i] * value;
     value = memory * value + normal(engine);
   }
-  const Eigen::MatrixXd shapes = pcor::drift_shapes(example.bins[flight]);
+  const Eigen::MatrixXd shapes = pcor::internal::drift_shapes(example.bins[flight]);
   for (Eigen::Index k = 0; k < shapes.cols(); ++k) values += drift * normal(engine) * shapes.col(k);
   return values;
 }
@@ -91,7 +91,8 @@ TEST(Scores, AreThoseOfGeneralisedLeastSquares) {
   for (const double drift : {0.0, 0.3, 3.0}) {
     Example example({300, 150}, 4, 1);
     example.noise.drift = drift;
-    const Scores scores = pcor::find_scores(example.bins, example.columns, example.residuals, example.noise);
+    const Scores scores =
+        pcor::internal::find_scores(example.bins, example.columns, example.residuals, example.noise);
     Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(5, 5);
     for (std::size_t f = 0; f < 2; ++f) {
       Eigen::MatrixXd all(example.columns[f].rows(), 5);
@@ -107,7 +108,8 @@ TEST(Scores, AreThoseOfGeneralisedLeastSquares) {
 TEST(Scores, OfBlocksAddUpToTheScore) {
   Example example({300, 150}, 4, 2);
   example.noise.drift = 0.5;
-  const Scores scores = pcor::find_scores(example.bins, example.columns, example.residuals, example.noise);
+  const Scores scores =
+      pcor::internal::find_scores(example.bins, example.columns, example.residuals, example.noise);
   // What is left after no coefficients has the score of the residual.
   Eigen::VectorXd score = Eigen::VectorXd::Zero(4);
   for (std::size_t f = 0; f < 2; ++f)
@@ -129,13 +131,15 @@ TEST(Scores, OfBlocksAddUpToTheScore) {
 // worth what it was.
 TEST(Scores, WithDriftSlowColumnsAreWorthLittle) {
   Example example({600}, 2, 3);
-  const Eigen::MatrixXd shapes = pcor::drift_shapes(example.bins[0]);
+  const Eigen::MatrixXd shapes = pcor::internal::drift_shapes(example.bins[0]);
   example.columns[0].col(0) = shapes.col(2);
   const Eigen::MatrixXd without =
-      pcor::find_scores(example.bins, example.columns, example.residuals, example.noise).information;
+      pcor::internal::find_scores(example.bins, example.columns, example.residuals, example.noise)
+          .information;
   example.noise.drift = 1.0;
   const Eigen::MatrixXd with =
-      pcor::find_scores(example.bins, example.columns, example.residuals, example.noise).information;
+      pcor::internal::find_scores(example.bins, example.columns, example.residuals, example.noise)
+          .information;
   // The coefficient of the shape has the variance of the drift: its information is below 1.
   EXPECT_LT(with(0, 0), 1.0);
   EXPECT_GT(without(0, 0), 20.0);
@@ -148,8 +152,8 @@ TEST(LikelyDrift, FindsTheSizeOfTheDrift) {
       Example example({900, 600}, 2, seed);
       std::mt19937_64 engine(100 + seed);
       for (std::size_t f = 0; f < 2; ++f) example.residuals[f] = draw_noise(example, f, size, engine);
-      const pcor::DriftFit fit =
-          pcor::likely_drift(example.bins, example.columns, example.residuals, example.noise);
+      const pcor::internal::DriftFit fit =
+          pcor::internal::likely_drift(example.bins, example.columns, example.residuals, example.noise);
       const double found = fit.size;
       const double gain = fit.gain;
       // From about ten coefficients above the noise; steps of the sizes are up to 1.9.
@@ -167,7 +171,7 @@ TEST(LikelyDrift, IsMostlyNoneWhereThereIsNone) {
     std::mt19937_64 engine(200 + seed);
     example.residuals[0] = draw_noise(example, 0, 0.0, engine);
     const double gain =
-        pcor::likely_drift(example.bins, example.columns, example.residuals, example.noise).gain;
+        pcor::internal::likely_drift(example.bins, example.columns, example.residuals, example.noise).gain;
     EXPECT_GE(gain, 0.0);
     found += gain > 2.0 ? 1 : 0;
   }
@@ -179,10 +183,10 @@ TEST(LikelyDrift, IsMostlyNoneWhereThereIsNone) {
 TEST(LikelyDrift, IsNotWhatAColumnExplains) {
   Example example({900}, 2, 7);
   std::mt19937_64 engine(300);
-  example.columns[0].col(0) = pcor::drift_shapes(example.bins[0]).col(3);
+  example.columns[0].col(0) = pcor::internal::drift_shapes(example.bins[0]).col(3);
   example.residuals[0] = draw_noise(example, 0, 0.0, engine) + 5.0 * example.columns[0].col(0);
-  const pcor::DriftFit fit =
-      pcor::likely_drift(example.bins, example.columns, example.residuals, example.noise);
+  const pcor::internal::DriftFit fit =
+      pcor::internal::likely_drift(example.bins, example.columns, example.residuals, example.noise);
   const double found = fit.size;
   const double gain = fit.gain;
   EXPECT_TRUE(found == 0.0 || gain < 5.0) << found;

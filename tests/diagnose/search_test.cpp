@@ -13,15 +13,15 @@
 
 using namespace pcor::internal;
 
-using pcor::Binning;
 using pcor::Bounds;
-using pcor::ColumnGroup;
-using pcor::GroupScore;
-using pcor::NoiseModel;
-using pcor::Scores;
-using pcor::Search;
-using pcor::SearchOptions;
-using pcor::SearchResult;
+using pcor::internal::Binning;
+using pcor::internal::ColumnGroup;
+using pcor::internal::GroupScore;
+using pcor::internal::NoiseModel;
+using pcor::internal::Scores;
+using pcor::internal::Search;
+using pcor::internal::SearchOptions;
+using pcor::internal::SearchResult;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
@@ -85,7 +85,7 @@ struct Problem {
 
   Search search() {
     if (groups.empty()) one_by_one();
-    scores = pcor::find_scores(bins, {columns}, {residual}, noise);
+    scores = pcor::internal::find_scores(bins, {columns}, {residual}, noise);
     return Search(scores, base, groups);
   }
 };
@@ -403,17 +403,18 @@ TEST(OneDegreeEquivalent, IsAsRare) {
   for (const double freedom : {1.0, 2.0, 3.0, 6.0}) {
     double before = -1.0;
     for (double chi2 = 0.0; chi2 < 900.0; chi2 += 0.5) {
-      const double equivalent = pcor::one_degree_equivalent(chi2, freedom);
+      const double equivalent = pcor::internal::one_degree_equivalent(chi2, freedom);
       EXPECT_GE(equivalent, before);
       EXPECT_LE(equivalent, chi2 + 1e-12);
       before = equivalent;
       if (chi2 > 0.0 && chi2 < 500.0) {
-        const double tail = pcor::chi_squared_tail(chi2, freedom);
-        EXPECT_NEAR(pcor::chi_squared_tail(equivalent, 1.0), tail, 1e-7 * tail) << freedom << " " << chi2;
+        const double tail = pcor::internal::chi_squared_tail(chi2, freedom);
+        EXPECT_NEAR(pcor::internal::chi_squared_tail(equivalent, 1.0), tail, 1e-7 * tail)
+            << freedom << " " << chi2;
       }
     }
   }
   // Tables: 5 % of two degrees is 5.991, of one 3.841.
-  EXPECT_NEAR(pcor::one_degree_equivalent(5.991, 2.0), 3.841, 1e-3);
-  EXPECT_NEAR(pcor::chi_squared_tail(12.592, 6.0), 0.05, 1e-5);
+  EXPECT_NEAR(pcor::internal::one_degree_equivalent(5.991, 2.0), 3.841, 1e-3);
+  EXPECT_NEAR(pcor::internal::chi_squared_tail(12.592, 6.0), 0.05, 1e-5);
 }

@@ -14,11 +14,11 @@
 
 using namespace pcor::internal;
 
-using pcor::Binning;
-using pcor::NoiseModel;
-using pcor::Smooth;
-using pcor::Structure;
-using pcor::StructureTest;
+using pcor::internal::Binning;
+using pcor::internal::NoiseModel;
+using pcor::internal::Smooth;
+using pcor::internal::Structure;
+using pcor::internal::StructureTest;
 
 namespace {
 
@@ -217,7 +217,7 @@ TEST(StructureTest, TheSlopeIsThatOfGeneralisedLeastSquares) {
       covariance(i, j) =
           0.09 * std::pow(memory, std::abs(static_cast<double>(i - j))) / (1.0 - memory * memory);
   }
-  const Eigen::MatrixXd shapes = pcor::drift_shapes(flight.bins[0]);
+  const Eigen::MatrixXd shapes = pcor::internal::drift_shapes(flight.bins[0]);
   covariance += 0.16 * shapes * shapes.transpose();
   Eigen::MatrixXd columns(rows, 2);
   columns << Eigen::VectorXd::Ones(rows), as_vector(flight.variables[0]);
@@ -272,9 +272,9 @@ TEST(SharesNoise, IsWhatWasComputedFromTheSameMeasurement) {
   const std::vector<double> residual = draws(3600, 7);
   std::vector<double> derived = draws(3600, 8);
   for (std::size_t i = 0; i < derived.size(); ++i) derived[i] = 3.0 * derived[i] - residual[i];
-  EXPECT_TRUE(pcor::shares_noise({residual}, {derived.data()}));
+  EXPECT_TRUE(pcor::internal::shares_noise({residual}, {derived.data()}));
   const std::vector<double> other = draws(3600, 9);
-  EXPECT_FALSE(pcor::shares_noise({residual}, {other.data()}));
+  EXPECT_FALSE(pcor::internal::shares_noise({residual}, {other.data()}));
 }
 
 // An effect makes residual and variable go together in its manoeuvres alone.
@@ -287,15 +287,15 @@ TEST(SharesNoise, IsNotWhatGoesWithItInManoeuvresAlone) {
     if (i >= 1000 && i < 1400) variable[i] += 3.0 * std::sin(static_cast<double>(i) / 2.0);
     residual[i] = 0.3 * residual[i] + variable[i];
   }
-  EXPECT_FALSE(pcor::shares_noise({residual}, {variable.data()}));
+  EXPECT_FALSE(pcor::internal::shares_noise({residual}, {variable.data()}));
 }
 
 TEST(SharesNoise, OfNothingIsFalse) {
   const std::vector<double> nothing(600, missing);
   const std::vector<double> values = draws(600, 12);
-  EXPECT_FALSE(pcor::shares_noise({nothing}, {values.data()}));
+  EXPECT_FALSE(pcor::internal::shares_noise({nothing}, {values.data()}));
   const std::vector<double> constant(600, 1.0);
-  EXPECT_FALSE(pcor::shares_noise({values}, {constant.data()}));
+  EXPECT_FALSE(pcor::internal::shares_noise({values}, {constant.data()}));
 }
 
 // Of twenty minutes and variables that have nothing to do with it, few are taken for it: two windows of 300
@@ -305,7 +305,7 @@ TEST(SharesNoise, IsRarelyChance) {
   const std::vector<double> residual = draws(1200, 13);
   for (unsigned seed = 0; seed < 100; ++seed) {
     const std::vector<double> other = draws(1200, 500 + seed);
-    shared += pcor::shares_noise({residual}, {other.data()}) ? 1 : 0;
+    shared += pcor::internal::shares_noise({residual}, {other.data()}) ? 1 : 0;
   }
   EXPECT_LE(shared, 6);
 }

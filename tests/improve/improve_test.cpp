@@ -13,12 +13,12 @@
 using namespace pcor::internal;
 
 using pcor::Diagnosis;
-using pcor::ImproveLoop;
 using pcor::Improvement;
 using pcor::ImproveStep;
 using pcor::ModelFile;
 using pcor::RefitResult;
 using pcor::Verdict;
+using pcor::internal::ImproveLoop;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;

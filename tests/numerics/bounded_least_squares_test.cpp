@@ -53,7 +53,7 @@ TEST(BoundedLeastSquares, IsTheLeastOfAllWaysToHoldBounds) {
     const Eigen::VectorXd lower = Eigen::VectorXd::Constant(size, -0.7);
     const Eigen::VectorXd upper = Eigen::VectorXd::Constant(size, 0.4);
     const Eigen::VectorXd x =
-        pcor::bounded_least_squares(rows, right, lower, upper, Eigen::VectorXd::Zero(size));
+        pcor::internal::bounded_least_squares(rows, right, lower, upper, Eigen::VectorXd::Zero(size));
     EXPECT_TRUE((x.array() >= lower.array()).all() && (x.array() <= upper.array()).all());
     EXPECT_NEAR((rows * x - right).squaredNorm(), least_of_all_ways(rows, right, lower, upper), 1e-8)
         << trial;
@@ -66,7 +66,7 @@ TEST(BoundedLeastSquares, WithoutBoundsIsTheLeastSquares) {
   rows << 1.0, 0.0, 0.0, 2.0, 1.0, 1.0;
   const Eigen::VectorXd right = Eigen::Vector3d(1.0, 2.0, 5.0);
   const Eigen::VectorXd x =
-      pcor::bounded_least_squares(rows, right, Eigen::Vector2d::Constant(-infinity),
-                                  Eigen::Vector2d::Constant(infinity), Eigen::Vector2d::Zero());
+      pcor::internal::bounded_least_squares(rows, right, Eigen::Vector2d::Constant(-infinity),
+                                            Eigen::Vector2d::Constant(infinity), Eigen::Vector2d::Zero());
   EXPECT_TRUE(x.isApprox(rows.colPivHouseholderQr().solve(right), 1e-12));
 }

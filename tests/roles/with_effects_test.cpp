@@ -81,12 +81,12 @@ std::string message_of(const std::vector<ModelEffect>& effects,
 }  // namespace
 
 TEST(UsualVariables, BelongToRolesThatAModelNeedNotName) {
-  EXPECT_THAT(pcor::usual_variables(Quantity::attack), ElementsAre("ATTACK", "AKRD"));
-  EXPECT_THAT(pcor::usual_variables(Quantity::cabin_pressure), ElementsAre("PCAB"));
+  EXPECT_THAT(pcor::internal::usual_variables(Quantity::attack), ElementsAre("ATTACK", "AKRD"));
+  EXPECT_THAT(pcor::internal::usual_variables(Quantity::cabin_pressure), ElementsAre("PCAB"));
   for (const Quantity role : {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::lams_airspeed,
                               Quantity::mach, Quantity::vapor_pressure, Quantity::dew_point,
                               Quantity::recovery_temperature, Quantity::corrected_mach})
-    EXPECT_TRUE(pcor::usual_variables(role).empty()) << pcor::facts_of(role).name;
+    EXPECT_TRUE(pcor::internal::usual_variables(role).empty()) << pcor::facts_of(role).name;
 }
 
 TEST(WithEffects, StartsNeutral) {

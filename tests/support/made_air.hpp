@@ -35,13 +35,13 @@ struct AirPlan {
   double latitude = 40.0;   ///< deg
 };
 
-inline pcor::FlightAir air(const AirPlan& plan) {
+inline pcor::internal::FlightAir air(const AirPlan& plan) {
   using pcor::constants::radians_per_degree;
   const double gas_constant = pcor::dry_air<double>().gas_constant;
   constexpr double gravity = pcor::constants::standard_gravity;
   auto samples = std::make_shared<pcor::FlightSamples>();
   samples->name = "made-air-" + std::to_string(plan.seed);
-  pcor::FlightAir air;
+  pcor::internal::FlightAir air;
   std::mt19937_64 engine(plan.seed);
   std::normal_distribution<double> normal;
   double slow = normal(engine);

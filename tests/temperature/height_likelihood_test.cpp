@@ -16,13 +16,15 @@ using namespace pcor::internal;
 
 namespace {
 
-using pcor::HeightBlock;
-using pcor::HeightEquations;
-using pcor::HeightNoise;
-using pcor::HeightPrior;
-using pcor::HeightRecord;
+using pcor::internal::HeightBlock;
+using pcor::internal::HeightEquations;
+using pcor::internal::HeightNoise;
+using pcor::internal::HeightPrior;
+using pcor::internal::HeightRecord;
 
-HeightRecord record_of(const made::AirPlan& plan) { return pcor::height_record(made::air(plan), {}, {}); }
+HeightRecord record_of(const made::AirPlan& plan) {
+  return pcor::internal::height_record(made::air(plan), {}, {});
+}
 
 HeightRecord short_record() {
   made::AirPlan plan;
@@ -164,7 +166,7 @@ TEST(HeightLikelihood, FindsTheNoiseThatThereIs) {
     plan.offset = 0.4;
     records.push_back(record_of(plan));
   }
-  const pcor::MostLikely found = maximise_likelihood(records, 2, HeightPrior{}, HeightNoise{}, 1);
+  const pcor::internal::MostLikely found = maximise_likelihood(records, 2, HeightPrior{}, HeightNoise{}, 1);
   // 8 hours hold 360 memories of the noise: its variance is known to 10 %, its memory to about as much.
   EXPECT_NEAR(found.noise.wander, 0.5, 0.05);
   EXPECT_NEAR(found.noise.wander_time, 80.0, 16.0);
@@ -206,7 +208,7 @@ std::vector<HeightRecord> noisy_records(std::size_t flights, std::size_t seconds
 /// The covariance with the noise's uncertainty, by a random walk through the noise (Metropolis) instead of a
 /// few points; its logarithms are known to 1.5 beforehand.
 Eigen::MatrixXd sampled_covariance(const std::vector<HeightRecord>& records, Eigen::Index terms,
-                                   const pcor::MostLikely& likely, int samples) {
+                                   const pcor::internal::MostLikely& likely, int samples) {
   const std::array<double HeightNoise::*, 5> moved{&HeightNoise::white, &HeightNoise::wander,
                                                    &HeightNoise::wander_time, &HeightNoise::walk,
                                                    &HeightNoise::slope_change};
@@ -247,7 +249,8 @@ TEST(HeightLikelihood, ErrorsKnowThatTheNoiseIsFoundToo) {
   std::array<double, 2> apart{};
   for (const HeightRecord& record : noisy_records(flights, 7200)) {
     const std::vector<HeightRecord> records{record};
-    const pcor::MostLikely likely = maximise_likelihood(records, 2, HeightPrior{}, HeightNoise{}, 1);
+    const pcor::internal::MostLikely likely =
+        maximise_likelihood(records, 2, HeightPrior{}, HeightNoise{}, 1);
     const Eigen::MatrixXd stated = covariance_over_noise(records, 2, HeightPrior{}, likely, 1);
     const Eigen::MatrixXd sampled = sampled_covariance(records, 2, likely, 8000);
     for (Eigen::Index k = 0; k < 2; ++k) {
@@ -268,7 +271,8 @@ TEST(HeightLikelihood, TheLessTheBetterTheNoiseIsKnown) {
   double before = std::numeric_limits<double>::infinity();
   for (const std::size_t flights : {1U, 4U, 16U}) {
     const std::vector<HeightRecord> records = noisy_records(flights, 3600);
-    const pcor::MostLikely likely = maximise_likelihood(records, 2, HeightPrior{}, HeightNoise{}, 1);
+    const pcor::internal::MostLikely likely =
+        maximise_likelihood(records, 2, HeightPrior{}, HeightNoise{}, 1);
     const Eigen::MatrixXd stated = covariance_over_noise(records, 2, HeightPrior{}, likely, 1);
     const Eigen::MatrixXd more = stated - likely.equations.covariance(2);
     // No combination of coefficients gets surer, but for rounding.
@@ -305,7 +309,7 @@ TEST(HeightLeastSquares, IsTheLineThroughHeights) {
   made::AirPlan plan;
   plan.offset = 0.5;
   plan.gain = 0.01;
-  const pcor::TemperatureFit fit = pcor::fit_height_by_least_squares({record_of(plan)}, 2);
+  const pcor::TemperatureFit fit = pcor::internal::fit_height_by_least_squares({record_of(plan)}, 2);
   EXPECT_NEAR(fit.coefficients[0], -0.5 / 1.01, 1e-6);  // no noise: exact but for the trapezium rule
   EXPECT_NEAR(fit.coefficients[1], -0.01 / 1.01, 1e-7);
   EXPECT_LT(fit.sigma, 1e-3);
@@ -327,7 +331,7 @@ TEST(HeightLeastSquares, ErrorsAreTooSmallWhereNoiseRemembersItself) {
     plan.gps = 1.0;
     plan.gps_memory = 120.0;
     const HeightRecord record = record_of(plan);
-    const pcor::TemperatureFit least = pcor::fit_height_by_least_squares({record}, 1);
+    const pcor::TemperatureFit least = pcor::internal::fit_height_by_least_squares({record}, 1);
     const HeightEquations likely = height_equations(record, noise, {0.0, 0.0});
     squares_least += std::pow(least.coefficients[0] / least.standard_errors[0], 2);
     squares_likely += std::pow(likely.best(1)[0], 2) / likely.covariance(1)(0, 0);

@@ -15,16 +15,16 @@ using namespace pcor::internal;
 
 namespace {
 
-using pcor::height_record;
-using pcor::HeightBlock;
-using pcor::HeightRecord;
-using pcor::WayKnown;
+using pcor::internal::height_record;
+using pcor::internal::HeightBlock;
+using pcor::internal::HeightRecord;
+using pcor::internal::WayKnown;
 using testing::HasSubstr;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-HeightRecord record_of(const pcor::FlightAir& air, double least_climb_rate = 0.0) {
-  pcor::HeightRecordOptions options;
+HeightRecord record_of(const pcor::internal::FlightAir& air, double least_climb_rate = 0.0) {
+  pcor::internal::HeightRecordOptions options;
   options.least_climb_rate = least_climb_rate;
   return height_record(air, {}, options);
 }
@@ -39,7 +39,7 @@ double range_of_excess(const HeightRecord& record) {
   return highest - lowest;
 }
 
-std::string message_for(const pcor::FlightAir& air) {
+std::string message_for(const pcor::internal::FlightAir& air) {
   try {
     record_of(air);
   } catch (const pcor::Error& error) {
@@ -74,7 +74,7 @@ TEST(HeightRecord, ErrorOfTheThermometerIsWhatTheColumnsSay) {
 }
 
 TEST(HeightRecord, ErrorOfTheStaticPressureIsWhatItSays) {
-  pcor::FlightAir air = made::air({});
+  pcor::internal::FlightAir air = made::air({});
   const HeightRecord truth = record_of(air);
   for (double& p : air.pressure) p += 0.1;
   const HeightRecord wrong = record_of(air);
@@ -85,7 +85,7 @@ TEST(HeightRecord, ErrorOfTheStaticPressureIsWhatItSays) {
 }
 
 TEST(HeightRecord, BeginsAnewAfterAGapAndCrossesAShortOne) {
-  pcor::FlightAir air = made::air({});
+  pcor::internal::FlightAir air = made::air({});
   for (std::size_t i = 1000; i < 1005; ++i) air.pressure[i] = nan;
   EXPECT_EQ(record_of(air).stretches, 1U);
   EXPECT_LT(range_of_excess(record_of(air)), 2e-3);
@@ -98,7 +98,7 @@ TEST(HeightRecord, BeginsAnewAfterAGapAndCrossesAShortOne) {
 }
 
 TEST(HeightRecord, MissingHeightIsNotAGap) {
-  pcor::FlightAir air = made::air({});
+  pcor::internal::FlightAir air = made::air({});
   for (std::size_t i = 1000; i < 1600; ++i) air.geopotential_height[i] = nan;
   const HeightRecord record = record_of(air);
   EXPECT_EQ(record.stretches, 1U);
@@ -107,7 +107,7 @@ TEST(HeightRecord, MissingHeightIsNotAGap) {
 }
 
 TEST(HeightRecord, SpikesAreLeftOutAndStepsBeginAnew) {
-  pcor::FlightAir air = made::air({});
+  pcor::internal::FlightAir air = made::air({});
   for (std::size_t i = 500; i < 520; ++i) air.geopotential_height[i] += 40.0;
   for (std::size_t i = 3000; i < air.size(); ++i) air.geopotential_height[i] -= 15.0;
   const HeightRecord record = record_of(air);
@@ -125,7 +125,7 @@ TEST(HeightRecord, KeepsOnlyWhatClimbsFastEnough) {
 }
 
 TEST(HeightRecord, ArchivedStepsTakeThePlaceOfPressureAndHumidity) {
-  const pcor::FlightAir air = made::air({});
+  const pcor::internal::FlightAir air = made::air({});
   std::vector<double> steps(air.size(), nan);
   for (std::size_t i = 1; i < air.size(); ++i)
     steps[i] = -air.gas_constant[i] / 9.80665 * std::log(air.pressure[i] / air.pressure[i - 1]);
@@ -137,7 +137,7 @@ TEST(HeightRecord, ArchivedStepsTakeThePlaceOfPressureAndHumidity) {
 }
 
 TEST(HeightRecord, SlopeOfTheGeostrophicWindHasItsSign) {
-  pcor::FlightAir air = made::air({});
+  pcor::internal::FlightAir air = made::air({});
   // A wind from the west of 10 m/s: in the north, high pressure lies to its right, in the south.
   for (double& speed : air.east_speed) speed += 10.0;
   const HeightRecord record = record_of(air);
@@ -159,7 +159,7 @@ void expect_same_way(const HeightRecord& one, const HeightRecord& other) {
 }
 
 TEST(HeightRecord, WayThroughTheAirStandsInForThatOverTheGround) {
-  pcor::FlightAir air = made::air({});  // in calm air
+  pcor::internal::FlightAir air = made::air({});  // in calm air
   const HeightRecord over_ground = record_of(air);
   EXPECT_EQ(over_ground.way, WayKnown::over_ground);
   air.east_speed.clear();
@@ -171,7 +171,7 @@ TEST(HeightRecord, WayThroughTheAirStandsInForThatOverTheGround) {
 }
 
 TEST(HeightRecord, WayThroughTheAirFillsGapsOfThatOverTheGround) {
-  pcor::FlightAir air = made::air({});
+  pcor::internal::FlightAir air = made::air({});
   const HeightRecord whole = record_of(air);
   EXPECT_EQ(whole.unknown_ways, 0U);
   for (std::size_t i = 2000; i < 3000; ++i) air.east_speed[i] = nan;
@@ -182,7 +182,7 @@ TEST(HeightRecord, WayThroughTheAirFillsGapsOfThatOverTheGround) {
 }
 
 TEST(HeightRecord, WithoutHeadingTheWayIsOneDirection) {
-  pcor::FlightAir air = made::air({});
+  pcor::internal::FlightAir air = made::air({});
   air.east_speed.clear();
   air.north_speed.clear();
   auto samples = std::make_shared<pcor::FlightSamples>(*air.samples);
@@ -203,7 +203,7 @@ TEST(HeightRecord, KnowsWhetherTheFlightComesBack) {
   made::AirPlan plan;
   plan.seconds = 4500;  // three times round
   EXPECT_TRUE(record_of(made::air(plan)).returns);
-  pcor::FlightAir through_air = made::air(plan);
+  pcor::internal::FlightAir through_air = made::air(plan);
   through_air.east_speed.clear();
   through_air.north_speed.clear();
   EXPECT_FALSE(record_of(through_air).returns);  // the wind may have taken it anywhere
@@ -212,12 +212,12 @@ TEST(HeightRecord, KnowsWhetherTheFlightComesBack) {
 }
 
 TEST(HeightRecord, SaysWhatIsWrongWithTheHeight) {
-  pcor::FlightAir feet = made::air({});
+  pcor::internal::FlightAir feet = made::air({});
   for (double& height : feet.geopotential_height) height /= 0.3048;
   EXPECT_THAT(message_for(feet), HasSubstr("in feet"));
   EXPECT_THAT(message_for(feet), HasSubstr("[units] altitude = \"ft\""));
 
-  pcor::FlightAir rising = made::air({});
+  pcor::internal::FlightAir rising = made::air({});
   std::reverse(rising.pressure_altitude.begin(), rising.pressure_altitude.end());
   for (double& p : rising.pressure_altitude) p = 7000.0 - p;
   for (std::size_t i = 0; i < rising.size(); ++i) rising.pressure_altitude[i] = 7000.0 - rising.height[i];
@@ -228,13 +228,13 @@ TEST(HeightRecord, SaysWhatIsWrongWithTheHeight) {
   level.high = 3100.0;
   EXPECT_THAT(message_for(made::air(level)), HasSubstr("climbs by 100 m only"));
 
-  pcor::FlightAir none = made::air({});
+  pcor::internal::FlightAir none = made::air({});
   none.height.clear();
   EXPECT_THAT(message_for(none), HasSubstr("GGALT has no unit"));
   none.height_variable.clear();
   EXPECT_THAT(message_for(none), HasSubstr("no GPS height"));
 
-  pcor::FlightAir cold = made::air({});
+  pcor::internal::FlightAir cold = made::air({});
   cold.temperature.clear();
   EXPECT_THAT(message_for(cold), HasSubstr("thermometer"));
 }

@@ -13,9 +13,9 @@ using namespace pcor::internal;
 
 namespace {
 
-using pcor::HeightBlock;
-using pcor::HeightRecord;
 using pcor::IsobarSlope;
+using pcor::internal::HeightBlock;
+using pcor::internal::HeightRecord;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -28,7 +28,9 @@ made::AirPlan sloping() {
   return plan;
 }
 
-HeightRecord record_of(const made::AirPlan& plan) { return pcor::height_record(made::air(plan), {}, {}); }
+HeightRecord record_of(const made::AirPlan& plan) {
+  return pcor::internal::height_record(made::air(plan), {}, {});
+}
 
 double range_of_excess(const HeightRecord& record) {
   const auto [least, greatest] =
@@ -39,7 +41,7 @@ double range_of_excess(const HeightRecord& record) {
 
 TEST(IsobarSlope, ClimbsAndDescentsAndTheWholeFlightFindIt) {
   for (const IsobarSlope option : {IsobarSlope::climb_descent, IsobarSlope::whole_flight}) {
-    const pcor::IsobarSlopeEstimate slope = estimate_isobar_slope(record_of(sloping()), option);
+    const pcor::internal::IsobarSlopeEstimate slope = estimate_isobar_slope(record_of(sloping()), option);
     // Surfaces are met again over some tens of km: the usual slope draws the estimate by a few per cent.
     EXPECT_NEAR(slope.east, 1e-4, 1e-5);
     EXPECT_NEAR(slope.north, -5e-5, 1e-5);
@@ -52,7 +54,8 @@ TEST(IsobarSlope, LevelLegsFindIt) {
   plan.low = 3000.0;
   plan.high = 3310.0;
   plan.period = 10800.0;  // 0.06 m/s: level, but enough of a climb to be a record
-  const pcor::IsobarSlopeEstimate slope = estimate_isobar_slope(record_of(plan), IsobarSlope::level_legs);
+  const pcor::internal::IsobarSlopeEstimate slope =
+      estimate_isobar_slope(record_of(plan), IsobarSlope::level_legs);
   EXPECT_NEAR(slope.east, 1e-4, 1e-5);
   EXPECT_NEAR(slope.north, -5e-5, 1e-5);
 }
@@ -75,7 +78,7 @@ TEST(IsobarSlope, NothingIsTakenOffForNoneAndFitted) {
 
 TEST(IsobarSlope, GeostrophicWindOfTheSlopeTakesItOff) {
   made::AirPlan plan = sloping();
-  pcor::FlightAir air = made::air(plan);
+  pcor::internal::FlightAir air = made::air(plan);
   // The wind that belongs to the slope: v = (g/f) dz/dx, u = -(g/f) dz/dy.
   const double over = 9.80665 / pcor::coriolis_parameter(plan.latitude);
   auto samples = std::make_shared<pcor::FlightSamples>(*air.samples);
@@ -90,7 +93,7 @@ TEST(IsobarSlope, GeostrophicWindOfTheSlopeTakesItOff) {
         std::atan2(through_east, through_north) / pcor::constants::radians_per_degree;
   }
   air.samples = samples;
-  HeightRecord record = pcor::height_record(air, {}, {});
+  HeightRecord record = pcor::internal::height_record(air, {}, {});
   const double before = range_of_excess(record);
   take_off_isobar_slope(record, IsobarSlope::geostrophic);
   // Slopes are taken at the middles of steps along a curved way: a per cent.
@@ -111,10 +114,10 @@ TEST(IsobarSlope, EstimatesLeaveAPartForTheLikelihood) {
 }
 
 TEST(IsobarSlope, WhatTheFlightDoesNotTellIsLeftToTheLikelihood) {
-  pcor::FlightAir air = made::air(sloping());
+  pcor::internal::FlightAir air = made::air(sloping());
   air.east_speed.clear();
   air.north_speed.clear();
-  HeightRecord no_wind = pcor::height_record(air, {}, {});
+  HeightRecord no_wind = pcor::internal::height_record(air, {}, {});
   const double before = range_of_excess(no_wind);
   take_off_isobar_slope(no_wind, IsobarSlope::geostrophic);
   EXPECT_EQ(no_wind.slope_left, 1.0);
@@ -124,7 +127,7 @@ TEST(IsobarSlope, WhatTheFlightDoesNotTellIsLeftToTheLikelihood) {
   auto samples = std::make_shared<pcor::FlightSamples>(*air.samples);
   samples->motion.heading.clear();
   air.samples = samples;
-  HeightRecord no_directions = pcor::height_record(air, {}, {});
+  HeightRecord no_directions = pcor::internal::height_record(air, {}, {});
   take_off_isobar_slope(no_directions, IsobarSlope::whole_flight);
   EXPECT_EQ(no_directions.slope_left, 1.0);
   EXPECT_EQ(range_of_excess(no_directions), before);
@@ -134,7 +137,8 @@ TEST(IsobarSlope, WhatTheFlightDoesNotTellIsLeftToTheLikelihood) {
 TEST(IsobarSlope, AFlightAlongALineTakesTheOtherDirectionForLevel) {
   made::AirPlan plan = sloping();
   plan.turning = 1e9;  // to the north only
-  const pcor::IsobarSlopeEstimate slope = estimate_isobar_slope(record_of(plan), IsobarSlope::whole_flight);
+  const pcor::internal::IsobarSlopeEstimate slope =
+      estimate_isobar_slope(record_of(plan), IsobarSlope::whole_flight);
   EXPECT_NEAR(slope.east, 0.0, 1e-9);
   EXPECT_NEAR(slope.north, -5e-5, 5e-6);
 }
