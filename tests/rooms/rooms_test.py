@@ -2,8 +2,8 @@
 """Holds the library to its floors: rooms_test.py SOURCE_FOLDER
 
 Every folder of include/pcor, src and tests is a room of floors.txt or a workshop (tests of the whole); a room includes
-rooms of lower floors and itself; no files include each other in a circle; and a header of src, which is not installed,
-is included by no installed one.
+rooms of lower floors and itself; no files include each other in a circle; a header of src, which is not installed, is
+included by no installed one and keeps its names in pcor::internal; and no include climbs through "..".
 """
 import pathlib
 import re
@@ -28,6 +28,18 @@ def included_by(path):
             target = root / "include" / public if public else root / "src" / private
             yield number, target
 
+
+for folder in ("include", "src", "tests", "tools", "benchmarks"):
+    for path in sources(folder):
+        text = path.read_text()
+        where = path.relative_to(root)
+        if re.search(r'#\s*include\s*["<]\.\./', text):
+            trouble.append(f"{where}: an include climbs through ..; name headers of src from src")
+        opens = re.findall(r"^namespace (pcor(?:::\w+)*) \{", text, re.MULTILINE)
+        if folder == "src" and path.suffix == ".hpp" and any(not each.startswith("pcor::internal") for each in opens):
+            trouble.append(f"{where}: what is not installed belongs in pcor::internal")
+        if folder == "include" and any(each.startswith("pcor::internal") for each in opens):
+            trouble.append(f"{where}: an installed header has names in pcor::internal")
 
 for folder in ("include/pcor", "src", "tests"):
     for child in sorted((root / folder).iterdir()):
