@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <fstream>
-#include <iterator>
 #include <system_error>
 
 #include <pcor/effects/catalogue.hpp>
@@ -13,6 +12,7 @@
 #include "laws/model_names.hpp"
 #include "laws/model_reader.hpp"
 #include "laws/model_writer.hpp"
+#include "words/text_file.hpp"
 
 namespace pcor {
 
@@ -70,17 +70,7 @@ ModelEffect neutral_effect(std::string_view id) {
 ModelFile parse_model(std::string_view text, std::string_view name) { return read_model_text(text, name); }
 
 ModelFile read_model(const fs::path& path) {
-  std::error_code code;
-  if (!fs::exists(path, code)) {
-    throw Error(path.string() + ": there is no such file; give the path of a model file");
-  }
-  if (fs::is_directory(path, code)) {
-    throw Error(path.string() + ": is a directory; give the path of a model file");
-  }
-  std::ifstream stream(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream) throw Error(path.string() + ": cannot be read; check its permissions");
-  return parse_model(text, path.string());
+  return parse_model(text_of_file(path, "a model file"), path.string());
 }
 
 std::string write_model(const ModelFile& file) {

@@ -1,23 +1,18 @@
 #include "laws/model_reader.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdint>
 #include <initializer_list>
-#include <limits>
 #include <locale>
 #include <sstream>
 
-#include <pcor/model/formula.hpp>
 #include <pcor/physics/lams.hpp>
 #include <pcor/units/units.hpp>
 #include <pcor/words/error.hpp>
-#include <pcor/words/suggest.hpp>
 
+#include "laws/effect_reader.hpp"
 #include "laws/model_names.hpp"
 #include "words/toml_reader.hpp"
 
@@ -45,42 +40,6 @@ bool is_variable_name(std::string_view name) {
          });
 }
 
-bool is_date(std::string_view text) {
-  constexpr std::string_view pattern = "dddd-dd-dd";
-  const auto fits = [](char letter, char wanted) {
-    return wanted == 'd' ? letter >= '0' && letter <= '9' : letter == wanted;
-  };
-  if (text.size() != pattern.size() || !std::equal(text.begin(), text.end(), pattern.begin(), fits)) {
-    return false;
-  }
-  const int year = std::stoi(std::string(text.substr(0, 4)));
-  const int month = std::stoi(std::string(text.substr(5, 2)));
-  const int day = std::stoi(std::string(text.substr(8, 2)));
-  if (month < 1 || month > 12) return false;
-  constexpr std::array<int, 12> days{31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
-  const bool leap = (year % 4 == 0 && year % 100 != 0) || year % 400 == 0;
-  const int last = month == 2 && leap ? 29 : days[static_cast<std::size_t>(month - 1)];
-  return day >= 1 && day <= last;
-}
-
-std::string_view kind_of(const toml::node& node) {
-  switch (node.type()) {
-    case toml::node_type::table:
-      return "a table";
-    case toml::node_type::array:
-      return "a list";
-    case toml::node_type::string:
-      return "a text";
-    case toml::node_type::integer:
-    case toml::node_type::floating_point:
-      return "a number";
-    case toml::node_type::boolean:
-      return "true or false";
-    default:
-      return "a date or time";
-  }
-}
-
 // Reads a parsed file into a model, and refuses what has no meaning with the place where it stands.
 class Reader final : TomlReader {
  public:
@@ -96,62 +55,6 @@ class Reader final : TomlReader {
  private:
   std::string unknown(const Entry& entry) const override {
     return (entry.title.empty() && entry.node->is_table() ? "table " : "key ") + called(entry);
-  }
-
-  static std::string wrong_kind(const Entry& entry, const std::string& wanted) {
-    return fmt::format("{} is {}; give {}", called(entry), kind_of(*entry.node), wanted);
-  }
-
-  double finite(const toml::node& node, const std::string& what) const {
-    double value = std::numeric_limits<double>::quiet_NaN();
-    if (const auto* real = node.as_floating_point()) {
-      value = real->get();
-    } else if (const auto* whole = node.as_integer()) {
-      value = static_cast<double>(whole->get());
-    } else {
-      fail(node, fmt::format("{} is {}; give a number", what, kind_of(node)));
-    }
-    if (!std::isfinite(value)) fail(node, what + " is not finite; give a finite number");
-    return value;
-  }
-
-  double number(const Entry& entry) const { return finite(*entry.node, called(entry)); }
-
-  std::string text(const Entry& entry, const std::string& wanted = "a text in quotes") const {
-    return as<std::string>(*entry.node, wrong_kind(entry, wanted));
-  }
-
-  bool boolean(const Entry& entry) const { return as<bool>(*entry.node, wrong_kind(entry, "true or false")); }
-
-  const toml::table& table(const Entry& entry, const std::string& wanted) const {
-    return as<toml::table>(*entry.node, wrong_kind(entry, wanted));
-  }
-
-  const toml::table& section(const Entry& entry) const { return table(entry, "a table [" + entry.key + "]"); }
-
-  const toml::array& array(const Entry& entry, const std::string& wanted) const {
-    return as<toml::array>(*entry.node, wrong_kind(entry, wanted));
-  }
-
-  std::vector<double> numbers(const Entry& entry, const std::string& wanted) const {
-    std::vector<double> values;
-    for (const toml::node& node : array(entry, wanted)) {
-      values.push_back(finite(node, "a number of " + called(entry)));
-    }
-    return values;
-  }
-
-  Bounds range(const Entry& entry) const {
-    const std::string wanted = "[lower, upper]";
-    const std::vector<double> ends = numbers(entry, wanted);
-    if (ends.size() != 2) {
-      fail(entry, fmt::format("{} has {} numbers; give {}", called(entry), ends.size(), wanted));
-    }
-    if (!(ends[0] < ends[1])) {
-      fail(entry, fmt::format("{}: the lower end {} is not below the upper end {}; give {}", called(entry),
-                              ends[0], ends[1], wanted));
-    }
-    return {ends[0], ends[1]};
   }
 
   std::string variable_name(const Entry& entry) const {
@@ -223,14 +126,15 @@ class Reader final : TomlReader {
     with("radome", &Reader::read_radome);
     with("policy", &Reader::read_policy);
     with("domain", &Reader::read_domain);
-    with("effect", &Reader::read_effects);
+    const auto effects = sections.find("effect");
+    if (effects != sections.end()) read_effects(effects->second, name(), file_);
     with("law", &Reader::read_law);
     with("covariance", &Reader::read_covariance);
     with("provenance", &Reader::read_provenance);
   }
 
   void read_variables(const Entry& section_entry) {
-    for (const Entry& entry : entries_of(section(section_entry), "[variables]")) {
+    for (const Entry& entry : entries_of(table(section_entry), "[variables]")) {
       const Quantity quantity = role(entry);
       file_.variables[quantity] = variable_name(entry);
       variable_places_[quantity] = entry.place;
@@ -278,7 +182,7 @@ class Reader final : TomlReader {
 
   // Both `static_pressure = "mbar"` and `unit.static_pressure = "mbar"`.
   void read_units(const Entry& section_entry) {
-    for (const Entry& entry : entries_of(section(section_entry), "[units]")) {
+    for (const Entry& entry : entries_of(table(section_entry), "[units]")) {
       if (entry.key != "unit") {
         read_unit(entry);
         continue;
@@ -315,7 +219,7 @@ class Reader final : TomlReader {
 
   void read_output(const Entry& section_entry) {
     const Names known(output_names.begin(), output_names.end());
-    const std::vector<Entry> entries = entries_of(section(section_entry), "[output]");
+    const std::vector<Entry> entries = entries_of(table(section_entry), "[output]");
     for (const Entry& entry : entries) {
       if (!contains(known, entry.key)) {
         fail(entry.place,
@@ -334,14 +238,14 @@ class Reader final : TomlReader {
 
   void read_lams(const Entry& section_entry) {
     LamsMounting& lams = file_.model.lams;
-    each(section(section_entry), "[lams]",
+    each(table(section_entry), "[lams]",
          {{"elevation", [&](const Entry& entry) { lams.elevation = number(entry); }},
           {"azimuth", [&](const Entry& entry) { lams.azimuth = number(entry); }},
           {"approach", [&](const Entry& entry) { lams.approach = approach(entry); }}});
   }
 
   LamsApproach approach(const Entry& entry) const {
-    const auto which = as<std::int64_t>(*entry.node, wrong_kind(entry, "a whole number: 1, 2 or 3"));
+    const std::int64_t which = whole_number(entry, "a whole number: 1, 2 or 3");
     if (which == 4) fail(entry, std::string(approach_4_refusal));
     if (which < 1 || which > 3) {
       fail(entry, fmt::format("there is no approach {}; give 1, 2 or 3", which));
@@ -350,7 +254,7 @@ class Reader final : TomlReader {
   }
 
   void read_temperature(const Entry& section_entry) {
-    each(section(section_entry), "[temperature]",
+    each(table(section_entry), "[temperature]",
          {{"recovery_factor", [&](const Entry& entry) { read_recovery_factor(entry); }}});
   }
 
@@ -388,12 +292,12 @@ class Reader final : TomlReader {
   }
 
   void read_humidity(const Entry& section_entry) {
-    each(section(section_entry), "[humidity]",
+    each(table(section_entry), "[humidity]",
          {{"moist", [&](const Entry& entry) { file_.model.moist = boolean(entry); }}});
   }
 
   void read_radome(const Entry& section_entry) {
-    each(section(section_entry), "[radome]",
+    each(table(section_entry), "[radome]",
          {{"attack", [&](const Entry& entry) { file_.model.attack_radome = radome(entry); }},
           {"sideslip", [&](const Entry& entry) { file_.model.sideslip_radome = radome(entry); }}});
   }
@@ -417,254 +321,28 @@ class Reader final : TomlReader {
       }
       return value;
     };
-    each(section(section_entry), "[policy]",
+    each(table(section_entry), "[policy]",
          {{"taper_below", [&](const Entry& entry) { policy.taper_below = not_negative(entry); }},
           {"taper_power", [&](const Entry& entry) { policy.taper_power = not_negative(entry); }},
           {"minimum", [&](const Entry& entry) { policy.minimum = number(entry); }}});
   }
 
   void read_domain(const Entry& section_entry) {
-    for (const Entry& entry : entries_of(section(section_entry), "[domain]")) {
+    for (const Entry& entry : entries_of(table(section_entry), "[domain]")) {
       if (quantity_named(entry.key) == Quantity::count) {
         const Names known = names_of(quantity_facts, &QuantityFacts::name);
         fail(entry.place,
              fmt::format("there is no quantity {}; {}", in_quotes(entry.key), instead_of(entry.key, known)));
       }
-      const Bounds ends = range(entry);
-      file_.model.domain.push_back({entry.key, ends.lower, ends.upper});
+      const auto [lower, upper] = range(entry);
+      file_.model.domain.push_back({entry.key, lower, upper});
     }
-  }
-
-  // The keys of one [[effect]] that were given.
-  struct EffectEntries {
-    std::optional<Entry> id, where, formula, parameters, unit, source, standard_errors, fixed, bounds;
-  };
-
-  void read_effects(const Entry& section_entry) {
-    const std::string wanted = "each effect under a heading [[effect]]";
-    for (const toml::node& node : array(section_entry, wanted)) {
-      read_effect(as<toml::table>(node, fmt::format("an effect is {}; give {}", kind_of(node), wanted)));
-    }
-  }
-
-  void read_effect(const toml::table& table) {
-    EffectEntries given;
-    const auto keep = [](std::optional<Entry>& place) {
-      return [&place](const Entry& entry) { place = entry; };
-    };
-    each(table, "[[effect]]",
-         {{"id", keep(given.id)},
-          {"where", keep(given.where)},
-          {"formula", keep(given.formula)},
-          {"parameters", keep(given.parameters)},
-          {"unit", keep(given.unit)},
-          {"source", keep(given.source)},
-          {"stderr", keep(given.standard_errors)},
-          {"fixed", keep(given.fixed)},
-          {"bounds", keep(given.bounds)}});
-    if (!given.id) fail(table, "an effect has no id; give id = \"...\"");
-    const std::string id = text(*given.id);
-    if (id.empty()) fail(*given.id->node, "the id of an effect is empty; give it a name");
-    check_new(id, *given.id);
-
-    ModelEffect effect = given.formula ? formula_effect(id, given) : catalogue_effect(id, given);
-    EffectFit fit = effect_fit(effect, given);
-    file_.model.effects.push_back(std::move(effect));
-    file_.fits.push_back(std::move(fit));
-  }
-
-  void check_new(const std::string& id, const Entry& entry) {
-    const auto [first, is_new] = effect_lines_.emplace(id, entry.place.line);
-    if (is_new) return;
-    fail(entry, fmt::format("effect {} is in the model already, at line {}; remove one", in_quotes(id),
-                            first->second));
-  }
-
-  ModelEffect catalogue_effect(const std::string& id, const EffectEntries& given) const {
-    if (effect_named(id) == catalogue_size) {
-      fail(*given.id->node,
-           fmt::format("there is no effect {} in the catalogue; {} Or give a formula for an "
-                       "effect of your own",
-                       in_quotes(id), full_stop(instead_of(id, names_of(effect_facts, &EffectFacts::id)))));
-    }
-    for (const std::optional<Entry>* entry : {&given.where, &given.unit, &given.source}) {
-      if (!*entry) continue;
-      fail((*entry)->place, fmt::format("effect {} of the catalogue takes no '{}'; remove it, or give a "
-                                        "formula and an id of your own",
-                                        in_quotes(id), (*entry)->key));
-    }
-    ModelEffect effect = neutral_effect(id);
-    if (given.parameters) {
-      const EffectFacts& facts = effect_facts[effect_named(id)];
-      each_parameter(*given.parameters, effect, [&](std::size_t i, const Entry& entry) {
-        effect.parameters[i] = possible(entry, facts.parameters[i]);
-      });
-    }
-    return effect;
-  }
-
-  // A value that physics allows.
-  double possible(const Entry& entry, const ParameterFacts& facts) const {
-    const double value = number(entry);
-    if (value < facts.lower || value > facts.upper) {
-      fail(entry,
-           fmt::format("{} = {} is outside the bounds of the catalogue; give a value within [{}, {}]{}",
-                       in_quotes(entry.key), value, facts.lower, facts.upper,
-                       facts.unit == "1" ? "" : fmt::format(" {}", facts.unit)));
-    }
-    return value;
-  }
-
-  static std::string full_stop(std::string text) {
-    if (text.back() != '?') text += '.';
-    return text;
-  }
-
-  ModelEffect formula_effect(const std::string& id, const EffectEntries& given) const {
-    if (effect_named(id) != catalogue_size) {
-      fail(given.formula->place, fmt::format("effect {} has its formula in the catalogue; drop 'formula', or "
-                                             "give an id of your own",
-                                             in_quotes(id)));
-    }
-    ModelEffect effect;
-    effect.id = id;
-    effect.formula = text(*given.formula, "a formula in quotes");
-    if (given.where) effect.where = place_of_action(*given.where);
-    if (given.unit) effect.unit = unit_of_action(*given.unit, effect.where);
-    if (given.source) effect.source = text(*given.source);
-    if (!given.parameters) {
-      fail(given.formula->place,
-           fmt::format("effect {} has a formula but no parameters; give parameters = {{ "
-                       "name = value }}, each with its first value",
-                       in_quotes(id)));
-    }
-    for (const Entry& entry : parameter_entries(*given.parameters)) {
-      effect.parameter_names.push_back(entry.key);
-      effect.parameters.push_back(number(entry));
-    }
-    check_formula(effect, given);
-    return effect;
-  }
-
-  void check_formula(const ModelEffect& effect, const EffectEntries& given) const {
-    FormulaError error;
-    const auto formula = Formula::parse(effect.formula, effect.parameter_names, &error);
-    if (!formula) {
-      const Entry& wrong = error.column == 0 ? *given.parameters : *given.formula;
-      fail(*wrong.node, fmt::format("the formula of effect {} cannot be read: {}; correct it",
-                                    in_quotes(effect.id), error.message));
-    }
-    if (formula->unused_parameters().empty()) return;
-    const std::string& unused = formula->unused_parameters().front();
-    const std::string meant = did_you_mean(unused, formula->variables());
-    fail(*given.parameters->node,
-         fmt::format("the formula of effect {} does not use its parameter {}; {}", in_quotes(effect.id),
-                     in_quotes(unused), meant.empty() ? "remove the parameter" : meant));
-  }
-
-  Where place_of_action(const Entry& entry) const {
-    const std::string name = text(entry);
-    const Where where = where_named(name);
-    if (where == Where::count) {
-      fail(entry, fmt::format("there is no place {} where an effect acts; {}", in_quotes(name),
-                              instead_of(name, names_of(where_facts, &WhereFacts::name))));
-    }
-    return where;
-  }
-
-  std::string unit_of_action(const Entry& entry, Where where) const {
-    std::string unit = text(entry, "a unit in quotes");
-    const std::string wanted(facts_of(where).unit);
-    if (standard_unit(unit) != standard_unit(wanted)) {
-      fail(entry, fmt::format("what acts at '{}' is in {}, not in {}; write the formula in {} and say "
-                              "unit = \"{}\"",
-                              facts_of(where).name, wanted, in_quotes(unit), wanted, wanted));
-    }
-    return unit;
-  }
-
-  std::vector<Entry> parameter_entries(const Entry& entry) const {
-    return entries_of(table(entry, "{ name = value }"), in_quotes(entry.key));
-  }
-
-  // Calls `action` with the number of each parameter that the table `entry` names.
-  template <class Handler>
-  void each_parameter(const Entry& entry, const ModelEffect& effect, const Handler& action) const {
-    for (const Entry& parameter : parameter_entries(entry)) {
-      action(parameter_number(parameter.key, parameter.place, effect), parameter);
-    }
-  }
-
-  std::size_t parameter_number(const std::string& name, Place place, const ModelEffect& effect) const {
-    const Names known = parameter_names(effect);
-    const auto found = std::find(known.begin(), known.end(), name);
-    if (found == known.end()) {
-      fail(place, fmt::format("effect {} has no parameter {}; {}", in_quotes(effect.id), in_quotes(name),
-                              known.empty() ? "it has none" : instead_of(name, known)));
-    }
-    return static_cast<std::size_t>(found - known.begin());
-  }
-
-  EffectFit effect_fit(const ModelEffect& effect, const EffectEntries& given) const {
-    EffectFit fit(effect.parameters.size());
-    if (given.standard_errors) {
-      each_parameter(*given.standard_errors, effect, [&](std::size_t i, const Entry& entry) {
-        const double value = number(entry);
-        if (value < 0.0) {
-          fail(entry, fmt::format("the standard error of {} is negative; give a number of 0 or above",
-                                  in_quotes(entry.key)));
-        }
-        fit[i].standard_error = value;
-      });
-    }
-    if (given.bounds) {
-      each_parameter(*given.bounds, effect, [&](std::size_t i, const Entry& entry) {
-        const Bounds bounds = range(entry);
-        const double value = effect.parameters[i];
-        if (value < bounds.lower || value > bounds.upper) {
-          fail(entry, fmt::format("the value {} of {} is outside its bounds; change one of them", value,
-                                  in_quotes(entry.key)));
-        }
-        check_bounds(bounds, effect, i, entry);
-        fit[i].bounds = bounds;
-      });
-    }
-    if (given.fixed) read_fixed(*given.fixed, effect, fit);
-    return fit;
-  }
-
-  // A refit must not find what the reader would refuse.
-  void check_bounds(const Bounds& bounds, const ModelEffect& effect, std::size_t number,
-                    const Entry& entry) const {
-    if (effect.is_formula()) return;
-    const ParameterFacts& facts = effect_facts[effect_named(effect.id)].parameters[number];
-    if (bounds.lower >= facts.lower && bounds.upper <= facts.upper) return;
-    fail(entry, fmt::format("the bounds of {} go beyond those of the catalogue; give bounds within [{}, {}]",
-                            in_quotes(entry.key), facts.lower, facts.upper));
-  }
-
-  void read_fixed(const Entry& entry, const ModelEffect& effect, EffectFit& fit) const {
-    for (const auto& [node, name] : texts(entry, "the names of parameters, such as [\"a0\"]")) {
-      ParameterFit& parameter = fit[parameter_number(name, node->source().begin, effect)];
-      if (parameter.fixed) fail(*node, fmt::format("{} is named twice; remove one", in_quotes(name)));
-      parameter.fixed = true;
-    }
-  }
-
-  std::vector<std::pair<const toml::node*, std::string>> texts(const Entry& entry,
-                                                               const std::string& wanted) const {
-    std::vector<std::pair<const toml::node*, std::string>> values;
-    for (const toml::node& node : array(entry, wanted)) {
-      const std::string otherwise = fmt::format("{} holds {}; give {}", called(entry), kind_of(node), wanted);
-      values.emplace_back(&node, as<std::string>(node, otherwise));
-    }
-    return values;
   }
 
   void read_law(const Entry& section_entry) {
     LawFacts& law = file_.law;
     const toml::node* last = nullptr;
-    each(section(section_entry), "[law]",
+    each(table(section_entry), "[law]",
          {{"source", [&](const Entry& entry) { law.source = text(entry); }},
           {"valid_from", [&](const Entry& entry) { law.valid_from = date(entry); }},
           {"valid_to",
@@ -686,22 +364,9 @@ class Reader final : TomlReader {
     return value;
   }
 
-  std::string date(const Entry& entry) const {
-    if (const auto* value = entry.node->as_date()) {
-      const toml::date day = value->get();
-      return fmt::format("{:04}-{:02}-{:02}", day.year, day.month, day.day);
-    }
-    const std::string wanted = "a date like \"2011-11-02\"";
-    std::string value = text(entry, wanted);
-    if (!is_date(value)) {
-      fail(entry, fmt::format("{}: {} is not a date; give {}", called(entry), in_quotes(value), wanted));
-    }
-    return value;
-  }
-
   void read_covariance(const Entry& section_entry) {
     std::optional<Entry> parameters, matrix;
-    each(section(section_entry), "[covariance]",
+    each(table(section_entry), "[covariance]",
          {{"parameters", [&](const Entry& entry) { parameters = entry; }},
           {"matrix", [&](const Entry& entry) { matrix = entry; }}});
     if (!parameters || !matrix) {
@@ -751,7 +416,7 @@ class Reader final : TomlReader {
   }
 
   void read_provenance(const Entry& section_entry) {
-    file_.provenance = provenance(section(section_entry), "[provenance]");
+    file_.provenance = provenance(table(section_entry), "[provenance]");
   }
 
   Provenance provenance(const toml::table& table, const std::string& title) const {
@@ -783,7 +448,6 @@ class Reader final : TomlReader {
 
   ModelFile file_;
   std::map<Quantity, Place> variable_places_;
-  std::map<std::string, toml::source_index> effect_lines_;
 };
 
 }  // namespace

@@ -4,14 +4,10 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <fstream>
-#include <iterator>
-#include <regex>
-#include <system_error>
-
-#include <pcor/words/error.hpp>
+#include <optional>
 
 #include "words/quoting.hpp"
+#include "words/text_file.hpp"
 #include "words/toml_reader.hpp"
 
 namespace pcor {
@@ -26,21 +22,9 @@ constexpr double longest_of_day = day / 2.0;  // s between two times of the day;
 constexpr const char* wanted_time =
     "a date and time such as 2011-11-17T20:10:00Z, or a time of the day such as \"20:10:00\"";
 
-// "20:10" or "20:10:00.5" as seconds of the day; negative if it is neither.
-double time_of_day(const std::string& text) {
-  static const std::regex pattern(R"(([01]\d|2[0-3]):([0-5]\d)(?::([0-5]\d)(\.\d+)?)?)");
-  std::smatch parts;
-  if (!std::regex_match(text, parts, pattern)) return -1.0;
-  const auto whole = [&](std::size_t part) {
-    return parts[part].matched ? static_cast<double>(std::stoi(parts[part])) : 0.0;
-  };
-  double fraction = 0.0, scale = 0.1;
-  for (const char digit : parts[4].str()) {
-    if (digit == '.') continue;
-    fraction += scale * (digit - '0');
-    scale /= 10.0;
-  }
-  return whole(1) * 3600.0 + whole(2) * 60.0 + whole(3) + fraction;
+// "20:10" or "20:10:00.5".
+std::optional<toml::time> time_of_day(const std::string& text) {
+  return moment_in<toml::time>(text.size() == 5 ? text + ":00" : text);
 }
 
 Names names_of_regimes() { return names_of(regime_facts, &RegimeFacts::name); }
@@ -178,11 +162,10 @@ class Reader final : TomlReader {
       if (seconds < day) fail(node, "the time is before 1970-01-02; correct the date");
       return seconds;
     }
-    if (const auto* time = node.as_time()) return seconds_of(time->get());
-    const auto* text = node.as_string();
-    const double seconds = text == nullptr ? -1.0 : time_of_day(text->get());
-    if (seconds < 0.0) fail(node, fmt::format("this is not a time; give {}", wanted_time));
-    return seconds;
+    const std::optional<toml::time> time =
+        node.is_string() ? time_of_day(node.as_string()->get()) : node.value<toml::time>();
+    if (!time) fail(node, fmt::format("this is not a time; give {}", wanted_time));
+    return seconds_of(*time);
   }
 
   UserIntervals user_;
@@ -195,17 +178,7 @@ UserIntervals read_intervals_text(std::string_view text, std::string_view name) 
 }
 
 UserIntervals read_intervals(const std::filesystem::path& path) {
-  std::error_code code;
-  if (!std::filesystem::exists(path, code)) {
-    throw Error(one_line(path.string() + ": there is no such file; give the path of a file of intervals"));
-  }
-  if (std::filesystem::is_directory(path, code)) {
-    throw Error(one_line(path.string() + ": is a directory; give the path of a file of intervals"));
-  }
-  std::ifstream stream(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream) throw Error(one_line(path.string() + ": cannot be read; check its permissions"));
-  return read_intervals_text(text, path.string());
+  return read_intervals_text(text_of_file(path, "a file of intervals"), path.string());
 }
 
 }  // namespace pcor

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -15,7 +14,9 @@
 #include "simulate/effects.hpp"
 #include "simulate/flight_plan.hpp"
 #include "simulate/noise.hpp"
+#include "simulate/scenario_keys.hpp"
 #include "words/quoting.hpp"
+#include "words/text_file.hpp"
 #include "words/toml_reader.hpp"
 
 namespace pcor {
@@ -28,102 +29,7 @@ using namespace simulate;
 
 constexpr std::string_view scenario_format = "pcor-scenario/1";
 
-/// The values that a number may have, with its unit for the message.
-struct Domain {
-  double least;
-  double greatest;
-  std::string_view unit;
-};
-
-constexpr double any = 1e9;
 constexpr double least_height = 10.0;  // m above the ground, of a low pass
-
-/// A number of a table: its key, where it goes, what it may be.
-template <class Object>
-struct NumberKey {
-  std::string_view key;
-  double Object::*value;
-  Domain domain;
-};
-
-using Atmosphere = Scenario::Atmosphere;
-constexpr std::array<NumberKey<Atmosphere>, 18> atmosphere_keys{{
-    {"ground_pressure", &Atmosphere::ground_pressure, {500.0, 1100.0, "hPa"}},
-    {"ground_height", &Atmosphere::ground_height, {-400.0, 5000.0, "m"}},
-    {"ground_temperature", &Atmosphere::ground_temperature, {220.0, 330.0, "K"}},
-    {"lapse_rate", &Atmosphere::lapse_rate, {-5.0, 12.0, "K/km"}},
-    {"inversion_height", &Atmosphere::inversion_height, {0.0, 20000.0, "m"}},
-    {"inversion_strength", &Atmosphere::inversion_strength, {0.0, 20.0, "K"}},
-    {"tropopause", &Atmosphere::tropopause, {5000.0, 18000.0, "m"}},
-    {"ground_humidity", &Atmosphere::ground_humidity, {0.1, 100.0, "%"}},
-    {"upper_humidity", &Atmosphere::upper_humidity, {0.1, 100.0, "%"}},
-    {"wind_speed", &Atmosphere::wind_speed, {0.0, 40.0, "m/s"}},
-    {"wind_from", &Atmosphere::wind_from, {0.0, 360.0, "deg"}},
-    {"wind_shear", &Atmosphere::wind_shear, {-5.0, 10.0, "m/s per km"}},
-    {"wind_drift", &Atmosphere::wind_drift, {0.0, 10.0, "m/s"}},
-    {"wind_drift_time", &Atmosphere::wind_drift_time, {1.0, 1e5, "s"}},
-    {"turbulence", &Atmosphere::turbulence, {1e-9, 0.1, "m2/s3"}},
-    {"boundary_layer", &Atmosphere::boundary_layer, {1e-9, 0.1, "m2/s3"}},
-    {"pressure_height_east", &Atmosphere::pressure_height_east, {-100.0, 100.0, "m per 100 km"}},
-    {"pressure_height_north", &Atmosphere::pressure_height_north, {-100.0, 100.0, "m per 100 km"}},
-}};
-
-constexpr std::array<NumberKey<Scenario::Cloud>, 4> cloud_keys{{
-    {"base", &Scenario::Cloud::base, {-400.0, 20000.0, "m"}},
-    {"top", &Scenario::Cloud::top, {-400.0, 20000.0, "m"}},
-    {"liquid", &Scenario::Cloud::liquid, {0.0, 10.0, "g/m3"}},
-    {"cover", &Scenario::Cloud::cover, {0.0, 1.0, ""}},
-}};
-
-constexpr std::array<NumberKey<Scenario::Noise>, 4> noise_keys{{
-    {"rms", &Scenario::Noise::rms, {0.0, any, ""}},
-    {"bias", &Scenario::Noise::bias, {-any, any, ""}},
-    {"memory", &Scenario::Noise::memory, {0.0, 1e5, "s"}},
-    {"resolution", &Scenario::Noise::resolution, {0.0, any, ""}},
-}};
-
-constexpr std::array<NumberKey<Scenario::Lams>, 6> lams_keys{{
-    {"elevation", &Scenario::Lams::elevation, {-45.0, 45.0, "deg"}},
-    {"azimuth", &Scenario::Lams::azimuth, {-45.0, 45.0, "deg"}},
-    {"mismatch", &Scenario::Lams::mismatch, {0.0, 10.0, "m/s"}},
-    {"mismatch_memory", &Scenario::Lams::mismatch_memory, {0.0, 100.0, "s"}},
-    {"dropout", &Scenario::Lams::dropout, {0.0, 1.0, ""}},
-    {"clear_above", &Scenario::Lams::clear_above, {0.0, 50000.0, "m"}},
-}};
-
-constexpr std::array<NumberKey<Scenario::Avionics>, 2> avionics_keys{{
-    {"response", &Scenario::Avionics::response, {0.0, 100.0, "s"}},
-    {"delay", &Scenario::Avionics::delay, {-10.0, 10.0, "s"}},
-}};
-
-constexpr std::array<NumberKey<Scenario::Outliers>, 2> outlier_keys{{
-    {"fraction", &Scenario::Outliers::fraction, {0.0, 1.0, ""}},
-    {"size", &Scenario::Outliers::size, {0.0, any, ""}},
-}};
-
-constexpr std::array<NumberKey<Scenario::Gap>, 2> gap_keys{{
-    {"start", &Scenario::Gap::start, {0.0, any, "s"}},
-    {"duration", &Scenario::Gap::duration, {0.0, any, "s"}},
-}};
-
-/// A term of a law and the id under which a scenario has it.
-struct LawKey {
-  std::string_view id;
-  double Scenario::Law::*value;
-};
-
-constexpr std::array<LawKey, 10> law_keys{{
-    {"static-constant", &Scenario::Law::a0},
-    {"static-alpha", &Scenario::Law::a1},
-    {"static-qp", &Scenario::Law::a2},
-    {"static-attack", &Scenario::Law::a3},
-    {"static-alpha-quad", &Scenario::Law::a4},
-    {"static-mach", &Scenario::Law::m1},
-    {"static-mach2", &Scenario::Law::m2},
-    {"static-mach3", &Scenario::Law::m3},
-    {"static-beta-odd", &Scenario::Law::b1},
-    {"static-beta-even", &Scenario::Law::b2},
-}};
 
 Names words_of(std::string_view text) {
   std::istringstream stream{std::string(text)};
@@ -146,23 +52,13 @@ class Reader final : TomlReader {
   std::string unknown(const Entry& entry) const override { return called(entry); }
 
   double number(const Entry& entry, const Domain& domain) const {
-    const std::optional<double> value = entry.node->value<double>();
-    if (!value || !entry.node->is_number())
-      fail(entry, fmt::format("{} is not a number; give one", in_quotes(entry.key)));
-    if (!(*value >= domain.least && *value <= domain.greatest)) {
+    const double value = TomlReader::number(entry);
+    if (value < domain.least || value > domain.greatest) {
       const std::string unit = domain.unit.empty() ? "" : " " + std::string(domain.unit);
-      fail(entry, fmt::format("{} = {}{} is impossible; give a number from {} to {}{}", entry.key, *value,
+      fail(entry, fmt::format("{} = {}{} is impossible; give a number from {} to {}{}", entry.key, value,
                               unit, domain.least, domain.greatest, unit));
     }
-    return *value;
-  }
-
-  std::int64_t whole(const Entry& entry) const {
-    return as<std::int64_t>(*entry.node, in_quotes(entry.key) + " is not a whole number; give one");
-  }
-
-  std::string text(const Entry& entry) const {
-    return as<std::string>(*entry.node, in_quotes(entry.key) + " is not a text; give one in quotes");
+    return value;
   }
 
   std::string one_of(const Entry& entry, const Names& known) const {
@@ -173,20 +69,12 @@ class Reader final : TomlReader {
     return value;
   }
 
-  bool boolean(const Entry& entry) const {
-    return as<bool>(*entry.node, in_quotes(entry.key) + " is not true or false; give one of them");
-  }
-
-  const toml::table& table(const Entry& entry) const {
-    return as<toml::table>(*entry.node, fmt::format("{} is not a table; write [{}]", entry.key, entry.key));
-  }
-
   /// Calls `read(table, place)` for each table of a list of tables.
   template <class Read>
   void tables(const Entry& entry, Read read) const {
-    const std::string wanted = fmt::format("write [[{}]]", entry.key);
-    for (const toml::node& node : as<toml::array>(*entry.node, entry.key + " is not a list; " + wanted)) {
-      read(as<toml::table>(node, "this is not a table; " + wanted), node.source().begin);
+    const std::string wanted = fmt::format("tables [[{}]]", entry.key);
+    for (const toml::node& node : array(entry, wanted)) {
+      read(as<toml::table>(node, "this is no table; give " + wanted), node.source().begin);
     }
   }
 
@@ -213,43 +101,25 @@ class Reader final : TomlReader {
   void read_root(const toml::table& root) {
     std::map<std::string, Entry> later;
     const Action keep = [&](const Entry& entry) { later.emplace(entry.key, entry); };
-    each(root, "a scenario",
-         {{"format", [](const Entry&) {}},
-          {"name", [&](const Entry& entry) { scenario_.name = text(entry); }},
-          {"aircraft", [&](const Entry& entry) { read_aircraft(entry); }},
-          {"seed", [&](const Entry& entry) { read_seed(entry); }},
-          {"start", [&](const Entry& entry) { read_start(entry); }},
-          {"rate", [&](const Entry& entry) { read_rate(entry); }},
-          {"latitude",
-           [&](const Entry& entry) {
-             scenario_.latitude = number(entry, {-85.0, 85.0, "deg"});
-           }},
-          {"longitude",
-           [&](const Entry& entry) {
-             scenario_.longitude = number(entry, {-180.0, 180.0, "deg"});
-           }},
-          {"heading",
-           [&](const Entry& entry) {
-             scenario_.heading = number(entry, {0.0, 360.0, "deg"});
-           }},
-          {"weight",
-           [&](const Entry& entry) {
-             scenario_.weight = number(entry, {10000.0, 90000.0, "kg"});
-           }},
-          {"recovery_factor",
-           [&](const Entry& entry) {
-             scenario_.recovery_factor = number(entry, {0.0, 1.2, ""});
-           }},
-          {"noiseless", [&](const Entry& entry) { scenario_.noise_on = !boolean(entry); }},
-          {"atmosphere", keep},
-          {"system", keep},
-          {"lams", keep},
-          {"avionics", keep},
-          {"noise", keep},
-          {"leg", keep},
-          {"effect", keep},
-          {"outliers", keep},
-          {"gap", keep}});
+    Actions actions = numbers(scenario_, scenario_keys);
+    actions.insert(actions.end(),
+                   {{"format", [](const Entry&) {}},
+                    {"name", [&](const Entry& entry) { scenario_.name = text(entry); }},
+                    {"aircraft", [&](const Entry& entry) { read_aircraft(entry); }},
+                    {"seed", [&](const Entry& entry) { read_seed(entry); }},
+                    {"start", [&](const Entry& entry) { read_start(entry); }},
+                    {"rate", [&](const Entry& entry) { read_rate(entry); }},
+                    {"noiseless", [&](const Entry& entry) { scenario_.noise_on = !boolean(entry); }},
+                    {"atmosphere", keep},
+                    {"system", keep},
+                    {"lams", keep},
+                    {"avionics", keep},
+                    {"noise", keep},
+                    {"leg", keep},
+                    {"effect", keep},
+                    {"outliers", keep},
+                    {"gap", keep}});
+    each(root, "a scenario", actions);
     if (scenario_.name.empty()) fail(Place{1, 1}, "the scenario has no name; add name = \"...\"");
     if (!has_aircraft_) fail(Place{1, 1}, "the scenario has no aircraft; add aircraft = \"C-130\" or \"GV\"");
     const auto with = [&](const std::string& key, void (Reader::*reader)(const Entry&)) {
@@ -277,7 +147,7 @@ class Reader final : TomlReader {
   }
 
   void read_seed(const Entry& entry) {
-    const std::int64_t seed = whole(entry);
+    const std::int64_t seed = whole_number(entry);
     if (seed < 0) fail(entry, fmt::format("seed = {} is negative; give 0 or more", seed));
     scenario_.seed = static_cast<std::uint64_t>(seed);
   }
@@ -293,7 +163,7 @@ class Reader final : TomlReader {
   }
 
   void read_rate(const Entry& entry) {
-    const std::int64_t rate = whole(entry);
+    const std::int64_t rate = whole_number(entry);
     if (rate != 1 && rate != 5 && rate != 25)
       fail(entry, fmt::format("rate = {} is impossible; give 1, 5 or 25 samples a second", rate));
     scenario_.rate = static_cast<int>(rate);
@@ -414,28 +284,6 @@ class Reader final : TomlReader {
     fail(place, "the leg has no kind; add kind = \"level\" or another");
   }
 
-  static Domain leg_domain(const std::string& key, Scenario::Leg::Kind kind, const AircraftFacts& aircraft) {
-    using Kind = Scenario::Leg::Kind;
-    const bool slow = kind == Kind::take_off || kind == Kind::landing;
-    if (key == "duration") return {1.0, 86400.0, "s"};
-    if (key == "altitude") return {-400.0, aircraft.ceiling, "m"};
-    if (key == "speed" || key == "low" || key == "high")
-      return {slow ? aircraft.lift_off_speed : aircraft.least_speed, aircraft.greatest_speed, "m/s"};
-    if (key == "rate") {
-      if (kind == Kind::speed_run) return {0.05, 2.0, "m/s2"};
-      return {0.5, 30.0, "m/s"};
-    }
-    if (key == "period") return {3.0, 120.0, "s"};
-    if (key == "cycles") return {1.0, 1000.0, ""};
-    if (key == "amplitude") {
-      if (kind == Kind::pitch) return {0.1, 8.0, "m/s2"};
-      return {0.1, 15.0, "deg"};
-    }
-    if (key == "roll") return {1.0, 60.0, "deg"};
-    if (key == "angle") return {-3600.0, 3600.0, "deg"};
-    return {0.0, 100.0, "percent"};
-  }
-
   /// What the numbers of a leg say together, and with the legs before it. `height` is what they led to.
   void check_leg(const Scenario::Leg& leg, const LegFacts& facts, Place place, bool& flying,
                  double& height) const {
@@ -532,14 +380,6 @@ class Reader final : TomlReader {
     if (effect.parameters.at("scale") == 0.0) fail(place, "scale = 0 is impossible; give another number");
   }
 
-  static Domain parameter_domain(const std::string& key) {
-    if (key == "tau" || key == "drying") return {0.0, 600.0, "s"};
-    if (key == "seconds") return {-60.0, 60.0, "s"};
-    if (key == "fraction") return {-1.0, 1.0, ""};
-    if (key == "scale") return {-any, any, ""};
-    return {-1e6, 1e6, ""};
-  }
-
   const FaultFacts& effect_facts(const toml::table& items, Place place) const {
     if (const std::optional<Entry> entry = entry_of(items, "id")) {
       const std::string id = text(*entry);
@@ -604,11 +444,7 @@ class Reader final : TomlReader {
 Scenario parse_scenario(std::string_view text, std::string_view name) { return Reader(name).read(text); }
 
 Scenario read_scenario(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (!file || !std::filesystem::is_regular_file(path) || !(text << file.rdbuf()))
-    throw Error(one_line(path.string() + ": cannot be read; check the name and the permissions"));
-  return parse_scenario(text.str(), path.string());
+  return parse_scenario(text_of_file(path, "a scenario"), path.string());
 }
 
 }  // namespace pcor

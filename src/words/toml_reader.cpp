@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include <pcor/words/error.hpp>
@@ -36,6 +37,24 @@ std::optional<Entry> entry_of(const toml::table& table, std::string_view key) {
   const auto found = table.find(key);
   if (found == table.end()) return {};
   return Entry{std::string(key), found->first.source().begin, &found->second, ""};
+}
+
+std::string_view kind_of(const toml::node& node) {
+  switch (node.type()) {
+    case toml::node_type::table:
+      return "a table";
+    case toml::node_type::array:
+      return "a list";
+    case toml::node_type::string:
+      return "a text";
+    case toml::node_type::integer:
+    case toml::node_type::floating_point:
+      return "a number";
+    case toml::node_type::boolean:
+      return "true or false";
+    default:
+      return "a date or time";
+  }
 }
 
 std::string called(const Entry& entry) {
@@ -90,6 +109,84 @@ Entry TomlReader::format_of(const toml::table& root, std::string_view is, std::s
   if (const std::optional<Entry> entry = entry_of(root, "format")) return *entry;
   fail(Place{1, 1},
        fmt::format("the file does not say that it {}; begin it with format = \"{}\"", is, format));
+}
+
+std::string TomlReader::wrong_kind(const Entry& entry, const std::string& wanted) {
+  return fmt::format("{} is {}; give {}", called(entry), kind_of(*entry.node), wanted);
+}
+
+bool TomlReader::boolean(const Entry& entry) const {
+  return as<bool>(*entry.node, wrong_kind(entry, "true or false"));
+}
+
+std::int64_t TomlReader::whole_number(const Entry& entry, const std::string& wanted) const {
+  return as<std::int64_t>(*entry.node, wrong_kind(entry, wanted));
+}
+
+std::string TomlReader::text(const Entry& entry, const std::string& wanted) const {
+  return as<std::string>(*entry.node, wrong_kind(entry, wanted));
+}
+
+const toml::table& TomlReader::table(const Entry& entry, const std::string& wanted) const {
+  return as<toml::table>(*entry.node, wrong_kind(entry, wanted));
+}
+
+const toml::array& TomlReader::array(const Entry& entry, const std::string& wanted) const {
+  return as<toml::array>(*entry.node, wrong_kind(entry, wanted));
+}
+
+double TomlReader::finite(const toml::node& node, const std::string& what) const {
+  if (!node.is_number()) fail(node, fmt::format("{} is {}; give a number", what, kind_of(node)));
+  const auto* whole = node.as_integer();
+  const double value = whole ? static_cast<double>(whole->get()) : node.as_floating_point()->get();
+  if (!std::isfinite(value)) fail(node, what + " is not finite; give a finite number");
+  return value;
+}
+
+double TomlReader::number(const Entry& entry) const { return finite(*entry.node, called(entry)); }
+
+std::vector<double> TomlReader::numbers(const Entry& entry, const std::string& wanted) const {
+  std::vector<double> values;
+  for (const toml::node& node : array(entry, wanted)) {
+    values.push_back(finite(node, "a number of " + called(entry)));
+  }
+  return values;
+}
+
+std::pair<double, double> TomlReader::range(const Entry& entry) const {
+  const std::string wanted = "[lower, upper]";
+  const std::vector<double> ends = numbers(entry, wanted);
+  if (ends.size() != 2) {
+    fail(entry, fmt::format("{} has {} numbers; give {}", called(entry), ends.size(), wanted));
+  }
+  if (!(ends[0] < ends[1])) {
+    fail(entry, fmt::format("{}: the lower end {} is not below the upper end {}; give {}", called(entry),
+                            ends[0], ends[1], wanted));
+  }
+  return {ends[0], ends[1]};
+}
+
+std::vector<std::pair<const toml::node*, std::string>> TomlReader::texts(const Entry& entry,
+                                                                         const std::string& wanted) const {
+  std::vector<std::pair<const toml::node*, std::string>> values;
+  for (const toml::node& node : array(entry, wanted)) {
+    const std::string otherwise = fmt::format("{} holds {}; give {}", called(entry), kind_of(node), wanted);
+    values.emplace_back(&node, as<std::string>(node, otherwise));
+  }
+  return values;
+}
+
+std::string TomlReader::date(const Entry& entry) const {
+  const std::string wanted = "a date like \"2011-11-02\"";
+  std::optional<toml::date> day = entry.node->value<toml::date>();
+  if (!day) {
+    const std::string written = text(entry, wanted);
+    day = moment_in<toml::date>(written);
+    if (!day) {
+      fail(entry, fmt::format("{}: {} is not a date; give {}", called(entry), in_quotes(written), wanted));
+    }
+  }
+  return fmt::format("{:04}-{:02}-{:02}", day->year, day->month, day->day);
 }
 
 }  // namespace pcor::internal

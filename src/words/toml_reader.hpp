@@ -7,6 +7,7 @@
 #endif
 #include <toml++/toml.h>
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -32,8 +33,23 @@ std::vector<Entry> entries_of(const toml::table& table, const std::string& title
 /// The entry of that key, if the table has it.
 std::optional<Entry> entry_of(const toml::table& table, std::string_view key);
 
+/// What a node is, as messages call it: "a table", "a number".
+std::string_view kind_of(const toml::node& node);
+
 /// A key as messages call it: in quotes, with the title of its table.
 std::string called(const Entry& entry);
+
+/// The date or time that a text holds as TOML writes it, such as 2011-11-02 or 20:10:00.5; nothing if it is
+/// none.
+template <class Moment>
+std::optional<Moment> moment_in(std::string_view text) {
+  if (text.find_first_not_of("0123456789-:.") != std::string_view::npos) return {};
+  try {
+    return toml::parse("moment = " + std::string(text))["moment"].value<Moment>();
+  } catch (const toml::parse_error&) {
+    return {};
+  }
+}
 
 /// Seconds since midnight.
 double seconds_of(const toml::time& time);
@@ -57,6 +73,9 @@ class TomlReader {
 
   /// "file:line:column"; the beginning of the file for a place that is not known.
   std::string place_of(Place place) const;
+
+  /// What messages call the file.
+  const std::string& name() const { return name_; }
 
   [[noreturn]] void fail(Place place, const std::string& what) const;
   [[noreturn]] void fail(const toml::node& node, const std::string& what) const;
@@ -87,6 +106,32 @@ class TomlReader {
       return value->get();
     }
   }
+
+  /// The values of an entry. Any other kind than the one that is `wanted` is an error, which says so.
+  bool boolean(const Entry& entry) const;
+  std::int64_t whole_number(const Entry& entry, const std::string& wanted = "a whole number") const;
+  std::string text(const Entry& entry, const std::string& wanted = "a text in quotes") const;
+  const toml::table& table(const Entry& entry, const std::string& wanted) const;
+  const toml::table& table(const Entry& entry) const { return table(entry, "a table [" + entry.key + "]"); }
+  const toml::array& array(const Entry& entry, const std::string& wanted) const;
+
+  /// A finite number; `what` is what messages call it.
+  double finite(const toml::node& node, const std::string& what) const;
+  double number(const Entry& entry) const;
+  std::vector<double> numbers(const Entry& entry, const std::string& wanted) const;
+
+  /// The two ends of [lower, upper], of which the lower one is below the upper one.
+  std::pair<double, double> range(const Entry& entry) const;
+
+  /// The texts of a list, each with its place.
+  std::vector<std::pair<const toml::node*, std::string>> texts(const Entry& entry,
+                                                               const std::string& wanted) const;
+
+  /// A date such as 2011-11-02, which the file may have in quotes.
+  std::string date(const Entry& entry) const;
+
+  /// That an entry is of the wrong kind, and what is `wanted`.
+  static std::string wrong_kind(const Entry& entry, const std::string& wanted);
 
  private:
   std::string name_;

@@ -745,7 +745,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{head + systems + aloft + "[[leg]]\nkind = \"levl\"\n", {"levl", "level"}},
         Refusal{head + systems + aloft + leg("level", "duration = -5"), {"duration = -5 s", "impossible"}},
         Refusal{head + systems + aloft + leg("level", "speed = 300"), {"speed = 300 m/s", "75 to 155"}},
-        Refusal{head + systems + aloft + leg("level", "speed = \"fast\""), {"not a number"}},
+        Refusal{head + systems + aloft + leg("level", "speed = \"fast\""),
+                {"'speed'", "is a text; give a number"}},
         Refusal{head + systems + aloft + leg("level", "cycles = 3"), {"cycles", "level"}},
         Refusal{head + systems + aloft + leg("climb"), {"no altitude"}},
         Refusal{head + systems + leg("level"), {"on the ground", "take-off"}},
@@ -769,7 +770,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Scenario, RefusesAFileThatIsNotThere) {
   EXPECT_THAT([] { read_scenario("/nowhere/flight.toml"); },
-              ThrowsMessage<Error>(HasSubstr("/nowhere/flight.toml: cannot be read")));
+              ThrowsMessage<Error>(
+                  HasSubstr("/nowhere/flight.toml: there is no such file; give the path of a scenario")));
 }
 
 }  // namespace

@@ -1,0 +1,249 @@
+#include "laws/effect_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/model/formula.hpp>
+#include <pcor/units/units.hpp>
+#include <pcor/words/suggest.hpp>
+
+namespace pcor::internal {
+namespace {
+
+class EffectReader final : TomlReader {
+ public:
+  EffectReader(std::string_view name, ModelFile& file) : TomlReader(name), file_(file) {}
+
+  void read(const Entry& effects) {
+    const std::string wanted = "each effect under a heading [[effect]]";
+    for (const toml::node& node : array(effects, wanted)) {
+      read_effect(as<toml::table>(node, fmt::format("an effect is {}; give {}", kind_of(node), wanted)));
+    }
+  }
+
+ private:
+  // The keys of one [[effect]] that were given.
+  struct EffectEntries {
+    std::optional<Entry> id, where, formula, parameters, unit, source, standard_errors, fixed, bounds;
+  };
+
+  void read_effect(const toml::table& table) {
+    EffectEntries given;
+    const auto keep = [](std::optional<Entry>& place) {
+      return [&place](const Entry& entry) { place = entry; };
+    };
+    each(table, "[[effect]]",
+         {{"id", keep(given.id)},
+          {"where", keep(given.where)},
+          {"formula", keep(given.formula)},
+          {"parameters", keep(given.parameters)},
+          {"unit", keep(given.unit)},
+          {"source", keep(given.source)},
+          {"stderr", keep(given.standard_errors)},
+          {"fixed", keep(given.fixed)},
+          {"bounds", keep(given.bounds)}});
+    if (!given.id) fail(table, "an effect has no id; give id = \"...\"");
+    const std::string id = text(*given.id);
+    if (id.empty()) fail(*given.id->node, "the id of an effect is empty; give it a name");
+    check_new(id, *given.id);
+
+    ModelEffect effect = given.formula ? formula_effect(id, given) : catalogue_effect(id, given);
+    EffectFit fit = effect_fit(effect, given);
+    file_.model.effects.push_back(std::move(effect));
+    file_.fits.push_back(std::move(fit));
+  }
+
+  void check_new(const std::string& id, const Entry& entry) {
+    const auto [first, is_new] = effect_lines_.emplace(id, entry.place.line);
+    if (is_new) return;
+    fail(entry, fmt::format("effect {} is in the model already, at line {}; remove one", in_quotes(id),
+                            first->second));
+  }
+
+  ModelEffect catalogue_effect(const std::string& id, const EffectEntries& given) const {
+    if (effect_named(id) == catalogue_size) {
+      fail(*given.id->node,
+           fmt::format("there is no effect {} in the catalogue; {} Or give a formula for an "
+                       "effect of your own",
+                       in_quotes(id), full_stop(instead_of(id, names_of(effect_facts, &EffectFacts::id)))));
+    }
+    for (const std::optional<Entry>* entry : {&given.where, &given.unit, &given.source}) {
+      if (!*entry) continue;
+      fail((*entry)->place, fmt::format("effect {} of the catalogue takes no '{}'; remove it, or give a "
+                                        "formula and an id of your own",
+                                        in_quotes(id), (*entry)->key));
+    }
+    ModelEffect effect = neutral_effect(id);
+    if (given.parameters) {
+      const EffectFacts& facts = effect_facts[effect_named(id)];
+      each_parameter(*given.parameters, effect, [&](std::size_t i, const Entry& entry) {
+        effect.parameters[i] = possible(entry, facts.parameters[i]);
+      });
+    }
+    return effect;
+  }
+
+  // A value that physics allows.
+  double possible(const Entry& entry, const ParameterFacts& facts) const {
+    const double value = number(entry);
+    if (value < facts.lower || value > facts.upper) {
+      fail(entry,
+           fmt::format("{} = {} is outside the bounds of the catalogue; give a value within [{}, {}]{}",
+                       in_quotes(entry.key), value, facts.lower, facts.upper,
+                       facts.unit == "1" ? "" : fmt::format(" {}", facts.unit)));
+    }
+    return value;
+  }
+
+  static std::string full_stop(std::string text) {
+    if (text.back() != '?') text += '.';
+    return text;
+  }
+
+  ModelEffect formula_effect(const std::string& id, const EffectEntries& given) const {
+    if (effect_named(id) != catalogue_size) {
+      fail(given.formula->place, fmt::format("effect {} has its formula in the catalogue; drop 'formula', or "
+                                             "give an id of your own",
+                                             in_quotes(id)));
+    }
+    ModelEffect effect;
+    effect.id = id;
+    effect.formula = text(*given.formula, "a formula in quotes");
+    if (given.where) effect.where = place_of_action(*given.where);
+    if (given.unit) effect.unit = unit_of_action(*given.unit, effect.where);
+    if (given.source) effect.source = text(*given.source);
+    if (!given.parameters) {
+      fail(given.formula->place,
+           fmt::format("effect {} has a formula but no parameters; give parameters = {{ "
+                       "name = value }}, each with its first value",
+                       in_quotes(id)));
+    }
+    for (const Entry& entry : parameter_entries(*given.parameters)) {
+      effect.parameter_names.push_back(entry.key);
+      effect.parameters.push_back(number(entry));
+    }
+    check_formula(effect, given);
+    return effect;
+  }
+
+  void check_formula(const ModelEffect& effect, const EffectEntries& given) const {
+    FormulaError error;
+    const auto formula = Formula::parse(effect.formula, effect.parameter_names, &error);
+    if (!formula) {
+      const Entry& wrong = error.column == 0 ? *given.parameters : *given.formula;
+      fail(*wrong.node, fmt::format("the formula of effect {} cannot be read: {}; correct it",
+                                    in_quotes(effect.id), error.message));
+    }
+    if (formula->unused_parameters().empty()) return;
+    const std::string& unused = formula->unused_parameters().front();
+    const std::string meant = did_you_mean(unused, formula->variables());
+    fail(*given.parameters->node,
+         fmt::format("the formula of effect {} does not use its parameter {}; {}", in_quotes(effect.id),
+                     in_quotes(unused), meant.empty() ? "remove the parameter" : meant));
+  }
+
+  Where place_of_action(const Entry& entry) const {
+    const std::string name = text(entry);
+    const Where where = where_named(name);
+    if (where == Where::count) {
+      fail(entry, fmt::format("there is no place {} where an effect acts; {}", in_quotes(name),
+                              instead_of(name, names_of(where_facts, &WhereFacts::name))));
+    }
+    return where;
+  }
+
+  std::string unit_of_action(const Entry& entry, Where where) const {
+    std::string unit = text(entry, "a unit in quotes");
+    const std::string wanted(facts_of(where).unit);
+    if (standard_unit(unit) != standard_unit(wanted)) {
+      fail(entry, fmt::format("what acts at '{}' is in {}, not in {}; write the formula in {} and say "
+                              "unit = \"{}\"",
+                              facts_of(where).name, wanted, in_quotes(unit), wanted, wanted));
+    }
+    return unit;
+  }
+
+  std::vector<Entry> parameter_entries(const Entry& entry) const {
+    return entries_of(table(entry, "{ name = value }"), in_quotes(entry.key));
+  }
+
+  // Calls `action` with the number of each parameter that the table `entry` names.
+  template <class Handler>
+  void each_parameter(const Entry& entry, const ModelEffect& effect, const Handler& action) const {
+    for (const Entry& parameter : parameter_entries(entry)) {
+      action(parameter_number(parameter.key, parameter.place, effect), parameter);
+    }
+  }
+
+  std::size_t parameter_number(const std::string& name, Place place, const ModelEffect& effect) const {
+    const Names known = parameter_names(effect);
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found == known.end()) {
+      fail(place, fmt::format("effect {} has no parameter {}; {}", in_quotes(effect.id), in_quotes(name),
+                              known.empty() ? "it has none" : instead_of(name, known)));
+    }
+    return static_cast<std::size_t>(found - known.begin());
+  }
+
+  EffectFit effect_fit(const ModelEffect& effect, const EffectEntries& given) const {
+    EffectFit fit(effect.parameters.size());
+    if (given.standard_errors) {
+      each_parameter(*given.standard_errors, effect, [&](std::size_t i, const Entry& entry) {
+        const double value = number(entry);
+        if (value < 0.0) {
+          fail(entry, fmt::format("the standard error of {} is negative; give a number of 0 or above",
+                                  in_quotes(entry.key)));
+        }
+        fit[i].standard_error = value;
+      });
+    }
+    if (given.bounds) {
+      each_parameter(*given.bounds, effect, [&](std::size_t i, const Entry& entry) {
+        const auto [lower, upper] = range(entry);
+        const Bounds bounds{lower, upper};
+        const double value = effect.parameters[i];
+        if (value < bounds.lower || value > bounds.upper) {
+          fail(entry, fmt::format("the value {} of {} is outside its bounds; change one of them", value,
+                                  in_quotes(entry.key)));
+        }
+        check_bounds(bounds, effect, i, entry);
+        fit[i].bounds = bounds;
+      });
+    }
+    if (given.fixed) read_fixed(*given.fixed, effect, fit);
+    return fit;
+  }
+
+  // A refit must not find what the reader would refuse.
+  void check_bounds(const Bounds& bounds, const ModelEffect& effect, std::size_t number,
+                    const Entry& entry) const {
+    if (effect.is_formula()) return;
+    const ParameterFacts& facts = effect_facts[effect_named(effect.id)].parameters[number];
+    if (bounds.lower >= facts.lower && bounds.upper <= facts.upper) return;
+    fail(entry, fmt::format("the bounds of {} go beyond those of the catalogue; give bounds within [{}, {}]",
+                            in_quotes(entry.key), facts.lower, facts.upper));
+  }
+
+  void read_fixed(const Entry& entry, const ModelEffect& effect, EffectFit& fit) const {
+    for (const auto& [node, name] : texts(entry, "the names of parameters, such as [\"a0\"]")) {
+      ParameterFit& parameter = fit[parameter_number(name, node->source().begin, effect)];
+      if (parameter.fixed) fail(*node, fmt::format("{} is named twice; remove one", in_quotes(name)));
+      parameter.fixed = true;
+    }
+  }
+
+  ModelFile& file_;
+  std::map<std::string, toml::source_index> effect_lines_;
+};
+
+}  // namespace
+
+void read_effects(const Entry& effects, std::string_view name, ModelFile& file) {
+  EffectReader(name, file).read(effects);
+}
+
+}  // namespace pcor::internal
