@@ -115,14 +115,14 @@ CheckedFlight checked(const Flight& flight, const ModelFile& model, const CheckO
   return result;
 }
 
-/// Says where a number is too small to matter and no chance either.
+/// Notes results that are significant but negligible.
 void add_note_on_small(CheckResult& result) {
   constexpr double significant = 3.0;  // standard errors
   const double deviations = std::abs(result.key.value) / result.key.standard_error;
   const bool is_small = result.ran && std::abs(result.key.value) <= result.key.matters;
   if (!is_small || !(deviations > significant) || result.name == "spectrum") return;
-  result.notes.push_back(
-      fmt::format("the number is {:.0f} standard errors from zero: small, but no chance", deviations));
+  result.notes.push_back(fmt::format(
+      "the number is {:.0f} standard errors from zero: significant, but too small to matter", deviations));
 }
 
 /// The samples and intervals that all pictures share.

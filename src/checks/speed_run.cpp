@@ -18,7 +18,7 @@ constexpr double size_that_matters = 0.3;
 /// What changes between the slow and the fast end of a run and is too slow for its samples to show as noise:
 /// the wind of the scale of a run, m/s, half the change between the legs of a reverse heading; and the error
 /// of a GPS height, m, at least that of differential GPS. Neither is below the scatter that the line leaves.
-/// So much they are in simulated air, for all its drifts.
+/// Simulated flights show drifts of this size.
 constexpr double drift_of_wind = 0.5 * change_of_wind;
 constexpr double least_drift_of_height = 0.15;
 constexpr double drift_in_scatter = 1.0;

@@ -37,7 +37,7 @@ struct Series {
   }
 };
 
-/// What the chain knows of how the flights were flown, and what of it may act together.
+/// Flight-state series tested for structure, and their products.
 std::vector<Series> flown(const Analysis& analysis) {
   std::vector<Series> result;
   const std::vector<FlightColumns>& flights = analysis.flights();

@@ -36,8 +36,8 @@ struct DiagnoseOptions {
   bool whole_file = true;                    ///< look for structure in every variable of the files
   std::vector<std::string> not_variables{};  ///< variables of the files that are not looked at
   double training_share = 1.0;  ///< only the first part of every flight, this share of the samples
-  /// chi2 of effects that were found before and are in the model now: what is found further has to be at
-  /// least 8 % of their rms, lest it only mend how they are described.
+  /// chi2 of effects that were found before and are in the model now: what is found further must be at least
+  /// 8 % of their rms, otherwise it may only refine earlier findings.
   double explained = 0.0;
   std::uint64_t seed = 20120106;  ///< of the draws that set thresholds
   std::function<void(std::size_t done, std::size_t total)> progress{};

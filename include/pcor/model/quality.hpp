@@ -63,7 +63,7 @@ inline constexpr std::array<QualityFacts, 17> quality_facts{{
     {Quality::defect_exceeds_dynamic_pressure, "defect_exceeds_dynamic_pressure",
      "delta-p of the law above the dynamic pressure, as on the ramp: no delta-p"},
     {Quality::filter_window_incomplete, "filter_window_incomplete",
-     "too little around the sample to filter its LAMS temperature: none"},
+     "filter window incomplete: no filtered LAMS temperature"},
 }};
 
 /// The quality bits of one sample.

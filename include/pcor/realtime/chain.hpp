@@ -20,8 +20,7 @@
 
 namespace pcor {
 
-/// The chain from what was recorded to the air, for one model: the physics of every stage, in the order in
-/// which a sample goes through the instrument backwards.
+/// Inverts the measurement, stage by stage, from recorded values to free air, for one model.
 ///
 ///     measure -> static_defect -> correct -> air -> LAMS temperature and dynamic pressure
 ///             -> lams_static_defect
