@@ -58,17 +58,6 @@ void refuse_overwriting(const std::vector<std::filesystem::path>& outputs,
 void require_writable(const std::filesystem::path& output);
 
 /// A sub-command: adds itself to the program, and returns what to run when it was asked for.
-using AddCommand = std::function<void()> (*)(CLI::App& program);
-
-std::function<void()> add_process(CLI::App& program);
-std::function<void()> add_compare(CLI::App& program);
-std::function<void()> add_diagnose(CLI::App& program);
-std::function<void()> add_add(CLI::App& program);
-std::function<void()> add_refit(CLI::App& program);
-std::function<void()> add_improve(CLI::App& program);
-std::function<void()> add_check(CLI::App& program);
-std::function<void()> add_temperature(CLI::App& program);
-std::function<void()> add_simulate(CLI::App& program);
-std::function<void()> add_effects(CLI::App& program);
+using AddCommand = std::function<void()>(CLI::App& program);
 
 }  // namespace pcor::tool

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <charconv>
 #include <cmath>
+#include <system_error>
 
 #include <pcor/words/error.hpp>
 #include <pcor/words/suggest.hpp>
@@ -13,8 +15,10 @@ namespace pcor::tool {
 CLI::Validator is_amount() {
   const auto check = [](const std::string& text) -> std::string {
     double value = -1.0;
-    const bool number = CLI::detail::lexical_cast(text, value);
-    return number && value >= 0.0 && std::isfinite(value) ? "" : text + " is not a number of zero or more";
+    const char* const end = text.data() + text.size();
+    const auto [rest, status] = std::from_chars(text.data(), end, value);
+    const bool number = status == std::errc{} && rest == end && std::isfinite(value);
+    return number && value >= 0.0 ? "" : text + " is not a number of zero or more";
   };
   return CLI::Validator(check, "NUMBER");
 }

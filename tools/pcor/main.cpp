@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -14,7 +13,8 @@
 #include <pcor/words/error.hpp>
 #include <pcor/words/replacement_file.hpp>
 #include <pcor/words/suggest.hpp>
-#include "command.hpp"
+
+#include "commands.hpp"
 
 namespace {
 
@@ -85,14 +85,8 @@ int main(int argc, char** argv) {
   program.require_subcommand(1);
   program.footer("Exit status: 0 done, 1 the work could not be done, 2 usage.");
 
-  constexpr std::array<pcor::tool::AddCommand, 10> commands{
-      &pcor::tool::add_process, &pcor::tool::add_compare,     &pcor::tool::add_diagnose,
-      &pcor::tool::add_add,     &pcor::tool::add_refit,       &pcor::tool::add_improve,
-      &pcor::tool::add_check,   &pcor::tool::add_temperature, &pcor::tool::add_simulate,
-      &pcor::tool::add_effects};
   std::vector<std::function<void()>> runs;
-  runs.reserve(commands.size());
-  for (const auto add : commands) runs.push_back(add(program));
+  for (const auto add : pcor::tool::commands) runs.push_back(add(program));
 
   try {
     program.parse(argc, argv);
