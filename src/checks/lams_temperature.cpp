@@ -101,7 +101,7 @@ Part part_of(const Differences& all, std::string name, const Condition& conditio
 ReportTable part_table(const std::vector<Part>& parts) {
   ReportTable table;
   table.title = "The laser's temperature less the thermometer's";
-  table.caption = "Errors know the memory of the differences.";
+  table.caption = "Errors allow for the autocorrelation of the differences.";
   table.headers = {"where", "samples", "mean, K", "std. error", "scatter, K"};
   for (const Part& part : parts) {
     if (part.fit.samples < fewest_samples) continue;
@@ -212,7 +212,8 @@ void add_pictures(const CheckedFlights& flights, const std::vector<PeriodNoise>&
       [&celsius](const CheckedFlight& flight) { return celsius(flight.air.temperature, flight.air); }));
   TimePanel temperatures;
   temperatures.title = "Temperature by the laser and by the thermometer";
-  temperatures.caption = "Figure 3 of the memo: ATLAMS from the pressures of the model, and the thermometer.";
+  temperatures.caption =
+      "ATLAMS from the pressures of the model, and the thermometer (Cooper 2012, figure 3).";
   temperatures.columns = {"lams-temperature laser", "lams-temperature thermometer"};
   temperatures.axis = "temperature";
   result.pictures.emplace_back(std::move(temperatures));

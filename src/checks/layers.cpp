@@ -188,11 +188,12 @@ CheckResult check_layers(const CheckedFlights& flights) {
             : fmt::format("; as a line, {} at 0 degC and {} for each degree.", with_error(at_freezing, "K"),
                           with_error(slope, "K", 4));
     const double absolute = fit.correction_at(0.0);
-    result.notes.push_back(fmt::format(
-        "in the memo's form, T_m + c0 + c1 T_m with absolute temperatures, c0 is {} and c1 {}; their errors "
-        "are all but the same error",
-        with_error({absolute, fit.correction_error_at(0.0)}, "K"),
-        with_error({fit.c1, fit.c1_error}, "K/K", 4)));
+    result.notes.push_back(
+        fmt::format("in the form of Cooper (2012), T_m + c0 + c1 T_m with absolute temperatures, c0 is {} "
+                    "and c1 {}; their errors "
+                    "are all but the same error",
+                    with_error({absolute, fit.correction_error_at(0.0)}, "K"),
+                    with_error({fit.c1, fit.c1_error}, "K/K", 4)));
   }
   if (fit.error_scale > 1.0) {
     result.notes.push_back(fmt::format(

@@ -122,7 +122,8 @@ void add_numbers(const RedundantFit& fit, CheckResult& result) {
 ReportTable table_of(const RedundantFit& fit, const std::string& title) {
   ReportTable table;
   table.title = title;
-  table.caption = "Standard errors know the memory of the differences. The offset is that at 0 hPa.";
+  table.caption =
+      "Standard errors allow for the autocorrelation of the differences. The offset is that at 0 hPa.";
   table.headers = {"fit", "slope", "std. error", "offset, hPa", "std. error", "rms, hPa"};
   const auto row = [&](const char* name, const LineFit& line) {
     table.rows.push_back({name, fmt::format("{:.6f}", line.slope), fmt::format("{:.6f}", line.slope_error),

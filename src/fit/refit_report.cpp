@@ -23,7 +23,7 @@ std::string sentence(std::string text) {
 ReportTable coefficient_table(const RefitResult& fit) {
   ReportTable table;
   table.title = "Coefficients";
-  table.caption = "Standard errors know the memory of the residuals.";
+  table.caption = "Standard errors allow for the autocorrelation of the residuals.";
   table.headers = {"coefficient", "before", "after", "std. error", "unit", "stage"};
   for (const FittedParameter& p : fit.parameters) {
     table.rows.push_back({p.name, fmt::format("{:.6g}", p.start), fmt::format("{:.6g}", p.value),

@@ -73,7 +73,7 @@ struct CheckItem {
     if (panel.bins == 0) fail("panel '" + panel.title + "' has no bins; give at least one");
     if (!(panel.samples_per_independent >= 1.0))
       fail("panel '" + panel.title +
-           "': samples_per_independent is not a number from 1 on; 1 is for no memory");
+           "': samples_per_independent is not a number from 1 on; 1 is for independent samples");
     if (panel.x_choices.empty()) fail_empty(panel.title);
     for (const std::string& x : panel.x_choices) {
       bool found = false;

@@ -22,8 +22,9 @@ ReportTable coefficient_table(const TemperatureResult& result) {
   table.caption =
       "T corrected = T + a0 + a1 t + a2 t², t in °C. The standard error comes from the curvature of the "
       "likelihood, averaged over the noises that are likely; the interval is where the likelihood has fallen "
-      "by e^(-1/2), with the noise at its best for each value. Least squares on height, as the memo states "
-      "it, takes heights for independent and isobars for level or known: its errors are too small. " +
+      "by e^(-1/2), with the noise at its best for each value. Least squares on height, as in "
+      "Cooper (2012), takes heights for independent and isobars for level or known: its errors are too "
+      "small. " +
       pressure_error_text(result) + ".";
   table.headers = {"",
                    "likelihood",
@@ -147,9 +148,9 @@ Report temperature_report(const TemperatureResult& result) {
   for (const std::string& note : result.notes) report.summary.push_back("Note: " + note + ".");
   report.facts = {
       {"Samples", std::to_string(result.samples)},
-      {"Noise of the GPS height", fmt::format("{:.2f} m in a sample, {:.2f} m with a memory of {:.0f} s",
+      {"Noise of the GPS height", fmt::format("{:.2f} m in a sample, {:.2f} m correlated over {:.0f} s",
                                               result.gps_noise, result.gps_wander, result.gps_wander_time)},
-      {"Drift of the integral", fmt::format("{:.3f} m in a minute", result.drift)},
+      {"Drift of the hydrostatic height", fmt::format("{:.3f} m in a minute", result.drift)},
       {"Innovations", fmt::format("variance {:.2f} (1 where the noise is as described), correlation {:+.2f}",
                                   result.innovation_variance, result.innovation_correlation)}};
 

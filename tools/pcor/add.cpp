@@ -130,8 +130,8 @@ CLI::Validator is_place() {
 
 std::function<void()> add_add(CLI::App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      program.add_subcommand("add", "Add effects to a model, with coefficients that do nothing yet");
+  CLI::App* command = program.add_subcommand(
+      "add", "Add effects to a model, with coefficients that have no effect before a refit");
   command
       ->add_option("effects", options->effects,
                    "effects of the catalogue, or with --formula the name of an effect of your own")
@@ -150,7 +150,7 @@ std::function<void()> add_add(CLI::App& program) {
               "the formula of an effect of your own, with a coefficient k and variables by netCDF name or by "
               "role: 'k * ENGTRQ / 100'")
           ->type_name("FORMULA");
-  command->add_option("--where", options->where, "where the formula acts")
+  command->add_option("--where", options->where, "the stage of the measurement at which the formula acts")
       ->check(is_place())
       ->needs(formula)
       ->capture_default_str();

@@ -56,11 +56,11 @@ nlohmann::ordered_json as_json(const Checks& checks) {
   return result;
 }
 
-/// "-0.154 +- 0.024 hPa between the systems; 0.3 matters".
+/// "-0.154 +- 0.024 hPa between the systems; differences from 0.3 on matter".
 std::string key_number(const CheckResult& result) {
   const KeyNumber& key = result.key;
-  return fmt::format("{:+.3f} +- {:.3f} {} {}; {:g} matters", key.value, key.standard_error, key.unit,
-                     key.what, key.matters);
+  return fmt::format("{:+.3f} +- {:.3f} {} {}; differences from {:g} on matter", key.value,
+                     key.standard_error, key.unit, key.what, key.matters);
 }
 
 /// The first rows of a table in columns, the first to the left and the others to the right.
@@ -110,8 +110,7 @@ std::string next_step(const Checks& checks, const Options& options, bool has_las
       fmt::format("To see the pictures: pcor check {}{} --report check.html", command_line(options), second);
   if (fails("total-pressure")) {
     return "A transducer, a pitot or a line of one system is wrong: static defects cancel in the total "
-           "pressure, so "
-           "no law for them mends it.\n" +
+           "pressure, so no law for them mends it.\n" +
            pictures;
   }
   const std::size_t inconsistent = count_of(checks, CheckVerdict::inconsistent);
@@ -191,12 +190,13 @@ void run(const Options& options) {
 
 std::function<void()> add_check(CLI::App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand(
-      "check", "Hold the pressures against what does not depend on the model: redundant systems, manoeuvres");
+  CLI::App* command = program.add_subcommand("check",
+                                             "Test the corrected pressures by what the model was not fitted "
+                                             "to: redundant systems, manoeuvres, layers");
   add_flight_options(*command, options->flights);
   command
       ->add_option("-m,--model", options->model,
-                   "the model to check; without it, what the flight's own processing corrected")
+                   "the model to check; without it, the corrected variables that the flight has already")
       ->type_name("MODEL.toml");
   command
       ->add_option("--second", options->second,

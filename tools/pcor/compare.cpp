@@ -118,7 +118,8 @@ void print_model(const ModelComparison& model, bool with_name) {
     fmt::print("  {} to {}  bias {:+.3f}, rms {:.3f} hPa  {}\n", utc_text(worst.begin),
                utc_text(worst.end, "%H:%M:%S"), worst.statistics.bias, worst.statistics.rms, worst.regimes);
   }
-  fmt::print("R2 {:.4f}; one independent sample in {:.1f}\n", model.r_squared, model.samples_per_independent);
+  fmt::print("R2 {:.4f}; the residuals are correlated in time: {:.1f} samples count as one independent one\n",
+             model.r_squared, model.samples_per_independent);
 }
 
 /// The residual of flight `number` goes to the file asked for, or beside it with the flight's name.
@@ -211,7 +212,8 @@ void run(const Options& options) {
 
 std::function<void()> add_compare(CLI::App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand("compare", "Show where a model fails against measurements");
+  CLI::App* command =
+      program.add_subcommand("compare", "Compare a model with a measurement of delta-p, by flight regime");
   add_comparison_options(*command, options->comparison);
   command
       ->add_option("-m,--model", options->models,

@@ -26,28 +26,30 @@ CLI::Validator is_amount() {
 void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
   add_flight_options(command, options);
   command
-      .add_option("--reference", options.reference,
-                  "what to hold the model against: lams, static:OTHER.toml or pressure:VARIABLE")
+      .add_option(
+          "--reference", options.reference,
+          "the measurement that the model is compared with: lams (the laser air-motion sensor; the default), "
+          "static:OTHER.toml (a second static system, by its model) or pressure:VARIABLE")
       ->type_name("REFERENCE");
 }
 
 void add_flight_options(CLI::App& command, ComparisonOptions& options) {
-  command.add_option("flights", options.flights, "the flights, netCDF files")
-      ->required()
-      ->type_name("IN.nc...");
-  command.add_option("--exclude", options.exclude, "a regime that takes no part, e.g. turn or cloud")
+  command.add_option("flights", options.flights, "the flights, netCDF files")->required()->type_name("IN.nc");
+  command.add_option("--exclude", options.exclude, "a flight regime that is left out, e.g. turn or cloud")
       ->type_name("REGIME");
   command
       .add_option("--intervals", options.intervals,
-                  "regimes that you add or veto, and times that you exclude")
+                  "flight regimes to add or to veto, and times to leave out")
       ->type_name("FILE.toml");
-  command.add_option("--min-airspeed", options.least_airspeed, "m/s; slower samples take no part")
+  command.add_option("--min-airspeed", options.least_airspeed, "m/s; slower samples are left out")
       ->check(is_amount())
       ->capture_default_str();
-  command.add_option("--max-flaps", options.most_flaps, "percent; samples with more flaps take no part")
+  command.add_option("--max-flaps", options.most_flaps, "percent; samples with more flaps are left out")
       ->check(is_amount())
       ->capture_default_str();
-  command.add_option("--time-stamp", options.time_stamp, "which moment of its second a record's time is")
+  command
+      .add_option("--time-stamp", options.time_stamp,
+                  "whether the time of a record is the beginning or the middle of its second")
       ->check(CLI::IsMember({"begin", "middle"}))
       ->capture_default_str();
 }

@@ -89,7 +89,9 @@ void print_findings(const std::vector<Finding>& findings) {
                finding.effect.id, in_words(finding.estimates), finding.rms, finding.worst, finding.chi2,
                probability(finding.p_value), finding.rms_before, finding.rms_after, finding.events);
   }
-  fmt::print("before and after: rms, hPa, of stretches that took no part in the fit\n");
+  fmt::print(
+      "before and after: rms, hPa, of parts of the flights that were not fitted; events: separate times "
+      "that speak for the effect\n");
   for (const Finding& finding : findings) print_finding(finding);
 }
 
@@ -212,21 +214,22 @@ void run(const Options& options) {
 
 std::function<void()> add_diagnose(CLI::App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand("diagnose", "Find the physical effect that a model lacks");
+  CLI::App* command =
+      program.add_subcommand("diagnose", "Find the physical effects that a fitted model lacks");
   add_comparison_options(*command, options->comparison);
-  command->add_option("-m,--model", options->model, "the model, fitted before")
+  command->add_option("-m,--model", options->model, "the model, fitted to these flights by refit")
       ->required()
       ->type_name("MODEL.toml");
   add_candidate_options(*command, options->candidates);
   command
       ->add_option("--not-variable", options->not_variables,
-                   "a variable of the flights in which no unexplained structure is looked for")
+                   "a variable of the flights that is not searched for structure that no effect explains")
       ->type_name("NAME");
   command->add_flag("--no-file-variables", options->no_file_variables,
-                    "do not look for unexplained structure in the variables of the flights");
+                    "search no variable of the flights for structure that no effect explains");
   command
       ->add_option("--training-share", options->training_share,
-                   "look at the first part of every flight alone, this share")
+                   "use only this share of every flight, its first part")
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
   command->add_flag("--all", options->all, "print the lists of effects that were not found in full");

@@ -107,14 +107,14 @@ void add_candidate_options(CLI::App& command, CandidateOptions& options) {
   command
       .add_option(
           "--try", options.formulas,
-          "a formula at the static ports that is tried too, hPa, with a coefficient k and variables by "
-          "netCDF name or by role: 'k * ENGTRQ / 100'; they are called try-1, try-2 ...")
+          "test an effect of your own too: its formula, hPa at the static ports, with a coefficient k and "
+          "variables by netCDF name or by role: 'k * ENGTRQ / 100'; they are called try-1, try-2 ...")
       ->type_name("FORMULA")
       ->expected(1)
       ->take_all();
   command
       .add_option("--candidates", options.file,
-                  "a model whose formula effects, if MODEL lacks them, are tried too")
+                  "a model whose formula effects are tested too, where MODEL lacks them")
       ->type_name("MODEL2.toml");
 }
 

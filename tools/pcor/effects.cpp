@@ -86,7 +86,8 @@ void print_one(const EffectFacts& facts) {
   fmt::print("  formula      {}  [{}]\n  acts on      {}\n", facts.formula, where.unit, where.adds_to);
   for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
     const ParameterFacts& parameter = facts.parameters[i];
-    const std::string neutral = parameter.shape ? "shape" : fmt::format("neutral {}", parameter.neutral);
+    const std::string neutral =
+        parameter.shape ? "shapes the effect" : fmt::format("neutral {}", parameter.neutral);
     fmt::print("  parameter    {}  [{}], {}, from {} to {}, typically {}\n", parameter.name, parameter.unit,
                neutral, parameter.lower, parameter.upper, parameter.typical);
   }
@@ -117,7 +118,7 @@ void print_all() {
   for (const EffectFacts& facts : effect_facts) {
     fmt::print("{:<18} {:<20} {:<70} {}\n", facts.id, facts_of(facts.where).name, facts.title, facts.formula);
   }
-  fmt::print("\nKnown, but without a trace that a term of a model could follow\n\n");
+  fmt::print("\nKnown errors that no term of a model can describe\n\n");
   for (const EffectWithoutTrace& effect : effects_without_trace)
     fmt::print("{:<22} {}\n", effect.id, effect.title);
   fmt::print("\nTo read more of one: pcor effects {}\n", effect_facts.front().id);
@@ -151,8 +152,8 @@ void run(const Options& options) {
 std::function<void()> add_effects(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
-      program.add_subcommand("effects", "Print the catalogue of effects, or all that is known of one");
-  command->add_option("id", options->id, "an effect")->type_name("ID");
+      program.add_subcommand("effects", "List the catalogue of effects, or all that is known of one");
+  command->add_option("id", options->id, "an effect, e.g. static-lag")->type_name("ID");
   add_common_options(*command, options->common, false);
   return [options] { run(*options); };
 }

@@ -118,8 +118,8 @@ void run(const Options& options) {
 
 std::function<void()> add_improve(CLI::App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      program.add_subcommand("improve", "Refit, diagnose and add what is missing, until nothing is");
+  CLI::App* command = program.add_subcommand(
+      "improve", "Refit, diagnose and add missing effects in turn, until none is missing");
   add_comparison_options(*command, options->comparison);
   command->add_option("-m,--model", options->model, "the model to begin with")
       ->required()
@@ -127,21 +127,23 @@ std::function<void()> add_improve(CLI::App& program) {
   command->add_option("-o,--output", options->output, "the best model, whole or not at all")
       ->required()
       ->type_name("BEST.toml");
-  command->add_option("--holdout", options->holdout, "a flight that takes no part and tests every step")
+  command->add_option("--holdout", options->holdout, "a flight that is not fitted, but tests every step")
       ->type_name("T.nc")
       ->expected(1)
       ->take_all();
   command
       ->add_option("--training-share", options->training_share,
-                   "learn from the first part of every flight, this share; the rest tests every step")
+                   "fit only this share of every flight, its first part; the rest tests every step")
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
   add_candidate_options(*command, options->candidates);
   command->add_flag(
       "--trace-variables", options->trace_variables,
-      "where no effect of the catalogue explains what is left, add a formula of the variable that goes with "
-      "it, at the static ports");
-  command->add_option("--loss", options->loss, "how outliers count in the fits")
+      "where no effect of the catalogue explains what is left, add a formula, at the static ports, of the "
+      "variable that correlates with it");
+  command
+      ->add_option("--loss", options->loss,
+                   "loss function of the fits, which limits the weight of outliers; none: least squares")
       ->check(CLI::IsMember({"tukey", "huber", "soft-l1", "cauchy", "none"}))
       ->capture_default_str();
   add_common_options(*command, options->common);

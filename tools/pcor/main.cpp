@@ -83,7 +83,12 @@ int main(int argc, char** argv) {
   CLI::App program("Corrects the static and dynamic pressure that a research aircraft measures.", "pcor");
   program.set_version_flag("--version", "pcor " PCOR_VERSION);
   program.require_subcommand(1);
-  program.footer("Exit status: 0 done, 1 the work could not be done, 2 usage.");
+  program.footer(
+      "delta-p: the correction, hPa, that is added to the static pressure and taken off the dynamic "
+      "pressure.\n"
+      "LAMS: the laser air-motion sensor, which measures the airspeed ahead of the aircraft.\n"
+      "Further words: docs/glossary.md.\n\n"
+      "Exit status: 0 done, 1 the work could not be done, 2 usage.");
 
   std::vector<std::function<void()>> runs;
   for (const auto add : pcor::tool::commands) runs.push_back(add(program));

@@ -118,7 +118,7 @@ void run(const Options& options) {
 std::function<void()> add_process(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
-      program.add_subcommand("process", "Run every sample of a flight through the real-time loop");
+      program.add_subcommand("process", "Correct a flight: run every sample through the real-time loop");
   command->add_option("input", options->input, "the flight, a netCDF file")->required()->type_name("IN.nc");
   command->add_option("-m,--model", options->model, "the model of the pressure system")
       ->required()
@@ -128,17 +128,20 @@ std::function<void()> add_process(CLI::App& program) {
       ->type_name("OUT.nc");
   command
       ->add_option("--correct-with", options->correct_with,
-                   "what corrects PSXC and QCXC: the model, or LAMS where it is valid")
+                   "what PSXC and QCXC are corrected with: the model, or the laser air-motion sensor (LAMS) "
+                   "where it is valid")
       ->check(CLI::IsMember({"model", "lams"}))
       ->capture_default_str();
-  command->add_option("--time-stamp", options->time_stamp, "which moment of its second a record's time is")
+  command
+      ->add_option("--time-stamp", options->time_stamp,
+                   "whether the time of a record is the beginning or the middle of its second")
       ->check(CLI::IsMember({"begin", "middle"}))
       ->capture_default_str();
   command->add_option("--suffix", options->suffix, "add S to the names of the derived variables")
       ->type_name("S");
   command->add_flag("--all", options->copy_all, "copy every variable of the input");
   command->add_flag("--hydrostatic", options->hydrostatic,
-                    "write HYDSTEP, the step of hydrostatic height per kelvin between samples");
+                    "write HYDSTEP, the change of hydrostatic height per kelvin from sample to sample");
   add_common_options(*command, options->common, false);
   return [options] { run(*options); };
 }

@@ -154,11 +154,15 @@ void print(const RefitResult& result, const Options& options) {
                                                              : fmt::format("{:.3g}", p.standard_error);
     fmt::print("{:<36} {:>13.6g} {:>13.6g} {:>13}  {}\n", p.name, p.start, p.value, error, p.unit);
   }
-  fmt::print("\nrms {:.3f} hPa ({:.5f} of p), before {:.3f}; robust {:.3f}; noise {:.3f} hPa; {} outliers\n",
-             result.rms, result.rms_over_pressure, result.rms_before, result.bulk_rms, result.noise_rms,
-             result.outliers);
-  fmt::print("R2 {:.4f}; condition number {:.0f}; one independent sample in {:.1f}\n", result.r_squared,
-             result.condition_number, result.samples_per_independent);
+  fmt::print(
+      "\nrms {:.3f} hPa ({:.5f} of p), before {:.3f}; without outliers {:.3f}; noise {:.3f} hPa; {} "
+      "outliers\n",
+      result.rms, result.rms_over_pressure, result.rms_before, result.bulk_rms, result.noise_rms,
+      result.outliers);
+  fmt::print(
+      "R2 {:.4f}; condition number {:.0f}\nthe residuals are correlated in time: {:.1f} samples count as one "
+      "independent one, and the standard errors allow for it\n",
+      result.r_squared, result.condition_number, result.samples_per_independent);
   if (result.omissions.size() > 1) {
     fmt::print("\n{:<36} {:>10} {:>10}\n", "left out, the others refitted", "rms, hPa", "R2");
     for (const Omission& omission : result.omissions)
@@ -243,12 +247,16 @@ std::function<void()> add_refit(CLI::App& program) {
       ->add_option("--refit-reference", options->reference_output,
                    "fit the model of the second static system too, and write it here")
       ->type_name("OTHER.toml");
-  command->add_option("--loss", options->loss, "how outliers count")
+  command
+      ->add_option("--loss", options->loss,
+                   "loss function, which limits the weight of outliers; none: least squares")
       ->check(CLI::IsMember({"tukey", "huber", "soft-l1", "cauchy", "none"}))
       ->capture_default_str();
-  command->add_option("--fix", options->fix, "hold a coefficient or an effect, e.g. static-qp.a2")
+  command
+      ->add_option("--fix", options->fix,
+                   "hold a coefficient, or all of an effect, at its value, e.g. static-qp.a2")
       ->type_name("NAME");
-  command->add_option("--free", options->free, "fit a coefficient that the model file fixes")
+  command->add_option("--free", options->free, "fit a coefficient that the model file holds fixed")
       ->type_name("NAME");
   command
       ->add_option(
@@ -256,18 +264,22 @@ std::function<void()> add_refit(CLI::App& program) {
           "first fit these coefficients to these regimes alone, each interval with an offset of its own, and "
           "then hold them: 'pitch manoeuvre: static-alpha'")
       ->type_name("REGIMES: NAMES");
-  command->add_option("--holdout", options->holdout, "a flight that takes no part in the fit and tests it")
+  command->add_option("--holdout", options->holdout, "a flight that is not fitted, but tests the fit")
       ->type_name("T.nc");
   command
       ->add_option("--training-share", options->training_share,
-                   "fit the first part of every flight, this share; the rest tests the fit")
+                   "fit only this share of every flight, its first part; the rest tests the fit")
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
-  command->add_flag("--prior", options->prior,
-                    "draw coefficients to their starting values by the typical size of their effect");
-  command->add_flag("--search", options->search,
-                    "search the start globally between the bounds, for coefficients that are not linear");
-  command->add_option("--memory", options->memory_mib, "MiB of flights kept between passes")
+  command->add_flag(
+      "--prior", options->prior,
+      "take the starting values for measurements, with the typical size of each effect as standard error");
+  command->add_flag(
+      "--search", options->search,
+      "find the starting values by a global search between the bounds, for coefficients that are not linear");
+  command
+      ->add_option("--memory", options->memory_mib,
+                   "MiB of samples that are kept between passes over the flights; the rest is read again")
       ->check(is_amount())
       ->capture_default_str();
   add_common_options(*command, options->common);

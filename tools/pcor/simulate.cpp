@@ -66,8 +66,8 @@ void print(const SimulationSummary& summary, const Options& options) {
                leg.pressure, fmt::format("{:.0f} to {:.0f}", leg.least_speed, leg.greatest_speed),
                fmt::format("{:.1f} to {:.1f}", leg.least_attack, leg.greatest_attack));
   }
-  if (!summary.effects.empty()) fmt::print("\nwrong in it: {}\n", fmt::join(summary.effects, ", "));
-  fmt::print("\nwrote {} variables, and the truth as TRUE_..., to {}\n", summary.variables.size(),
+  if (!summary.effects.empty()) fmt::print("\nsimulated errors: {}\n", fmt::join(summary.effects, ", "));
+  fmt::print("\nwrote {} variables, and the true values as TRUE_..., to {}\n", summary.variables.size(),
              options.output);
   fmt::print("To see where a model fails on it: pcor compare {} -m MODEL.toml\n", quoted(options.output));
 }
@@ -93,14 +93,16 @@ void run(const Options& options) {
 
 std::function<void()> add_simulate(CLI::App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand("simulate", "Simulate a flight whose truth is known");
-  command->add_option("scenario", options->scenario, "what is flown, and what is wrong")
+  CLI::App* command = program.add_subcommand("simulate", "Simulate a flight whose true pressures are known");
+  command
+      ->add_option("scenario", options->scenario,
+                   "the flight plan, the atmosphere, and the errors of the instruments")
       ->required()
       ->type_name("SCENARIO.toml");
   command->add_option("-o,--output", options->output, "the file to write, whole or not at all")
       ->required()
       ->type_name("OUT.nc");
-  command->add_option("--seed", options->seed, "random numbers other than the scenario's")
+  command->add_option("--seed", options->seed, "seed of the random numbers in place of the scenario's")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()))
       ->type_name("N");
   add_common_options(*command, options->common, false);

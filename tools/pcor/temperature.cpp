@@ -131,17 +131,18 @@ void print(const TemperatureResult& result) {
   for (std::size_t k = 0; k < result.likelihood.coefficients.size(); ++k) {
     fmt::print("a{:<3} {:>+12.5g} {:>22.2g} {:>24} {:>27} {:>5}\n", k, result.likelihood.coefficients[k],
                result.likelihood.standard_errors[k], profile_text(result.profile[k]),
-               fmt::format("{:+.4g} +- {:.2g} (too small)", result.least_squares.coefficients[k],
+               fmt::format("{:+.4g} +- {:.2g}", result.least_squares.coefficients[k],
                            result.least_squares.standard_errors[k]),
                coefficient_unit(k));
   }
-  fmt::print("{}.\n", pressure_error_text(result));
+  fmt::print("Least squares takes heights for independent: its standard errors are too small.\n{}.\n",
+             pressure_error_text(result));
   fmt::print("\n{:>12} {:>22}\n", "temperature", "correction");
   for (const TemperatureCorrection& at : result.corrections)
     fmt::print("{:>10.1f} C {:>20} K\n", at.temperature, with_error(at.correction, at.standard_error));
   fmt::print(
-      "\nheight by GPS: {:.2f} m a sample, {:.2f} m with a memory of {:.0f} s; the integral drifts by {:.3f} "
-      "m in a minute\n",
+      "\nnoise of the GPS height: {:.2f} m in a sample, {:.2f} m correlated over {:.0f} s; the hydrostatic "
+      "height drifts by {:.3f} m in a minute\n",
       result.gps_noise, result.gps_wander, result.gps_wander_time, result.drift);
   fmt::print("\n{:<12} {:>16} {:>26}\n", "-2 ln L", "all flights", "held-out flights");
   for (const DegreeChoice& choice : result.degrees)
@@ -153,17 +154,17 @@ void print(const TemperatureResult& result) {
 }
 
 void print(const CalibrationInTurn& result) {
-  fmt::print("{:<6} {:>10} {:>18} {:>22}  {}\n", "round", "rms, hPa", "delta-p moved, hPa",
-             "temperature moved, K", "coefficients");
+  fmt::print("{:<6} {:>10} {:>22} {:>24}  {}\n", "round", "rms, hPa", "change of delta-p, hPa",
+             "change of temperature, K", "coefficients");
   for (std::size_t i = 0; i < result.rounds.size(); ++i) {
     const CalibrationRound& round = result.rounds[i];
     std::string coefficients;
     for (const double a : round.coefficients) coefficients += fmt::format("{:+.5g} ", a);
-    fmt::print("{:<6} {:>10.4f} {:>18.4f} {:>22.4f}  {}\n", i + 1, round.rms_hpa, round.defect_change,
+    fmt::print("{:<6} {:>10.4f} {:>22.4f} {:>24.4f}  {}\n", i + 1, round.rms_hpa, round.defect_change,
                round.temperature_change, coefficients);
   }
   fmt::print("{}\n\n", result.converged ? "pressure and temperature agree with each other"
-                                        : "they still move: use the result with care");
+                                        : "they still change: use the result with care");
 }
 
 /// The first flight that took part, as it was named.
@@ -227,8 +228,8 @@ void run(const Options& options) {
 
 std::function<void()> add_temperature(CLI::App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      program.add_subcommand("temperature", "Calibrate the temperature by the height in climbs and descents");
+  CLI::App* command = program.add_subcommand(
+      "temperature", "Calibrate the temperature by GPS heights and the hydrostatic equation");
   add_comparison_options(*command, options->comparison);
   command->add_option("-m,--model", options->model, "the model whose pressures and thermometer are used")
       ->required()
@@ -239,34 +240,35 @@ std::function<void()> add_temperature(CLI::App& program) {
   command->add_option("--degree", options->degree, "highest power of the temperature in the correction")
       ->check(CLI::IsMember({"auto", "0", "1", "2"}))
       ->capture_default_str();
-  command->add_option("--slope", options->slope, "what is done about isobars that are not level")
+  command->add_option("--slope", options->slope, "how the slope of isobars is found")
       ->check(CLI::IsMember({"fitted", "none", "level-legs", "climb-descent", "whole-flight", "geostrophic"}))
       ->capture_default_str();
   command
-      ->add_option("--slope-size", options->slope_size,
-                   "usual slope of isobars, m in 100 km, from which --slope fitted starts; of it other "
-                   "slopes leave a third")
+      ->add_option(
+          "--slope-size", options->slope_size,
+          "standard deviation of the slope of isobars before it is fitted, m in 100 km; the other ways of "
+          "--slope leave a third of it")
       ->check(is_amount())
       ->capture_default_str();
   command
       ->add_option(
           "--pressure-error", options->pressure_error,
-          "usual error of the static pressure that lasts for a flight, hPa, to be in the errors; the "
-          "memo's fits have 0.3")
+          "standard deviation of an error of the static pressure that lasts for a flight, hPa; it enters the "
+          "standard errors (after a fit to LAMS: 0.3)")
       ->check(is_amount())
       ->capture_default_str();
   command
       ->add_option("--min-climb-rate", options->least_climb_rate,
-                   "m/s; what climbs or descends slower takes no part")
+                   "m/s; slower climbs and descents are left out")
       ->check(is_amount())
       ->capture_default_str();
   command->add_flag("--skip-returning", options->skip_returning,
-                    "flights that end where they began take no part");
+                    "leave out flights that end where they began");
   command->add_flag(
       "--archived", options->archived,
       "the flights were written by 'pcor process --hydrostatic': start from their HYDSTEP and ATX");
   command->add_flag("--iterate", options->iterate,
-                    "refit the pressures and calibrate the temperature in turn until neither moves");
+                    "refit the pressures and calibrate the temperature in turn until neither changes");
   add_common_options(*command, options->common);
   return [options] { run(*options); };
 }

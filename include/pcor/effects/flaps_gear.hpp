@@ -16,7 +16,7 @@ struct FlapsGear {
     facts.size = "C-130 1.3 to 1.7 hPa with flaps at 50 % and more; GV unknown";
     facts.look_alikes = "static-alpha-quad, ground-effect, pcor-regime";
     facts.manoeuvre = "level leg at one speed, repeated with flaps at 0 and 50 %";
-    facts.source = "NCAR nimbus, qcfrc.c (GOTHAAM); memo fig. 2";
+    facts.source = "NCAR nimbus, qcfrc.c (GOTHAAM); Cooper (2012) fig. 2";
     facts.example.inputs[0] = {Quantity::flaps, 25.0};
     facts.example.parameters = {1.5};
     facts.example.value = 0.75;

@@ -18,7 +18,7 @@ struct HumidityNeglected {
         "-0.1 to -0.65 hPa, most low, warm and fast; only where the model uses dry constants, and right at 1";
     facts.look_alikes = "temp-offset, lams-scale";
     facts.manoeuvre = "leg in the boundary layer against one aloft at the same Mach number and attack";
-    facts.source = "memo eq. 13-17";
+    facts.source = "Cooper (2012) eq. 13-17";
     facts.example.inputs[0] = {Quantity::vapor_pressure, 20.0};
     facts.example.parameters = {1.0};
     facts.example.value = 20.0;

@@ -15,7 +15,7 @@ struct LamsAzimuth {
     facts.size = "survey 0.02 to 0.2 deg: 0.15 m/s for 0.5 deg at 4 deg of sideslip";
     facts.look_alikes = "static-beta-odd, roll-static";
     facts.manoeuvre = "yaw manoeuvre with a second static pair";
-    facts.source = "memo, Effect of LAMS orientation";
+    facts.source = "Cooper (2012), Effect of LAMS orientation";
     facts.example.parameters = {0.5};
     facts.example.value = 0.5;
     return facts;

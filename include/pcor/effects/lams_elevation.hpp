@@ -16,7 +16,7 @@ struct LamsElevation {
         "pod pitch 1 deg (C-130), 3.5 deg (GV); survey 0.02 to 0.2 deg: 0.12 hPa for 0.5 deg at 6 deg";
     facts.look_alikes = "static-alpha, static-constant";
     facts.manoeuvre = "pitch manoeuvre with a second static pair";
-    facts.source = "memo, Effect of LAMS orientation";
+    facts.source = "Cooper (2012), Effect of LAMS orientation";
 
     facts.example.parameters = {0.5};
     facts.example.value = 0.5;

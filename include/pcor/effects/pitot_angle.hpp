@@ -16,7 +16,7 @@ struct PitotAngle {
     facts.size = "below 0.2 % of q at 5 deg, below 1 % at 10 deg, always low: -0.12 and -0.6 hPa (C-130)";
     facts.look_alikes = "static-alpha-quad, static-beta-even, lams-elevation, qcr-angle";
     facts.manoeuvre = "pitch and yaw manoeuvres to large angles; a second pitot pair";
-    facts.source = "memo, footnote 3";
+    facts.source = "Cooper (2012), footnote 3";
     facts.example.inputs[0] = {Quantity::dynamic_pressure, 70.0};
     facts.example.inputs[1] = {Quantity::attack, 4.0};
     facts.example.inputs[2] = {Quantity::sideslip, 3.0};

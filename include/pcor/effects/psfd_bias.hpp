@@ -16,7 +16,7 @@ struct PsfdBias {
     facts.look_alikes = "static-constant, qcf-zero";
     facts.manoeuvre =
         "airport pressure on the ramp; hydrostatic height in climbs; a second static and pitot pair";
-    facts.source = "memo, Background";
+    facts.source = "Cooper (2012), Background";
     facts.example.parameters = {0.1};
     facts.example.value = -0.1;
     return facts;

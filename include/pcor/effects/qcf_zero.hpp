@@ -12,10 +12,10 @@ struct QcfZero {
     facts.where = Where::dynamic_transducer;
     facts.formula = "-offset";
     facts.parameters[0] = {"offset", "hPa", 0.0, -2.0, 2.0, 0.3};
-    facts.size = "0.34 hPa typical, 0.68 at most (Honeywell PPT); the memo says 0.05";
+    facts.size = "0.34 hPa typical, 0.68 at most (Honeywell PPT); Cooper (2012) has 0.05";
     facts.look_alikes = "static-constant, static-leak, temp-deice-heat, psfd-bias, qcf-gain";
     facts.manoeuvre = "zero on the ramp before taxi; a second static and pitot pair";
-    facts.source = "NCAR wind uncertainty technical note table 1; memo, Background";
+    facts.source = "NCAR wind uncertainty technical note table 1; Cooper (2012), Background";
     facts.example.parameters = {0.3};
     facts.example.value = -0.3;
     return facts;

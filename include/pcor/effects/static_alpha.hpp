@@ -16,7 +16,7 @@ struct StaticAlpha {
     facts.size = "C-130 PSFD 0.0213, 1 hPa/deg at 700 hPa; PSFRD 0.0089";
     facts.look_alikes = "lams-elevation, pitot-angle, adif-drift";
     facts.manoeuvre = "pitch manoeuvre, speed run";
-    facts.source = "memo eq. 18-19";
+    facts.source = "Cooper (2012) eq. 18-19";
     facts.example.inputs[0] = {Quantity::attack_ratio, -0.2};
     facts.example.inputs[1] = {Quantity::static_pressure, 700.0};
     facts.example.parameters = {0.021279816};

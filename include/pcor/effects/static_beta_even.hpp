@@ -16,7 +16,7 @@ struct StaticBetaEven {
     facts.size = "estimated 1e-5 to 4e-5 /deg2: -0.1 to -0.4 hPa at 4 deg";
     facts.look_alikes = "pitot-angle, lams-azimuth";
     facts.manoeuvre = "yaw manoeuvre, steady-heading sideslip";
-    facts.source = "memo, text after eq. 20";
+    facts.source = "Cooper (2012), text after eq. 20";
     facts.example.inputs[0] = {Quantity::sideslip, 4.0};
     facts.example.inputs[1] = {Quantity::static_pressure, 700.0};
     facts.example.parameters = {-2e-5};

@@ -16,7 +16,7 @@ struct StaticBetaOdd {
     facts.size = "C-130 -0.00177 (PSFD), -0.0008 (PSFRD): -0.37 hPa at 3.7 deg, 700 hPa";
     facts.look_alikes = "lams-azimuth";
     facts.manoeuvre = "yaw manoeuvre";
-    facts.source = "memo eq. 19";
+    facts.source = "Cooper (2012) eq. 19";
     facts.example.inputs[0] = {Quantity::sideslip_ratio, 0.3};
     facts.example.inputs[1] = {Quantity::static_pressure, 700.0};
     facts.example.parameters = {-0.001773};

@@ -16,7 +16,7 @@ struct StaticConstant {
     facts.size = "C-130 0.004: 3 hPa at 700 hPa";
     facts.look_alikes = "psfd-bias, qcf-zero";
     facts.manoeuvre = "an absolute reference; no manoeuvre does";
-    facts.source = "memo eq. 18-20";
+    facts.source = "Cooper (2012) eq. 18-20";
     facts.example.inputs[0] = {Quantity::static_pressure, 700.0};
     facts.example.parameters = {0.004127875};
     facts.example.value = 2.8895125;

@@ -17,7 +17,7 @@ struct StaticMach2 {
     facts.look_alikes =
         "static-qp, static-mach, static-mach3, lams-scale, temp-offset, recovery-factor, qcf-gain";
     facts.manoeuvre = "speed run at two altitudes";
-    facts.source = "memo eq. 19-20";
+    facts.source = "Cooper (2012) eq. 19-20";
     facts.example.inputs[0] = {Quantity::mach, 0.75};
     facts.example.inputs[1] = {Quantity::static_pressure, 250.0};
     facts.example.parameters = {-0.2833};

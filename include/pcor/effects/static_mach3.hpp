@@ -17,7 +17,7 @@ struct StaticMach3 {
     facts.look_alikes =
         "static-qp, static-mach, static-mach2, lams-scale, temp-offset, recovery-factor, qcf-gain";
     facts.manoeuvre = "speed run at two altitudes";
-    facts.source = "memo eq. 20; NCAR processing algorithms eq. 4.5";
+    facts.source = "Cooper (2012) eq. 20; NCAR processing algorithms eq. 4.5";
     facts.example.inputs[0] = {Quantity::mach, 0.75};
     facts.example.inputs[1] = {Quantity::static_pressure, 250.0};
     facts.example.parameters = {-0.2437};

@@ -16,7 +16,7 @@ struct StaticQp {
     facts.size = "C-130 0.031 (PSFD), 0.071 (PSFRD): 2.1 and 4.8 hPa at q 68 hPa";
     facts.look_alikes = "static-mach2, lams-scale, temp-offset, recovery-factor, qcf-gain";
     facts.manoeuvre = "speed run at two altitudes";
-    facts.source = "memo eq. 18, 20";
+    facts.source = "Cooper (2012) eq. 18, 20";
     facts.example.inputs[0] = {Quantity::dynamic_ratio, 0.1};
     facts.example.inputs[1] = {Quantity::static_pressure, 680.0};
     facts.example.parameters = {0.030849643};

@@ -23,7 +23,7 @@ struct TempCalibration {
     facts.manoeuvre =
         "climbs and descents through many temperatures, there and back, with GPS height: pcor temperature "
         "finds it by the hydrostatic equation";
-    facts.source = "memo eq. 24 and its addition on the GV: T + a0 + a1 T + a2 T^2, T in degC";
+    facts.source = "Cooper (2012) eq. 24 and its addition on the GV: T + a0 + a1 T + a2 T^2, T in degC";
     facts.example.inputs[0] = {Quantity::ambient_temperature, 253.15};
     facts.example.parameters = {0.55, 0.01, 0.00025};
     facts.example.value = 0.45;

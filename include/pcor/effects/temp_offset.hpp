@@ -19,7 +19,7 @@ struct TempOffset {
     facts.look_alikes =
         "lams-scale, qcf-gain, temp-deice-heat, recovery-factor, humidity-neglected, horizontal-gradient";
     facts.manoeuvre = "hydrostatic height in climbs and descents";
-    facts.source = "memo, table of temperatures; Cooper et al., Atmos. Meas. Tech. 7, 3215 (2014)";
+    facts.source = "Cooper (2012), table of temperatures; Cooper et al., Atmos. Meas. Tech. 7, 3215 (2014)";
     facts.example.inputs[0] = {Quantity::recovery_temperature, 263.15};
     facts.example.parameters = {0.5, 0.005};
     facts.example.value = -0.45;

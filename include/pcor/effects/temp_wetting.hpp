@@ -17,7 +17,7 @@ struct TempWetting {
     facts.size = "-0.5 to -2 K: -0.1 to -0.8 hPa; the drying after the cloud is not described";
     facts.look_alikes = "lams-cloud";
     facts.manoeuvre = "passes through cloud with a radiometer";
-    facts.source = "memo item 6 and recommendation 5; ARISTO memo";
+    facts.source = "Cooper (2012) item 6 and recommendation 5; ARISTO memo";
     facts.example.inputs[0] = {Quantity::liquid_water, 0.3};
     facts.example.parameters = {-1.0};
     facts.example.value = 1.0;

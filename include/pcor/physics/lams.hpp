@@ -146,11 +146,9 @@ LamsSolution<S> lams_with_temperature(const S& static_pressure, const S& dynamic
 /// eq. 7 and eq. 12 give v^2/(2 c_p T) = ((p+q)/(p+delta-p))^(R_a/c_p) - 1, and eq. 11 returns that same
 /// delta-p. The airspeed cancels, so every value is a solution.
 inline constexpr std::string_view approach_4_refusal =
-    "approach 4 of the memo is an identity: a temperature computed from the airspeed and the Mach number "
-    "(eq. 12) makes "
-    "eq. 11 return whatever delta-p was assumed, so nothing is learnt; use approach 1 (recovery temperature) "
-    "or "
-    "approach 3 (an ambient temperature measured without any pressure)";
+    "approach 4 of Cooper (2012) is an identity: a temperature computed from the airspeed and the Mach "
+    "number (eq. 12) makes eq. 11 return whatever delta-p was assumed, so nothing is learnt; use approach 1 "
+    "(recovery temperature) or approach 3 (an ambient temperature measured without any pressure)";
 
 /// Temperature, K, from airspeed (m/s) and Mach number, without a thermometer: T = v^2/(gamma R_a M^2).
 ///
