@@ -1,4 +1,4 @@
-// Equation 18 of the memo for the C-130's PSFD and QCF, in a sample loop of 25 Hz.
+// Equation 18 of Cooper (2012) for the C-130's PSFD and QCF, in a sample loop of 25 Hz.
 #include <cstdio>
 #include <pcor/realtime/loop.hpp>
 #include <string>

@@ -4,6 +4,7 @@
 Every folder of include/pcor, src and tests is a room of floors.txt or a workshop (tests of the whole); a room includes
 rooms of lower floors and itself; no files include each other in a circle; a header of src, which is not installed, is
 included by no installed one and keeps its names in pcor::internal; and no include climbs through "..".
+docs/rooms.md describes the same rooms.
 """
 import pathlib
 import re
@@ -46,6 +47,14 @@ for folder in ("include/pcor", "src", "tests"):
         known = set(floor_of) | (workshops if folder == "tests" else set())
         if child.is_dir() and child.name not in known:
             trouble.append(f"{folder}/{child.name} is no room of tests/rooms/floors.txt")
+
+described, floor = {}, -1
+for number, room in re.findall(r"^\| (\d*) *\| `(\w+)` \|", (root / "docs/rooms.md").read_text(), flags=re.MULTILINE):
+    floor = int(number) if number else floor
+    described[room] = floor
+if described != floor_of:
+    trouble.append("docs/rooms.md has other rooms than tests/rooms/floors.txt: "
+                   f"{sorted(set(described.items()) ^ set(floor_of.items()))}")
 
 includes = {}
 for folder in ("include/pcor", "src"):
