@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <pcor/physics/air_data.hpp>
+#include <pcor/physics/geodesy.hpp>
 #include <pcor/physics/moist_air.hpp>
 #include "diagnose/manoeuvres/aircraft.hpp"
 #include "diagnose/manoeuvres/atmosphere.hpp"
@@ -18,6 +19,7 @@ namespace pcor::internal {
 namespace {
 
 using namespace manoeuvres;
+using constants::standard_gravity;
 
 /// Makes the manoeuvres, one after another. The numbers are those of NCAR's research flights (QAtools;
 /// Cooper's study of manoeuvres).
@@ -102,7 +104,7 @@ class Programme {
 
   /// By how much the airspeed swings at 4 m/s2, m/s: 40 m of height at constant energy.
   static double pitch_swing(double airspeed) {
-    return gravity * 4.0 / (pitch_frequency * pitch_frequency) / airspeed;
+    return standard_gravity * 4.0 / (pitch_frequency * pitch_frequency) / airspeed;
   }
 
   // The height swings about that of the level, and the power levers are not moved: gz + v^2/2 stays.
@@ -114,7 +116,7 @@ class Programme {
         oscillation(-amplitude / (pitch_frequency * pitch_frequency), pitch_period, cycles, pitch_period);
     path.height = [rise, height = height_of(level)](double t) { return height + rise(t); };
     path.airspeed = [rise, airspeed](double t) {
-      return std::sqrt(airspeed * airspeed - 2.0 * gravity * rise(t));
+      return std::sqrt(airspeed * airspeed - 2.0 * standard_gravity * rise(t));
     };
     path.regimes.push_back({Regime::pitch_manoeuvre, 0.0, path.duration});
     make(fmt::format("pitch manoeuvre at {:.0f} m/s", airspeed),
@@ -130,7 +132,7 @@ class Programme {
     const double q = dynamic_pressure_from_airspeed(air.pressure, airspeed, air.temperature, gas);
     const double mach = mach_number(air.pressure, q, gas);
     const double most = 1.1 * envelope_.greatest_lift_number / lift_number(1.0, mach, q) - 1.0;
-    return std::clamp(gravity * most, 1.0, 4.0);
+    return std::clamp(standard_gravity * most, 1.0, 4.0);
   }
 
   void yaw_manoeuvre(const Level& level) {
@@ -202,7 +204,7 @@ class Programme {
     const Level& level = envelope_.middle;
     const double airspeed = level.usual;
     const double round =
-        6.283185307179586 * airspeed / (gravity * std::tan(constants::radians_per_degree * roll));
+        6.283185307179586 * airspeed / (standard_gravity * std::tan(constants::radians_per_degree * roll));
     const double second = pause + round + rolling;
     Path path = level_path(level, airspeed, 2.0 * (round + rolling) + pause);
     path.roll = through({{0.0, 0.0},

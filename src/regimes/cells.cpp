@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include <pcor/physics/geodesy.hpp>
 #include <pcor/words/error.hpp>
 
 #include "regimes/series.hpp"
@@ -17,7 +18,6 @@ constexpr double longest_kept_gap = 300.0;        // s
 constexpr std::size_t longest_interpolation = 5;  // cells
 constexpr double greatest_vertical_speed = 40.0;  // m/s; more is a jump of a height, not a climb
 constexpr double rounding = 1e-6;                 // s, of a time since 1970 in double precision
-constexpr double gravity = 9.80665;               // m/s2
 constexpr double radians = 3.14159265358979323846 / 180.0;
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
@@ -115,7 +115,7 @@ std::vector<double> coordinated_roll(const Cells& cells) {
   constexpr std::size_t smoothing = 3;
   std::vector<double> roll = running_mean(rate_of_change(cells.heading, cells.begin), smoothing);
   for (std::size_t i = 0; i < roll.size(); ++i) {
-    roll[i] = std::atan(roll[i] * radians * cells.airspeed[i] / gravity) / radians;
+    roll[i] = std::atan(roll[i] * radians * cells.airspeed[i] / constants::standard_gravity) / radians;
   }
   return roll;
 }

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include <pcor/physics/geodesy.hpp>
+
 namespace pcor::internal::simulate {
 namespace {
-
-constexpr double standard_gravity = 9.80665;  // m/s2
 
 // Recovery factors: NCAR nimbus; Cooper, Recovery factor study, NCAR, 2014 (unheated Rosemount, heated
 // HARCO). Wing area, Mach limit, cabin: manufacturer's data. Radomes: NCAR processing algorithms sec. 4.5.
@@ -93,7 +93,8 @@ const AircraftFacts& facts_of(Scenario::Aircraft aircraft) {
 
 double lift_attack(const AircraftFacts& aircraft, double weight, double load_factor, double dynamic_pressure,
                    double mach, double flaps) {
-  const double lift = weight * load_factor * standard_gravity / (dynamic_pressure * aircraft.wing_area);
+  const double lift =
+      weight * load_factor * constants::standard_gravity / (dynamic_pressure * aircraft.wing_area);
   const double zero_lift = aircraft.zero_lift - 0.01 * flaps * aircraft.flap_lift;
   return zero_lift + lift * std::sqrt(1.0 - mach * mach) / aircraft.lift_slope;
 }

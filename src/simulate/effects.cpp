@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <pcor/physics/constants.hpp>
+#include <pcor/physics/geodesy.hpp>
 
 #include "simulate/air.hpp"
 #include "simulate/aircraft.hpp"
@@ -14,7 +14,6 @@ using Effect = Scenario::Effect;
 using Law = Scenario::Law;
 
 constexpr double radians = constants::radians_per_degree;
-constexpr double standard_gravity = 9.80665;  // m/s2
 constexpr double seconds_per_hour = 3600.0;
 
 double number(const Effect& effect, const std::string& key) { return effect.parameters.at(key); }
@@ -112,7 +111,7 @@ void line_head(const Effect& effect, const Truth& truth, SystemFaults* system, F
   const double behind = number(effect, "behind");
   add(system->static_head, truth, [&](std::size_t i) {
     const Air line{truth.pressure[i], truth.bay_temperature[i], 0.0};
-    const double normal = truth.normal_acceleration[i] + standard_gravity;
+    const double normal = truth.normal_acceleration[i] + constants::standard_gravity;
     return density(line) * (normal * below + truth.forward_acceleration[i] * behind) / pascal_per_hpa;
   });
 }
@@ -120,7 +119,7 @@ void line_head(const Effect& effect, const Truth& truth, SystemFaults* system, F
 void load_factor(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
   const double per_g = number(effect, "per_g");
   add(system->static_defect, truth,
-      [&](std::size_t i) { return per_g * truth.normal_acceleration[i] / standard_gravity; });
+      [&](std::size_t i) { return per_g * truth.normal_acceleration[i] / constants::standard_gravity; });
 }
 
 void roll_static(const Effect& effect, const Truth& truth, SystemFaults* system, Faults&) {
@@ -165,7 +164,7 @@ void lams_azimuth(const Effect& effect, const Truth&, SystemFaults*, Faults& fau
 void lams_pod_flex(const Effect& effect, const Truth& truth, SystemFaults*, Faults& faults) {
   const double per_tonne = number(effect, "per_tonne");
   add(faults.lams_elevation, truth, [&](std::size_t i) {
-    const double load = 1.0 + truth.normal_acceleration[i] / standard_gravity;
+    const double load = 1.0 + truth.normal_acceleration[i] / constants::standard_gravity;
     return per_tonne * 1e-3 * (load * truth.weight[i] - truth.weight[0]);
   });
 }

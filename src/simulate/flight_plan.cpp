@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include <pcor/physics/geodesy.hpp>
+
 #include "simulate/pilot.hpp"
 
 namespace pcor::internal::simulate {
@@ -114,8 +116,7 @@ class Plan {
       Command command;
       command.vertical_acceleration = (vertical_speed(t + time_step) - vertical_speed(t)) / time_step;
       if (t < ramp) command.vertical_acceleration -= left_over / ramp;
-      constexpr double standard_gravity = 9.80665;  // m/s2
-      command.acceleration = -standard_gravity * pilot_.vertical_speed() / pilot_.speed();
+      command.acceleration = -constants::standard_gravity * pilot_.vertical_speed() / pilot_.speed();
       pilot_.step(command, leg);
     }
   }

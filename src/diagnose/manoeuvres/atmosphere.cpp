@@ -4,12 +4,13 @@
 #include <cmath>
 
 #include <pcor/physics/moist_air.hpp>
+#include <pcor/physics/standard_atmosphere.hpp>
 
 namespace pcor::internal::manoeuvres {
 namespace {
 
 /// m for a unit of ln p and a kelvin.
-constexpr double scale = constants::gas_constant_dry_air / gravity;
+constexpr double scale = constants::gas_constant_dry_air / constants::standard_gravity;
 
 std::vector<double> altitudes_of(const Flown& flown) {
   std::vector<double> altitudes = flown.gathered(
@@ -21,15 +22,12 @@ std::vector<double> altitudes_of(const Flown& flown) {
   return altitudes;
 }
 
-/// ISO 2533.
-double standard_height(double pressure) { return 44330.8 * (1.0 - std::pow(pressure / 1013.25, 0.190263)); }
-
 }  // namespace
 
 Atmosphere::Atmosphere(const Flown& flown)
-    : temperature_(flown.pressure, flown.temperature, 288.15),
+    : temperature_(flown.pressure, flown.temperature, standard_layers.front().temperature),
       humidity_(flown.pressure, flown.humidity, 0.0) {
-  double height = standard_height(temperature_.pressures().front());
+  double height = pressure_altitude(temperature_.pressures().front());
   for (const double pressure : temperature_.pressures()) {
     const double warmth = temperature_.at(pressure) * moist_air(humidity_.at(pressure)).gas_constant /
                           constants::gas_constant_dry_air;

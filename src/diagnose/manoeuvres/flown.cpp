@@ -8,6 +8,7 @@
 #include <pcor/physics/humidity.hpp>
 #include <pcor/physics/moist_air.hpp>
 #include <pcor/physics/recovery_factor.hpp>
+#include <pcor/physics/standard_atmosphere.hpp>
 #include "diagnose/manoeuvres/statistics.hpp"
 
 namespace pcor::internal::manoeuvres {
@@ -23,11 +24,6 @@ const std::vector<double>& series_of(const FlightSamples& flight, Quantity quant
   return nothing;
 }
 
-/// 6.5 K/km from 288.15 K, and 216.65 K above 226.32 hPa (ISO 2533).
-double standard_temperature(double pressure) {
-  return std::max(216.65, 288.15 * std::pow(pressure / 1013.25, 0.190263));
-}
-
 /// The load factor of every sample: from the accelerometer, whose median is that of level flight, else from
 /// vertical speed and roll.
 std::vector<double> load_of(const FlightSamples& flight) {
@@ -35,7 +31,8 @@ std::vector<double> load_of(const FlightSamples& flight) {
   const std::vector<double>& recorded = series_of(flight, Quantity::normal_acceleration);
   if (!recorded.empty()) {
     const double level = median(recorded);
-    for (std::size_t i = 0; i < load.size(); ++i) load[i] += (recorded[i] - level) / gravity;
+    for (std::size_t i = 0; i < load.size(); ++i)
+      load[i] += (recorded[i] - level) / constants::standard_gravity;
     return load;
   }
   const std::vector<double>& climb = flight.motion.vertical_speed;
@@ -44,7 +41,9 @@ std::vector<double> load_of(const FlightSamples& flight) {
     load.front() = load.back() = nan;
     for (std::size_t i = 1; i + 1 < load.size(); ++i) {
       const double across = flight.time[i + 1] - flight.time[i - 1];
-      load[i] = across <= 2.5 * flight.step ? 1.0 + (climb[i + 1] - climb[i - 1]) / (across * gravity) : nan;
+      load[i] = across <= 2.5 * flight.step
+                    ? 1.0 + (climb[i + 1] - climb[i - 1]) / (across * constants::standard_gravity)
+                    : nan;
     }
   }
   if (!roll.empty()) {
@@ -97,7 +96,7 @@ void Flown::add(const FlightSamples& flight, Flaps which) {
     const double m = mach_number(p, q, air);
     double t = recorded(Quantity::ambient_temperature, i);
     if (std::isnan(t)) t = ambient_temperature(recorded(Quantity::recovery_temperature, i), m, 1.0, air);
-    if (std::isnan(t)) t = standard_temperature(p);
+    if (std::isnan(t)) t = standard_temperature(pressure_altitude(p));
     const double v = true_airspeed(m, t, air);
     if (!(v >= least_airspeed)) continue;
     places_.push_back({&flight, i});

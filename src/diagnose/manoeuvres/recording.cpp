@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <pcor/physics/air_data.hpp>
+#include <pcor/physics/geodesy.hpp>
 #include <pcor/physics/lams.hpp>
 #include <pcor/physics/moist_air.hpp>
 #include <pcor/physics/recovery_factor.hpp>
@@ -46,6 +47,7 @@ struct Instant {
 namespace {
 
 constexpr double radians = constants::radians_per_degree;
+using constants::standard_gravity;
 using Series = std::vector<double>;
 
 double rate_of(const Course& course, double t) {
@@ -215,18 +217,19 @@ std::vector<Instant> Recorder::fly(const Path& path) const {
     now.recovery_temperature =
         recovery_temperature(here.temperature, now.mach, aircraft_.recovery_factor, air);
 
-    const double load = (1.0 + second_rate_of(path.height, t) / gravity) / std::cos(radians * now.roll);
+    const double load =
+        (1.0 + second_rate_of(path.height, t) / standard_gravity) / std::cos(radians * now.roll);
     const double climb = std::asin(std::clamp(now.vertical_speed / now.airspeed, -1.0, 1.0));
     now.attack =
         aircraft_.attack.at(lift_number(load, now.mach, now.dynamic)) + aircraft_.flaps_attack * now.flaps;
     now.pitch = now.attack * std::cos(radians * now.roll) + climb / radians;
-    heading += step_ * gravity * std::tan(radians * now.roll) / now.airspeed / radians;
+    heading += step_ * standard_gravity * std::tan(radians * now.roll) / now.airspeed / radians;
     now.heading = std::fmod(heading - now.sideslip + 720.0, 360.0);
-    now.normal_acceleration = aircraft_.level_acceleration + (load - 1.0) * gravity;
+    now.normal_acceleration = aircraft_.level_acceleration + (load - 1.0) * standard_gravity;
     // The part of gravity and lift that points along the axis of the fuselage is felt too.
-    const double along = rate_of(path.airspeed, t) + gravity * std::sin(climb);
+    const double along = rate_of(path.airspeed, t) + standard_gravity * std::sin(climb);
     now.longitudinal_acceleration =
-        along * std::cos(radians * now.attack) + load * gravity * std::sin(radians * now.attack);
+        along * std::cos(radians * now.attack) + load * standard_gravity * std::sin(radians * now.attack);
 
     now.radome_dynamic = aircraft_.radome_gain * now.dynamic;
     now.attack_differential = aircraft_.attack_ratio.at(now.attack) * now.radome_dynamic;

@@ -8,6 +8,8 @@
 #include <map>
 #include <utility>
 
+#include <pcor/physics/standard_atmosphere.hpp>
+
 namespace pcor::internal::manoeuvres {
 namespace {
 
@@ -101,7 +103,7 @@ Profile::Profile(const std::vector<double>& pressure, const std::vector<double>&
     values_.push_back(median(std::move(bin.values)));
   }
   if (pressures_.empty()) {
-    pressures_.push_back(pressure.empty() ? 1013.25 : median(pressure));
+    pressures_.push_back(pressure.empty() ? standard_layers.front().pressure : median(pressure));
     values_.push_back(otherwise);
   }
 }

@@ -5,9 +5,6 @@
 
 namespace pcor::internal::manoeuvres {
 
-/// Standard gravity, m/s2.
-inline constexpr double gravity = 9.80665;
-
 /// The value below which the part `share` of the finite values lies; NaN where there is none.
 double quantile(std::vector<double> values, double share);
 
