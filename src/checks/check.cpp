@@ -69,7 +69,10 @@ struct Systems {
 Systems systems_of(const Flight& flight, const PressurePair& of_model) {
   Systems systems;
   std::vector<PressurePair> pairs = measured_pairs(flight);
-  const bool corrected = of_model.static_pressure == "PSXC" || of_model.static_pressure == "PSX";
+  const std::vector<PressurePair>& processed = processed_pressures();
+  const bool corrected = std::any_of(processed.begin(), processed.end(), [&](const PressurePair& pair) {
+    return pair.static_pressure == of_model.static_pressure;
+  });
   if (!corrected) {
     systems.own = of_model;
   } else if (!pairs.empty()) {

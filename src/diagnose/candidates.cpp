@@ -9,7 +9,7 @@
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/realtime/chain.hpp>
 #include <pcor/words/error.hpp>
-#include "roles/usual_variables.hpp"
+#include "roles/recorded_series.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -22,14 +22,7 @@ bool has_effect(const ModelFile& model, std::string_view id) {
 /// Whether every flight records `variable` in a unit that fits the role.
 bool is_recorded(const std::vector<const Flight*>& flights, const std::string& variable, Quantity role) {
   return std::all_of(flights.begin(), flights.end(), [&](const Flight* flight) {
-    if (!flight->has(variable) || !flight->variable(variable).is_series) return false;
-    try {
-      flight->conversion(variable, std::string(facts_of(role).unit));
-      flight->require_values(variable);
-    } catch (const Error&) {
-      return false;
-    }
-    return true;
+    return has_values(*flight, variable, std::string(facts_of(role).unit));
   });
 }
 

@@ -88,6 +88,7 @@ class Processing {
   void choose_outputs();
   void define(FlightWriter& writer);
   void copy_inputs(FlightWriter& writer, const FileDescription& description);
+  std::string first_recorded(const std::vector<std::string>& names) const;
   FileDescription describe() const;
   void process_block(RecordBlock block, std::vector<double>& times);
   void note_sample(std::size_t place);
@@ -294,20 +295,26 @@ std::string Processing::temperature_calibration() {
   return fmt::format("{}", fmt::join(coefficients, " "));
 }
 
+/// The first of the variables that the flight has as a series; empty where it has none.
+std::string Processing::first_recorded(const std::vector<std::string>& names) const {
+  const auto found = std::find_if(names.begin(), names.end(), [this](const std::string& name) {
+    return !name.empty() && flight_.has(name) && flight_.variable(name).is_series;
+  });
+  return found == names.end() ? std::string() : *found;
+}
+
 FileDescription Processing::describe() const {
   FileDescription description;
   description.history = options_.history;
-  const auto first_of = [this](std::initializer_list<std::string> names) {
-    for (const std::string& name : names) {
-      if (!name.empty() && flight_.has(name) && flight_.variable(name).is_series) return name;
-    }
-    return std::string();
+  const auto coordinate = [this](const char* attribute, const std::string& given,
+                                 std::vector<std::string> usual) {
+    usual.insert(usual.begin(), {flight_.attribute(attribute), given});
+    return first_recorded(usual);
   };
-  description.latitude = first_of(
-      {flight_.attribute("latitude_coordinate"), variable_of(Quantity::latitude), "LATC", "GGLAT", "LAT"});
-  description.longitude = first_of({flight_.attribute("longitude_coordinate"), "LONC", "GGLON", "LON"});
-  description.altitude = first_of({flight_.attribute("zaxis_coordinate"), variable_of(Quantity::altitude),
-                                   "ALTX", "GGALTC", "GGALT", "ALT"});
+  description.latitude =
+      coordinate("latitude_coordinate", variable_of(Quantity::latitude), usual_variables(Quantity::latitude));
+  description.longitude = coordinate("longitude_coordinate", "", usual_series("longitude").names);
+  description.altitude = coordinate("zaxis_coordinate", variable_of(Quantity::altitude), usual_heights());
   description.attributes = {
       {"pcor_model", file_.model.name},
       {"pcor_model_source", file_.law.source},
@@ -335,20 +342,13 @@ void Processing::copy_inputs(FlightWriter& writer, const FileDescription& descri
     copy(name);
   for (const Input& input : inputs_) copy(input.variable);
   if (!options_.hydrostatic) return;
-  const auto copy_first = [&](const std::vector<std::string>& names) {
-    const auto found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
-      return flight_.has(name) && flight_.variable(name).is_series;
-    });
-    if (found != names.end()) copy(*found);
-  };
   for (const Quantity role : flown_quantities) {
-    std::vector<std::string> names = usual_variables(role);
-    if (const std::string given = variable_of(role); !given.empty()) names.insert(names.begin(), given);
-    copy_first(names);
+    std::vector<std::string> names = role == Quantity::altitude ? usual_heights() : usual_variables(role);
+    names.insert(names.begin(), variable_of(role));
+    copy(first_recorded(names));
   }
-  const GroundVelocityVariables velocity;
-  copy_first(velocity.east);
-  copy_first(velocity.north);
+  copy(first_recorded(usual_series("ground_speed_east").names));
+  copy(first_recorded(usual_series("ground_speed_north").names));
 }
 
 void Processing::define(FlightWriter& writer) {

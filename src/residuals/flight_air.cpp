@@ -12,64 +12,12 @@
 #include <pcor/physics/geodesy.hpp>
 #include <pcor/physics/moist_air.hpp>
 #include <pcor/physics/standard_atmosphere.hpp>
-#include <pcor/words/error.hpp>
-#include "roles/usual_variables.hpp"
+#include "roles/recorded_series.hpp"
 
 namespace pcor::internal {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-struct Series {
-  std::string variable{};
-  std::vector<double> values{};
-  std::string without_unit{};  ///< the first that was passed over because the file gives it no unit
-};
-
-/// The unit that the model states for a variable: it goes before the file's own.
-struct StatedUnit {
-  std::string variable{};
-  std::string unit{};
-};
-
-/// The first of the variables that is there, has values and a unit that fits.
-Series read_first(const Flight& flight, const std::vector<std::string>& names, const std::string& unit,
-                  const StatedUnit& stated = {}) {
-  Series series;
-  for (const std::string& name : names) {
-    if (!flight.has(name) || !flight.variable(name).is_series) continue;
-    try {
-      const bool is_stated = name == stated.variable && !stated.unit.empty();
-      const std::string& own = is_stated ? stated.unit : flight.variable(name).units;
-      if (own.empty() && series.without_unit.empty()) series.without_unit = name;
-      const UnitConversion conversion =
-          UnitConversion::between(own, unit, {name, flight.path().string(), ""});
-      std::vector<double> values(flight.records());
-      for (const RecordBlock block : blocks_of(flight.records()))
-        flight.read_at_rate(1, name, block, conversion, values.data() + block.first);
-      if (std::any_of(values.begin(), values.end(), [](double x) { return !std::isnan(x); })) {
-        series.variable = name;
-        series.values = std::move(values);
-        return series;
-      }
-    } catch (const Error&) {
-      continue;  // a variable of that name with another unit is not the one that is meant
-    }
-  }
-  return series;
-}
-
-/// The series of a role: the model's variable in the unit that the model states, else the usual ones.
-Series read_role(const Flight& flight, const ModelFile& model, Quantity role,
-                 std::vector<std::string> usual) {
-  StatedUnit stated;
-  if (const auto given = model.variables.find(role); given != model.variables.end()) {
-    usual.insert(usual.begin(), given->second);
-    stated.variable = given->second;
-  }
-  if (const auto unit = model.units.find(role); unit != model.units.end()) stated.unit = unit->second;
-  return read_first(flight, usual, std::string(facts_of(role).unit), stated);
-}
 
 std::vector<bool> find_flying(const FlightSamples& samples, const MaskOptions& options) {
   const std::vector<RegimeSet> regimes = regimes_of_samples(samples.time, samples.intervals);
@@ -135,10 +83,10 @@ void run_chain(const FlightSamples& samples, const Model& model, FlightAir& air)
 }
 
 void find_heights(const Flight& flight, const ModelFile& model, FlightAir& air) {
-  Series height = read_role(flight, model, Quantity::altitude, {"GGALT", "GGALTC", "ALTV"});
+  RecordedSeries height = read_role(flight, model, Quantity::altitude);
   air.height_variable = height.values.empty() ? height.without_unit : height.variable;
   air.height = std::move(height.values);
-  air.latitude = read_role(flight, model, Quantity::latitude, usual_variables(Quantity::latitude)).values;
+  air.latitude = read_role(flight, model, Quantity::latitude).values;
   air.pressure_altitude.resize(air.size());
   for (std::size_t i = 0; i < air.size(); ++i) air.pressure_altitude[i] = pressure_altitude(air.pressure[i]);
   if (air.height.empty() || air.latitude.empty()) return;
@@ -161,9 +109,8 @@ void find_ground_velocity(const Flight& flight, FlightAir& air) {
       air.north_speed[i] = motion.ground_speed[i] * std::cos(track);
     }
   } else {
-    const GroundVelocityVariables usual;
-    air.east_speed = read_first(flight, usual.east, "m/s").values;
-    air.north_speed = read_first(flight, usual.north, "m/s").values;
+    air.east_speed = read_usual(flight, usual_series("ground_speed_east")).values;
+    air.north_speed = read_usual(flight, usual_series("ground_speed_north")).values;
     if (air.north_speed.empty()) air.east_speed.clear();
     if (air.east_speed.empty()) air.north_speed.clear();
   }

@@ -11,9 +11,11 @@
 #include <utility>
 
 #include <pcor/batch/batch.hpp>
+#include <pcor/physics/standard_atmosphere.hpp>
 #include <pcor/words/error.hpp>
 #include <pcor/words/suggest.hpp>
 #include "roles/model_inputs.hpp"
+#include "roles/recorded_series.hpp"
 
 namespace pcor {
 
@@ -40,14 +42,6 @@ using Columns = std::vector<std::pair<Quantity, std::vector<double>>>;
 constexpr int jet_width = 4;
 using Jet = ceres::Jet<double, jet_width>;
 
-std::vector<double> read_column(const Flight& flight, const std::string& variable,
-                                const UnitConversion& conversion) {
-  std::vector<double> values(flight.records());
-  for (const RecordBlock block : blocks_of(flight.records()))
-    flight.read_at_rate(1, variable, block, conversion, values.data() + block.first);
-  return values;
-}
-
 /// Centred differences in time; NaN at the ends and beside gaps.
 std::vector<double> rate_of(const std::vector<double>& values, const std::vector<double>& time, double step) {
   std::vector<double> rate(values.size(), nan);
@@ -72,7 +66,7 @@ ModelSamples read_model_samples(const Flight& flight, const ModelFile& file, boo
   const Chain chain = chain_of(file.model, roles);
   ModelSamples samples;
   for (const ModelInput& input : model_inputs(flight, file, chain, roles, notes)) {
-    samples.columns.emplace_back(input.quantity, read_column(flight, input.variable, input.conversion));
+    samples.columns.emplace_back(input.quantity, read_values(flight, input.variable, input.conversion));
     if (is_role(input.quantity)) samples.roles.push_back(input.quantity);
   }
   const auto add = [&samples](Quantity quantity, std::vector<double> values) {
@@ -90,31 +84,6 @@ ModelSamples read_model_samples(const Flight& flight, const ModelFile& file, boo
   return samples;
 }
 
-/// A series of the flight for regimes and masks: the variable of the model's role, in the unit that the model
-/// states, else the first that is there of those which NCAR's files have. Empty where there is none.
-std::vector<double> read_motion_column(const Flight& flight, const ModelFile& file, Quantity role,
-                                       std::initializer_list<const char*> usual) {
-  std::vector<std::string> names;
-  const auto given = file.variables.find(role);
-  const auto stated = file.units.find(role);
-  if (given != file.variables.end()) names.push_back(given->second);
-  names.insert(names.end(), usual.begin(), usual.end());
-  for (const std::string& name : names) {
-    if (!flight.has(name) || !flight.variable(name).is_series) continue;
-    try {
-      const bool is_stated = stated != file.units.end() && name == given->second;
-      const std::string& unit = is_stated ? stated->second : flight.variable(name).units;
-      const UnitConversion conversion =
-          UnitConversion::between(unit, std::string(facts_of(role).unit), {name, flight.path().string(), ""});
-      std::vector<double> values = read_column(flight, name, conversion);
-      if (std::any_of(values.begin(), values.end(), [](double x) { return !std::isnan(x); })) return values;
-    } catch (const Error&) {
-      continue;  // a variable of that name with another unit is not the one that is meant
-    }
-  }
-  return {};
-}
-
 /// True airspeed from the pressures as measured, m/s: within 2 %, for regimes and masks.
 std::vector<double> measured_airspeed(const ModelSamples& samples) {
   const std::vector<double>& p = *samples.find(Quantity::static_pressure);
@@ -129,30 +98,28 @@ std::vector<double> measured_airspeed(const ModelSamples& samples) {
     if (ambient != nullptr) temperature = (*ambient)[i];
     if (std::isnan(temperature) && recovery != nullptr)
       temperature = (*recovery)[i] / (1.0 + 0.2 * mach * mach);
-    // Without a thermometer, 6.5 K/km from 288.15 K, and 216.65 K above 226.32 hPa (ISO 2533).
-    if (std::isnan(temperature)) temperature = std::max(216.65, 288.15 * std::pow(p[i] / 1013.25, 0.190263));
+    if (std::isnan(temperature)) temperature = standard_temperature(pressure_altitude(p[i]));
     airspeed[i] = true_airspeed(mach, temperature, dry_air<double>());
   }
   return airspeed;
 }
 
-FlightMotion read_motion(const Flight& flight, const ModelFile& file, const FlightSamples& samples) {
-  const auto read = [&](Quantity role, std::initializer_list<const char*> usual) {
-    return read_motion_column(flight, file, role, usual);
-  };
+FlightMotion read_motion(const Flight& flight, const ModelFile& model, const FlightSamples& samples) {
+  const auto read = [&](Quantity role) { return read_role(flight, model, role).values; };
   FlightMotion motion;
   motion.time = samples.time;
   motion.airspeed = measured_airspeed(samples.model);
-  motion.altitude = read(Quantity::altitude, {"GGALT", "GGALTC", "ALTX", "ALT", "PALT"});
-  motion.vertical_speed = read(Quantity::vertical_speed, {"GGVSPD", "VSPD"});
-  motion.roll = read(Quantity::roll, {"ROLL"});
-  motion.pitch = read(Quantity::pitch, {"PITCH"});
-  motion.heading = read(Quantity::heading, {"THDG"});
-  motion.attack = read(Quantity::attack, {"ATTACK", "AKRD"});
-  motion.sideslip = read(Quantity::sideslip, {"SSLIP", "SSRD"});
-  motion.ground_speed = read(Quantity::ground_speed, {"GGSPD", "GSF"});
-  motion.ground_track = read(Quantity::ground_track, {"GGTRK", "TKAT"});
-  motion.liquid_water = read(Quantity::liquid_water, {"PLWCC", "PLWCD"});
+  motion.altitude = read(Quantity::altitude);
+  if (motion.altitude.empty()) motion.altitude = read_usual(flight, usual_series("other_altitude")).values;
+  motion.vertical_speed = read(Quantity::vertical_speed);
+  motion.roll = read(Quantity::roll);
+  motion.pitch = read(Quantity::pitch);
+  motion.heading = read(Quantity::heading);
+  motion.attack = read(Quantity::attack);
+  motion.sideslip = read(Quantity::sideslip);
+  motion.ground_speed = read(Quantity::ground_speed);
+  motion.ground_track = read(Quantity::ground_track);
+  motion.liquid_water = read(Quantity::liquid_water);
   return motion;
 }
 
@@ -257,17 +224,24 @@ FlightSamples read_samples(const Flight& flight, const ModelFile& model, const R
     }
     const UnitConversion conversion = flight.conversion(reference.variable, "hPa");
     flight.require_values(reference.variable);
-    samples.pressure = read_column(flight, reference.variable, conversion);
+    samples.pressure = read_values(flight, reference.variable, conversion);
   }
   samples.motion = read_motion(flight, model, samples);
-  samples.flaps = read_motion_column(flight, model, Quantity::flaps, {"FLAPS"});
+  samples.flaps = read_role(flight, model, Quantity::flaps).values;
   if (samples.flaps.empty()) {
     samples.notes.emplace_back(
         "the flight records no flaps, so an approach with flaps and gear out takes part; --min-airspeed or "
         "--intervals leaves it out");
   }
-  const bool jet = samples.aircraft.find("677") != std::string::npos;
-  samples.intervals = find_regimes(samples.motion, jet ? RegimeCriteria::gv() : RegimeCriteria::c130());
+  const std::optional<RegimeCriteria> criteria = RegimeCriteria::of(samples.aircraft);
+  if (!criteria) {
+    samples.notes.push_back(
+        fmt::format("the aircraft {} is not known here, so its regimes are found by the criteria of the "
+                    "C-130, whose speed "
+                    "runs are slower than those of a jet; --intervals adds regimes and takes them away",
+                    samples.aircraft.empty() ? "of this flight" : "'" + samples.aircraft + "'"));
+  }
+  samples.intervals = find_regimes(samples.motion, criteria.value_or(RegimeCriteria::c130()));
   if (options.intervals && options.intervals->is_for(flight.path())) {
     samples.intervals =
         apply(*options.intervals, std::move(samples.intervals), samples.time.front(), samples.time.back());

@@ -319,6 +319,13 @@ TEST(Regimes, HaveNames) {
   EXPECT_EQ(regime_named("loop"), Regime::count);
 }
 
+TEST(Regimes, HaveCriteriaByTheRegistrationOfTheAircraft) {
+  EXPECT_GT(pcor::RegimeCriteria::of("N677F")->acceleration,
+            pcor::RegimeCriteria::of("N130AR")->acceleration);
+  for (const char* unknown : {"", "N677", "G-LUXE", "Boeing 677"})
+    EXPECT_FALSE(pcor::RegimeCriteria::of(unknown)) << unknown;
+}
+
 TEST(Regimes, AreFoundInAFlightWithAllOfThem) {
   const Story story = tell();
   expect_told(story, find_regimes(story.motion));

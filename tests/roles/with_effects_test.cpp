@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "roles/usual_variables.hpp"
 #include "support/made_samples.hpp"
 
 using namespace pcor::internal;
@@ -79,15 +78,6 @@ std::string message_of(const std::vector<ModelEffect>& effects,
 }
 
 }  // namespace
-
-TEST(UsualVariables, BelongToRolesThatAModelNeedNotName) {
-  EXPECT_THAT(pcor::internal::usual_variables(Quantity::attack), ElementsAre("ATTACK", "AKRD"));
-  EXPECT_THAT(pcor::internal::usual_variables(Quantity::cabin_pressure), ElementsAre("PCAB"));
-  for (const Quantity role : {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::lams_airspeed,
-                              Quantity::mach, Quantity::vapor_pressure, Quantity::dew_point,
-                              Quantity::recovery_temperature, Quantity::corrected_mach})
-    EXPECT_TRUE(pcor::internal::usual_variables(role).empty()) << pcor::facts_of(role).name;
-}
 
 TEST(WithEffects, StartsNeutral) {
   const ModelFile file = with_effects(model(), {of_catalogue("static-qp"), of_catalogue("static-lag")});

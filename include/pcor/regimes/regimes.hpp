@@ -167,6 +167,9 @@ struct RegimeCriteria {
 
   /// Those of the NSF/NCAR GV, which accelerates faster (0.3 m/s2, QAtools).
   static RegimeCriteria gv();
+
+  /// Those of the aircraft with that registration, e.g. N677F; nothing where the aircraft is not known.
+  static std::optional<RegimeCriteria> of(std::string_view registration);
 };
 
 /// The regimes of a flight, by begin and then in the order of `Regime`.

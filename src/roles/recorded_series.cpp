@@ -1,0 +1,77 @@
+#include "roles/recorded_series.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <pcor/words/error.hpp>
+
+namespace pcor::internal {
+namespace {
+
+/// The values of a variable, whose unit is `own`; none where it is absent, empty or of another kind.
+std::vector<double> values_if_fit(const Flight& flight, const std::string& variable, const std::string& own,
+                                  const std::string& unit) {
+  try {
+    std::vector<double> values = read_values(
+        flight, variable, UnitConversion::between(own, unit, {variable, flight.path().string(), ""}));
+    const bool any = std::any_of(values.begin(), values.end(), [](double x) { return !std::isnan(x); });
+    return any ? std::move(values) : std::vector<double>{};
+  } catch (const Error&) {
+    return {};  // a variable of that name with another unit is not the one that is meant
+  }
+}
+
+/// Makes `variable` the series if it fits and none does so far. @param stated the unit that the model states
+void try_variable(const Flight& flight, const std::string& variable, const std::string& stated,
+                  const std::string& unit, RecordedSeries& series) {
+  if (!series.values.empty() || !flight.has(variable) || !flight.variable(variable).is_series) return;
+  const std::string own = stated.empty() ? flight.variable(variable).units : stated;
+  if (own.empty() && series.without_unit.empty()) series.without_unit = variable;
+  series.values = values_if_fit(flight, variable, own, unit);
+  if (!series.values.empty()) series.variable = variable;
+}
+
+}  // namespace
+
+std::vector<double> read_values(const Flight& flight, const std::string& variable,
+                                const UnitConversion& conversion) {
+  std::vector<double> values(flight.records());
+  for (const RecordBlock block : blocks_of(flight.records()))
+    flight.read_at_rate(1, variable, block, conversion, values.data() + block.first);
+  return values;
+}
+
+RecordedSeries read_usual(const Flight& flight, const UsualVariables& usual) {
+  RecordedSeries series;
+  for (const std::string& name : usual.names)
+    try_variable(flight, name, "", std::string(usual.series.unit), series);
+  return series;
+}
+
+RecordedSeries read_role(const Flight& flight, const ModelFile& model, Quantity role) {
+  const std::string unit(facts_of(role).unit);
+  RecordedSeries series;
+  const auto given = model.variables.find(role);
+  if (given != model.variables.end()) {
+    const auto stated = model.units.find(role);
+    try_variable(flight, given->second, stated == model.units.end() ? "" : stated->second, unit, series);
+  }
+  for (const std::string& name : usual_variables(role)) {
+    if (given == model.variables.end() || name != given->second) try_variable(flight, name, "", unit, series);
+  }
+  return series;
+}
+
+bool has_values(const Flight& flight, const std::string& variable, const std::string& unit) {
+  if (!flight.has(variable) || !flight.variable(variable).is_series) return false;
+  try {
+    flight.conversion(variable, unit);
+    flight.require_values(variable);
+  } catch (const Error&) {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace pcor::internal

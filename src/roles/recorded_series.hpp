@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <pcor/flight/flight.hpp>
+#include <pcor/laws/model_file.hpp>
+#include "roles/usual_variables.hpp"
+
+namespace pcor::internal {
+
+/// A series of a flight at one sample for each record; without values where the flight has none.
+struct RecordedSeries {
+  std::string variable{};
+  std::vector<double> values{};  ///< NaN where missing
+  std::string without_unit{};  ///< the first variable that was passed over because the file gives it no unit
+};
+
+/// All values of a variable, converted. @throws Error if it is absent.
+std::vector<double> read_values(const Flight& flight, const std::string& variable,
+                                const UnitConversion& conversion);
+
+/// The first of the usual variables that is there, has values and a unit that fits.
+RecordedSeries read_usual(const Flight& flight, const UsualVariables& usual);
+
+/// The series of a role: the model's variable in the unit that the model states, else the usual one.
+RecordedSeries read_role(const Flight& flight, const ModelFile& model, Quantity role);
+
+/// Whether a flight has values of a variable whose unit fits.
+bool has_values(const Flight& flight, const std::string& variable, const std::string& unit);
+
+}  // namespace pcor::internal
