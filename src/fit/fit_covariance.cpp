@@ -1,26 +1,19 @@
 #include "fit/fit_covariance.hpp"
 
-#include <ceres/loss_function.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include <pcor/numerics/noise.hpp>
+#include "fit/loss_function.hpp"
+#include "numerics/missing.hpp"
 
 namespace pcor::internal {
-namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
-
-FitCovariance fit_covariance(FitFlights& flights, const Eigen::VectorXd& parameters,
-                             const Eigen::VectorXd& offsets, const ceres::LossFunction* loss,
-                             const Eigen::MatrixXd& earlier, const std::vector<bool>& at_bound,
-                             const Eigen::VectorXd& prior_weight, double prior_strength) {
+FitCovariance fit_covariance(FitFlights& flights, const FitTask& task, const Solution& solution,
+                             const Eigen::MatrixXd& earlier) {
+  const std::unique_ptr<ceres::LossFunction> loss = loss_function(task.options.loss, solution.deviation);
   const FitSetup& setup = flights.setup();
   const auto earlier_count = static_cast<std::size_t>(earlier.rows());
   const Eigen::Index size = as_index(setup.wanted.size() + flights.offsets());
@@ -40,7 +33,7 @@ FitCovariance fit_covariance(FitFlights& flights, const Eigen::VectorXd& paramet
     double squares = 0.0;
     for (std::size_t first = 0; first < kept; first += samples_per_chunk) {
       const std::size_t count = std::min(samples_per_chunk, kept - first);
-      fit.evaluate(first, count, parameters, offsets, first_offset, rows);
+      fit.evaluate(first, count, solution.values, solution.offsets, first_offset, rows);
       for (std::size_t i = 0; i < count; ++i) {
         const std::size_t place = fit.kept()[first + i];
         const double weight = 1.0 / fit.noise(first + i);
@@ -55,8 +48,7 @@ FitCovariance fit_covariance(FitFlights& flights, const Eigen::VectorXd& paramet
     }
     slope /= static_cast<double>(kept);
     const Autoregression noise =
-        autoregression(influence, stretches_of(influence, samples.time, samples.step),
-                       std::numeric_limits<double>::infinity());
+        autoregression(influence, stretches_of(influence, samples.time, samples.step), infinity);
     memories[number] = noise.samples_per_independent(std::sqrt(squares / static_cast<double>(kept))) *
                        static_cast<double>(kept);
     const std::vector<double> present(length, 0.0);
@@ -85,20 +77,17 @@ FitCovariance fit_covariance(FitFlights& flights, const Eigen::VectorXd& paramet
   }
   FitCovariance found;
   found.samples_per_independent = std::max(memory / static_cast<double>(flights.samples()), 1.0);
-  for (Eigen::Index k = 0; k < prior_weight.size(); ++k) {
-    const double weight = prior_weight[k] * prior_weight[k];
-    curvature(k, k) += weight;
-    score(k, k) += weight * prior_strength * prior_strength;
-  }
-  // What is at a bound does not vary.
-  std::vector<Eigen::Index> varying;
-  for (Eigen::Index k = as_index(earlier_count); k < size; ++k) {
-    const auto own = static_cast<std::size_t>(k) - earlier_count;
-    if (own >= at_bound.size() || !at_bound[own]) varying.push_back(k);
-  }
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(size, size);
   const Eigen::Index early = as_index(earlier_count);
   const Eigen::Index wanted = as_index(setup.wanted.size());
+  const Eigen::VectorXd weights = prior_weights(task, solution, setup.wanted).cwiseAbs2();
+  curvature.diagonal().head(wanted) += weights;
+  score.diagonal().head(wanted) += solution.prior_strength * solution.prior_strength * weights;
+  // What is at a bound does not vary.
+  std::vector<Eigen::Index> varying;
+  for (Eigen::Index k = early; k < size; ++k) {
+    if (k >= wanted || !solution.at_bound[setup.wanted[static_cast<std::size_t>(k)]]) varying.push_back(k);
+  }
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(size, size);
   result.topLeftCorner(early, early) = earlier;
   if (varying.empty()) {
     found.matrix = result.topLeftCorner(wanted, wanted);

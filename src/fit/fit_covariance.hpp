@@ -1,9 +1,9 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <vector>
 
 #include "fit/fit_flights.hpp"
+#include "fit/fit_task.hpp"
 
 namespace pcor::internal {
 
@@ -16,15 +16,9 @@ struct FitCovariance {
 /// the covariance of the score times curvature^-1, where the score is the sum of derivative times influence
 /// (rho' r), and its noise an autoregression fitted to the influence of each flight.
 ///
-/// @param parameters all of them, and `offsets`, at the fit
 /// @param earlier of the first of the wanted parameters, which were found in stages before; what these err by
 ///        goes on to the others. Empty without stages.
-/// @param at_bound of the other wanted parameters: what is at a bound does not vary
-/// @param prior_weight of the wanted parameters, in the rows of the fit; empty without
-/// @param prior_strength the noise of these rows
-FitCovariance fit_covariance(FitFlights& flights, const Eigen::VectorXd& parameters,
-                             const Eigen::VectorXd& offsets, const ceres::LossFunction* loss,
-                             const Eigen::MatrixXd& earlier, const std::vector<bool>& at_bound,
-                             const Eigen::VectorXd& prior_weight, double prior_strength);
+FitCovariance fit_covariance(FitFlights& flights, const FitTask& task, const Solution& solution,
+                             const Eigen::MatrixXd& earlier);
 
 }  // namespace pcor::internal

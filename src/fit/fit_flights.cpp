@@ -7,14 +7,12 @@
 #include <cmath>
 #include <deque>
 #include <future>
-#include <limits>
 
 #include <pcor/words/error.hpp>
+#include "numerics/missing.hpp"
 
 namespace pcor::internal {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::size_t bytes_of(const FlightSamples& samples) {
   const std::size_t columns = samples.model.columns.size() + samples.reference.columns.size() + 12;
@@ -58,10 +56,6 @@ FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitSetu
 void FitFlight::keep_derivatives() {
   if (!linear_) return;
   kept_parameters_ = setup_->values;
-  if (kept_parameters_.size() == 0) {
-    const std::vector<double>& own = residuals_.parameters();
-    kept_parameters_ = Eigen::Map<const Eigen::VectorXd>(own.data(), as_index(own.size()));
-  }
   const std::size_t count = kept_.size();
   std::vector<double> residual(count);
   std::vector<double> derivatives(setup_->wanted.size() * count);
@@ -165,18 +159,14 @@ FitFlights::FitFlights(std::vector<FlightSource> sources, FitSetup setup)
       first_offset_(sources_.size(), 0) {
   std::vector<std::size_t> kept(sources_.size());
   std::vector<std::array<std::size_t, mask_count>> masks(sources_.size());
-  std::vector<Eigen::VectorXd> starts(sources_.size());
   std::vector<std::vector<bool>> linear(sources_.size());
   std::vector<std::size_t> offsets(sources_.size());
   visit([&](std::size_t number, std::size_t, FitFlight& fit) {
     kept[number] = fit.kept().size();
     masks[number] = fit.residuals().mask_counts();
     offsets[number] = fit.offsets();
-    const std::vector<double>& parameters = fit.residuals().parameters();
     linear[number] = fit.residuals().is_linear();
-    starts[number] = Eigen::Map<const Eigen::VectorXd>(parameters.data(), as_index(parameters.size()));
   });
-  start_ = starts.front();
   linear_ = linear.front();
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     samples_ += kept[i];

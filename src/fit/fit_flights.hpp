@@ -39,7 +39,7 @@ struct FitSetup {
   std::vector<Regime> regimes{};      ///< only samples of these take part, where there are any
   bool with_offsets = false;          ///< every interval of these regimes has its own offset of delta-p/p
   std::vector<std::size_t> wanted{};  ///< the parameters that are fitted
-  Eigen::VectorXd values{};  ///< of all parameters, for those that are not; empty: those of the files
+  Eigen::VectorXd values{};           ///< of all parameters
   std::size_t threads = 1;
   std::size_t memory = 0;
 };
@@ -121,9 +121,13 @@ class FitFlights {
 
   std::size_t count() const { return sources_.size(); }
 
-  /// The parameters of the models' files.
-  const Eigen::VectorXd& start() const { return start_; }
-  /// For each of them whether the residual is linear in it.
+  /// What a flight is called.
+  std::string name(std::size_t number) const {
+    const FlightSource& source = sources_[number];
+    return source.samples ? source.samples->name : source.path.string();
+  }
+
+  /// For each of the parameters whether the residual is linear in it.
   const std::vector<bool>& is_linear() const { return linear_; }
   std::size_t samples() const { return samples_; }
   std::size_t offsets() const { return offsets_; }
@@ -155,7 +159,6 @@ class FitFlights {
   std::vector<std::size_t> first_offset_;
   std::mutex counting_;
   std::size_t cached_bytes_ = 0;
-  Eigen::VectorXd start_;
   std::vector<bool> linear_;
   std::size_t samples_ = 0;
   std::size_t offsets_ = 0;

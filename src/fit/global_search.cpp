@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <nlopt.hpp>
 
 #include <pcor/words/error.hpp>
+#include "numerics/missing.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -17,11 +17,10 @@ constexpr int trials_per_dimension = 500;
 /// The least squares of a trial: searched parameters as given, the linear ones solved for.
 class Trial {
  public:
-  Trial(FitFlights& flights, const FitSetup& setup, const Eigen::VectorXd& parameters,
-        const std::vector<bool>& linear, const std::function<void()>& tell)
-      : flights_(flights), setup_(setup), parameters_(parameters), tell_(tell) {
-    for (std::size_t k = 0; k < setup.wanted.size(); ++k) {
-      (linear[setup.wanted[k]] ? linear_ : searched_).push_back(as_index(k));
+  Trial(FitFlights& flights, const Eigen::VectorXd& values, const std::function<void()>& tell)
+      : flights_(flights), setup_(flights.setup()), parameters_(values), tell_(tell) {
+    for (std::size_t k = 0; k < setup_.wanted.size(); ++k) {
+      (flights.is_linear()[setup_.wanted[k]] ? linear_ : searched_).push_back(as_index(k));
     }
     best_ = wanted();
   }
@@ -34,7 +33,7 @@ class Trial {
     const Eigen::VectorXd offsets = Eigen::VectorXd::Zero(as_index(flights_.offsets()));
     const Reduction reduction = flights_.reduce(parameters_, offsets, nullptr);
     tell_();
-    if (!reduction.valid) return std::numeric_limits<double>::infinity();
+    if (!reduction.valid) return infinity;
     const Eigen::VectorXd residual = reduction.factor.rightCols(1);
     double squares = residual.squaredNorm();
     Eigen::VectorXd found = wanted();
@@ -68,7 +67,7 @@ class Trial {
   const std::function<void()>& tell_;
   std::vector<Eigen::Index> linear_;
   std::vector<Eigen::Index> searched_;
-  double least_ = std::numeric_limits<double>::infinity();
+  double least_ = infinity;
   Eigen::VectorXd best_;
 };
 
@@ -78,10 +77,8 @@ double squares_of(const std::vector<double>& x, std::vector<double>&, void* tria
 
 }  // namespace
 
-Eigen::VectorXd global_search(FitFlights& flights, const FitSetup& setup, const Eigen::VectorXd& parameters,
-                              const std::vector<bool>& linear, const std::vector<SearchRange>& ranges,
-                              const std::function<void()>& tell) {
-  Trial trial(flights, setup, parameters, linear, tell);
+Eigen::VectorXd global_search(FitFlights& flights, const FitTask& task, const Eigen::VectorXd& values) {
+  Trial trial(flights, values, task.tell);
   if (trial.searched().empty()) {
     throw Error(
         "--search: the residual is linear in every free coefficient, so there is one minimum and nothing to "
@@ -91,16 +88,18 @@ Eigen::VectorXd global_search(FitFlights& flights, const FitSetup& setup, const 
   std::vector<double> upper;
   std::vector<double> start;
   for (const Eigen::Index k : trial.searched()) {
-    const SearchRange& range = ranges[static_cast<std::size_t>(k)];
-    if (!std::isfinite(range.lower) || !std::isfinite(range.upper)) {
+    const std::size_t place = flights.setup().wanted[static_cast<std::size_t>(k)];
+    const auto& [low, high] = task.parameters[place].bounds;
+    if (!std::isfinite(low) || !std::isfinite(high)) {
+      const std::string& name = task.parameters[place].name;
       throw Error(
           fmt::format("--search: {} has no bounds to search between; give the effect "
                       "bounds = {{ {} = [lower, upper] }} in the model file",
-                      range.name, range.name.substr(range.name.rfind('.') + 1)));
+                      name, name.substr(name.rfind('.') + 1)));
     }
-    lower.push_back(range.lower);
-    upper.push_back(range.upper);
-    start.push_back(0.5 * (range.lower + range.upper));
+    lower.push_back(low);
+    upper.push_back(high);
+    start.push_back(0.5 * (low + high));
   }
   nlopt::srand(seed);
   nlopt::opt search(nlopt::GN_CRS2_LM, static_cast<unsigned>(lower.size()));

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include <pcor/fit/refit.hpp>
+#include <pcor/fit/loss.hpp>
 
 namespace pcor::internal {
 

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <pcor/regimes/regimes.hpp>
+#include "fit/fit_flights.hpp"
+#include "fit/fit_task.hpp"
+
+namespace pcor::internal {
+
+/// The flights with the coefficients of the files and with those of the fit.
+struct BeforeAndAfter {
+  std::vector<FlightFit> flights{};  ///< the parts that were fitted and those that were held out
+  std::vector<std::string> notes{};  ///< of flights that took part
+  RegimeSet flown{};                 ///< in flights that took part
+
+  /// Over all samples that were fitted, hPa.
+  double noise_rms(std::size_t samples) const;
+};
+
+BeforeAndAfter before_and_after(FitFlights& flights, const FitTask& task, const Eigen::VectorXd& values);
+
+}  // namespace pcor::internal

@@ -1,0 +1,104 @@
+#include "fit/fit_parameters.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/words/error.hpp>
+#include <pcor/words/suggest.hpp>
+
+namespace pcor::internal {
+namespace {
+
+void add_parameters(std::vector<FitParameter>& parameters, const ModelFile& file, const std::string& prefix,
+                    bool fitted) {
+  for (std::size_t e = 0; e < file.model.effects.size(); ++e) {
+    const ModelEffect& effect = file.model.effects[e];
+    const std::vector<std::string> names = parameter_names(effect);
+    for (std::size_t p = 0; p < names.size(); ++p) {
+      FitParameter& parameter = parameters.emplace_back();
+      parameter.effect = prefix + effect.id;
+      parameter.name = parameter.effect + "." + names[p];
+      parameter.start = effect.parameters[p];
+      parameter.bounds = file.bounds(e, p);
+      parameter.fixed = !fitted || file.fit(e, p).fixed;
+      if (effect.is_formula()) continue;
+      const EffectFacts& facts = effect_facts[effect_named(effect.id)];
+      parameter.unit = facts.parameters[p].unit;
+      parameter.neutral = facts.parameters[p].neutral;
+      parameter.typical = std::abs(facts.parameters[p].typical);
+      parameter.manoeuvre = facts.manoeuvre;
+    }
+  }
+}
+
+/// The places of that parameter, or of all those of that effect.
+std::vector<std::size_t> places_of(const std::vector<FitParameter>& parameters, const std::string& name,
+                                   const char* option) {
+  std::vector<std::size_t> found;
+  std::vector<std::string> known;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    if (parameters[p].name == name || parameters[p].effect == name) found.push_back(p);
+    known.push_back(parameters[p].name);
+  }
+  if (!found.empty()) return found;
+  const std::string meant = did_you_mean(name, known);
+  throw Error(fmt::format("{} {}: the model has no such parameter or effect; {}", option, name,
+                          meant.empty() ? fmt::format("it has {}", fmt::join(known, ", ")) : meant));
+}
+
+}  // namespace
+
+std::vector<FitParameter> fit_parameters(const ModelFile& model, const Reference& reference,
+                                         const RefitOptions& options) {
+  std::vector<FitParameter> parameters;
+  add_parameters(parameters, model, "", true);
+  if (reference.kind == Reference::Kind::static_system)
+    add_parameters(parameters, *reference.system, "reference:", options.fit_reference);
+  for (const std::string& name : options.free) {
+    for (const std::size_t p : places_of(parameters, name, "--free")) parameters[p].fixed = false;
+  }
+  for (const std::string& name : options.fix) {
+    for (const std::size_t p : places_of(parameters, name, "--fix")) parameters[p].fixed = true;
+  }
+  for (const FitParameter& parameter : parameters) {
+    if (!(parameter.bounds.lower < parameter.bounds.upper)) {
+      throw Error(fmt::format("{}: its bounds [{}, {}] leave nothing; give them in order", parameter.name,
+                              parameter.bounds.lower, parameter.bounds.upper));
+    }
+  }
+  return parameters;
+}
+
+std::vector<std::vector<std::size_t>> fit_stages(const std::vector<FitParameter>& parameters,
+                                                 const std::vector<FitStage>& stages,
+                                                 const std::string& model_name) {
+  std::vector<bool> left;
+  for (const FitParameter& parameter : parameters) left.push_back(!parameter.fixed);
+  if (std::find(left.begin(), left.end(), true) == left.end()) {
+    throw Error(fmt::format(
+        "model '{}': no coefficient is free; add an effect, or free one with --free EFFECT", model_name));
+  }
+  std::vector<std::vector<std::size_t>> result;
+  for (const FitStage& stage : stages) {
+    std::vector<std::size_t>& wanted = result.emplace_back();
+    for (const std::string& name : stage.parameters) {
+      for (const std::size_t p : places_of(parameters, name, "--stage")) {
+        if (!left[p])
+          throw Error(fmt::format("--stage: {} is fixed, or fitted in a stage before", parameters[p].name));
+        left[p] = false;
+        wanted.push_back(p);
+      }
+    }
+  }
+  std::vector<std::size_t>& rest = result.emplace_back();
+  for (std::size_t p = 0; p < left.size(); ++p) {
+    if (left[p]) rest.push_back(p);
+  }
+  return result;
+}
+
+}  // namespace pcor::internal

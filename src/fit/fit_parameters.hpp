@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <pcor/fit/refit.hpp>
+
+namespace pcor::internal {
+
+/// What a fit knows of a parameter before it begins.
+struct FitParameter {
+  std::string name{};    ///< like "static-qp.a2"; of the reference's model "reference:static-qp.a2"
+  std::string effect{};  ///< of which it is, with the prefix of the reference
+  std::string unit{};
+  double start = 0.0;    ///< its value in the file
+  double neutral = 0.0;  ///< with which the effect does nothing
+  double typical = 0.0;  ///< size; zero where the catalogue has none
+  std::string_view manoeuvre{};
+  Bounds bounds{};
+  bool fixed = false;
+};
+
+/// The parameters of the model, then those of a static system that is the reference, as residuals have them.
+/// @throws Error if the options name one that is not there, or bounds leave nothing.
+std::vector<FitParameter> fit_parameters(const ModelFile& model, const Reference& reference,
+                                         const RefitOptions& options);
+
+/// The places of the parameters that each stage fits, the last one what is left; that may be nothing.
+/// @throws Error if no parameter is free, or a stage names one that is not.
+std::vector<std::vector<std::size_t>> fit_stages(const std::vector<FitParameter>& parameters,
+                                                 const std::vector<FitStage>& stages,
+                                                 const std::string& model_name);
+
+}  // namespace pcor::internal

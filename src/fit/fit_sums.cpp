@@ -1,0 +1,45 @@
+#include "fit/fit_sums.hpp"
+
+#include "fit/loss_function.hpp"
+
+namespace pcor::internal {
+
+void FitSums::add(const FitSums& other) {
+  squares += other.squares;
+  bulk_squares += other.bulk_squares;
+  relative_squares += other.relative_squares;
+  wanted += other.wanted;
+  wanted_squares += other.wanted_squares;
+  samples += other.samples;
+  outliers += other.outliers;
+}
+
+FitSums sums_at(FitFlights& flights, const FitTask& task, const Eigen::VectorXd& values, double deviation) {
+  std::vector<FitSums> parts(flights.count());
+  flights.visit([&](std::size_t number, std::size_t, FitFlight& fit) {
+    // The reference's delta-p by its own file, so that R2 does not grow with a reference that is fitted too.
+    const std::vector<double> wanted = fit.residuals().wanted_defect(task.start.data());
+    const std::vector<double> all = fit.residuals().values(values.data());
+    std::vector<double> residual;
+    for (const std::size_t i : fit.kept()) residual.push_back(all[i]);
+    FitSums& sums = parts[number];
+    sums.samples = fit.kept().size();
+    for (std::size_t i = 0; i < residual.size(); ++i) {
+      const double relative = residual[i] / fit.static_pressure(i);
+      const double defect = wanted[fit.kept()[i]];
+      sums.squares += residual[i] * residual[i];
+      sums.relative_squares += relative * relative;
+      sums.wanted += defect;
+      sums.wanted_squares += defect * defect;
+      if (std::abs(residual[i]) > tukey_width * deviation * fit.noise(i)) ++sums.outliers;
+    }
+    const double bulk = robust_deviation(residual);
+    if (sums.samples > 0) sums.bulk_squares = bulk * bulk * static_cast<double>(sums.samples);
+  });
+  FitSums whole;
+  for (const FitSums& part : parts) whole.add(part);
+  task.tell();
+  return whole;
+}
+
+}  // namespace pcor::internal

@@ -1,0 +1,93 @@
+#include "fit/fitted_model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <utility>
+
+#include <pcor/words/utc.hpp>
+#include "laws/covariance_blocks.hpp"
+
+namespace pcor::internal {
+namespace {
+
+Provenance provenance_of(const RefitResult& fit, Loss loss) {
+  Provenance provenance;
+  const auto add = [&provenance](const char* key, auto value) {
+    provenance.emplace_back(key, ProvenanceValue{std::move(value)});
+  };
+  add("program", std::string("pcor " PCOR_VERSION));
+  add("date", utc_text(static_cast<double>(std::time(nullptr)), "%Y-%m-%dT%H:%M:%SZ"));
+  add("reference", fit.reference_text);
+  add("loss", std::string(name_of(loss)));
+  ProvenanceList flights;
+  for (const FlightFit& flight : fit.flights) {
+    if (!flight.holdout) flights.emplace_back(flight.flight);
+  }
+  add("flights", std::move(flights));
+  add("samples", static_cast<std::int64_t>(fit.samples));
+  Provenance masks;
+  for (std::size_t m = 1; m < mask_count; ++m) {
+    if (fit.masks[m] > 0)
+      masks.emplace_back(mask_facts[m].name, ProvenanceValue{static_cast<std::int64_t>(fit.masks[m])});
+  }
+  add("samples_not_used", std::move(masks));
+  add("rms_hpa", fit.rms);
+  add("r2", fit.r_squared);
+  return provenance;
+}
+
+}  // namespace
+
+ModelFile fitted_model(ModelFile file, std::size_t first, const RefitResult& fit, Loss loss) {
+  std::vector<std::string> held;
+  std::vector<std::size_t> inside;  // places in the covariance
+  Covariance covariance;
+  const std::vector<std::string>& known = fit.covariance_names;
+  file.fits.resize(std::max(file.fits.size(), file.model.effects.size()));
+  std::size_t p = first;
+  for (std::size_t e = 0; e < file.model.effects.size(); ++e) {
+    ModelEffect& effect = file.model.effects[e];
+    const std::vector<std::string> names = parameter_names(effect);
+    file.fits[e].resize(names.size());
+    for (std::size_t i = 0; i < names.size(); ++i, ++p) {
+      const FittedParameter& parameter = fit.parameters[p];
+      const std::string name = effect.id + "." + names[i];
+      effect.parameters[i] = parameter.value;
+      if (!parameter.fitted) {
+        held.push_back(name);
+        continue;
+      }
+      file.fits[e][i].standard_error.reset();
+      if (!std::isfinite(parameter.standard_error)) continue;
+      file.fits[e][i].standard_error = parameter.standard_error;
+      covariance.parameters.push_back(name);
+      inside.push_back(
+          static_cast<std::size_t>(std::find(known.begin(), known.end(), parameter.name) - known.begin()));
+    }
+  }
+  for (const std::size_t a : inside) {
+    std::vector<double>& row = covariance.matrix.emplace_back();
+    for (const std::size_t b : inside) row.push_back(fit.covariance[a][b]);
+  }
+  // What was known of the parameters that were held stays, and nothing ties it to those that were fitted.
+  add_independent(covariance, part_of(file.covariance, [&held](const std::string& name) {
+                    return std::find(held.begin(), held.end(), name) != held.end();
+                  }));
+  file.covariance = std::move(covariance);
+  Provenance provenance = provenance_of(fit, loss);
+  // How the temperature was calibrated stays: the pressures do not change it.
+  for (auto& entry : file.provenance) {
+    if (entry.first == "temperature") provenance.push_back(std::move(entry));
+  }
+  file.provenance = std::move(provenance);
+  const std::string before = file.law.source.empty() ? "" : "; before: " + file.law.source;
+  file.law = {};
+  file.law.source = fmt::format("refit by pcor to {}{}", fit.reference_text, before);
+  file.law.rms_hpa = fit.rms;
+  return file;
+}
+
+}  // namespace pcor::internal

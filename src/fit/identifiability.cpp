@@ -1,0 +1,131 @@
+#include "fit/identifiability.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include <pcor/words/error.hpp>
+#include "numerics/missing.hpp"
+
+namespace pcor::internal {
+namespace {
+
+// Flights hold 32-bit floats: columns that agree to better than their rounding, 6e-8, are one column.
+constexpr double hopeless_condition = 1e7;
+// Column-scaled; that of the memo's eq. 20 with an independent Mach number is 1400 on a flight with speed
+// runs.
+constexpr double collinear_condition = 300.0;
+// A standard error above this share of an effect's typical size is worth a word.
+constexpr double weak_share = 0.25;
+
+/// The factor of the wanted parameters alone, with what the offsets explain taken out.
+Eigen::MatrixXd parameter_factor(const Reduction& reduction, Eigen::Index wanted) {
+  const Eigen::Index size = reduction.factor.cols() - 1;
+  Eigen::MatrixXd turned(size, size);
+  turned.leftCols(size - wanted) = reduction.factor.block(0, wanted, size, size - wanted);
+  turned.rightCols(wanted) = reduction.factor.block(0, 0, size, wanted);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> decomposition(turned);
+  const Eigen::MatrixXd upper = decomposition.matrixQR().triangularView<Eigen::Upper>();
+  return upper.bottomRightCorner(wanted, wanted);
+}
+
+}  // namespace
+
+double condition_number(const Reduction& reduction, const FitTask& task,
+                        const std::vector<std::size_t>& wanted) {
+  const auto name_of = [&](Eigen::Index k) -> const std::string& {
+    return task.parameters[wanted[static_cast<std::size_t>(k)]].name;
+  };
+  Eigen::MatrixXd scaled = parameter_factor(reduction, as_index(wanted.size()));
+  for (Eigen::Index k = 0; k < scaled.cols(); ++k) {
+    const double length = scaled.col(k).norm();
+    const double with_offsets = reduction.factor.col(k).norm();
+    if (!(with_offsets > 0.0)) {
+      throw Error(fmt::format(
+          "{} changes nothing on these flights, so it cannot be found; leave it as it is: --fix {}",
+          name_of(k), name_of(k)));
+    }
+    if (!(length > with_offsets / hopeless_condition)) {
+      throw Error(fmt::format(
+          "--stage: {} cannot be told from the offsets of the intervals; leave it to the last stage",
+          name_of(k)));
+    }
+    scaled.col(k) /= length;
+  }
+  const Eigen::JacobiSVD<Eigen::MatrixXd> decomposition(scaled, Eigen::ComputeFullV);
+  const Eigen::VectorXd& singular = decomposition.singularValues();
+  const double ratio = singular[0] / singular[singular.size() - 1];
+  const double condition = std::isfinite(ratio) ? ratio : infinity;
+  if (ratio < hopeless_condition || task.uses_prior()) return condition;
+  const Eigen::VectorXd weak = decomposition.matrixV().col(singular.size() - 1).cwiseAbs();
+  std::vector<std::string> names;
+  for (Eigen::Index k = 0; k < weak.size(); ++k) {
+    if (weak[k] > 0.1 * weak.maxCoeff()) names.push_back(name_of(k));
+  }
+  throw Error(
+      fmt::format("{} cannot all be free on these flights: what one does the others undo (condition number "
+                  "{:.0e}); hold one of them, e.g. --fix {}",
+                  fmt::join(names, ", "), condition, names.back()));
+}
+
+std::vector<std::string> what_is_not_told(const FitTask& task, const Solution& solution,
+                                          const Eigen::MatrixXd& covariance,
+                                          const std::vector<std::size_t>& fitted, double condition,
+                                          const RegimeSet& flown) {
+  const Eigen::Index size = covariance.rows();
+  std::vector<std::string> words;
+  // With priors, large standard errors are expected.
+  for (Eigen::Index a = 0; a < size && !task.uses_prior(); ++a) {
+    const std::size_t place = fitted[static_cast<std::size_t>(a)];
+    const FitParameter& parameter = task.parameters[place];
+    const double error = std::sqrt(covariance(a, a));
+    if (!(parameter.typical > 0.0) || !(error > weak_share * parameter.typical)) continue;
+    std::string partners;
+    for (Eigen::Index b = 0; b < size; ++b) {
+      const double correlation = covariance(a, b) / std::sqrt(covariance(a, a) * covariance(b, b));
+      if (a == b || !(std::abs(correlation) > 0.9)) continue;
+      partners += fmt::format("{}{} ({:+.3f})", partners.empty() ? "" : ", ",
+                              task.parameters[fitted[static_cast<std::size_t>(b)]].name, correlation);
+    }
+    words.push_back(fmt::format(
+        "{} is {}: {:.3g} +- {:.2g}, where its typical size is {:.2g}{}{}; hold it with --fix "
+        "{}; what would tell: {}",
+        parameter.name, error > parameter.typical ? "not determined" : "weakly determined",
+        solution.values[as_index(place)], error, parameter.typical,
+        partners.empty() ? "" : ", and it goes with ", partners, parameter.name, parameter.manoeuvre));
+  }
+  if (condition > collinear_condition) {
+    words.push_back(
+        fmt::format("the coefficients are nearly collinear (condition number {:.0f}): their sum is known "
+                    "better than each; do not read meaning into one alone",
+                    condition));
+  }
+  const bool has_manoeuvre = flown[static_cast<std::size_t>(Regime::pitch_manoeuvre)] ||
+                             flown[static_cast<std::size_t>(Regime::yaw_manoeuvre)] ||
+                             flown[static_cast<std::size_t>(Regime::speed_run)];
+  if (flown.any() && !has_manoeuvre) {
+    words.emplace_back(
+        "the flights have no pitch manoeuvre, yaw manoeuvre or speed run: the coefficients rest on climbs "
+        "and slow changes, in which angle of attack, Mach number and weight go together, and may carry "
+        "effects that the model does not have");
+  }
+  return words;
+}
+
+std::vector<std::string> what_is_at_bound(const FitTask& task, const Solution& solution, double condition) {
+  std::vector<std::string> words;
+  for (std::size_t p = 0; p < solution.at_bound.size(); ++p) {
+    if (!solution.at_bound[p]) continue;
+    words.push_back(fmt::format(
+        "{} is held at its bound {:.6g}: the flights want it beyond; the errors of the others hold only if "
+        "that bound is true; {}",
+        task.parameters[p].name, solution.values[as_index(p)],
+        condition > collinear_condition
+            ? "the coefficients are hard to tell apart here, so rather hold one of them with --fix"
+            : "if it is not meant, widen it in the model file"));
+  }
+  return words;
+}
+
+}  // namespace pcor::internal

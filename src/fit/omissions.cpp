@@ -1,0 +1,93 @@
+#include "fit/omissions.hpp"
+
+#include <algorithm>
+
+#include "fit/loss_function.hpp"
+#include "numerics/bounded_least_squares.hpp"
+
+namespace pcor::internal {
+namespace {
+
+constexpr int most_steps = 8;
+
+}  // namespace
+
+SquaredResiduals::SquaredResiduals(FitFlights& flights, const FitTask& task, const Solution& solution)
+    : flights_(flights), task_(task), solution_(solution) {
+  const std::vector<std::size_t>& wanted = flights.setup().wanted;
+  is_linear_ = std::all_of(wanted.begin(), wanted.end(),
+                           [&flights](std::size_t parameter) { return flights.is_linear()[parameter]; });
+  if (is_linear_) factor_ = flights.unweighted_factor(solution.values);
+}
+
+double SquaredResiduals::at(const Eigen::VectorXd& values) const {
+  if (!is_linear_) return sums_at(flights_, task_, values, solution_.deviation).squares;
+  const std::vector<std::size_t>& wanted = flights_.setup().wanted;
+  Eigen::VectorXd step = Eigen::VectorXd::Ones(as_index(wanted.size()) + 1);
+  step.head(as_index(wanted.size())) = values(wanted) - solution_.values(wanted);
+  return (factor_ * step).squaredNorm();
+}
+
+std::vector<Omission> omissions(FitFlights& flights, const FitTask& task, const Solution& solution,
+                                const FitSums& sums, const SquaredResiduals& squares) {
+  const std::vector<std::size_t>& wanted = flights.setup().wanted;
+  const std::unique_ptr<ceres::LossFunction> loss = loss_function(task.options.loss, solution.deviation);
+  const Eigen::Index size = as_index(wanted.size());
+  const Eigen::VectorXd weight = prior_weights(task, solution, wanted);
+  // Rows of derivatives and residual at some coefficients, with what draws these to their start.
+  const auto rows_at = [&](const Eigen::VectorXd& values) {
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2 * size, size + 1);
+    rows.topRows(size) = flights.reduce(values, Eigen::VectorXd(), loss.get()).factor.topRows(size);
+    rows.bottomLeftCorner(size, size) = weight.asDiagonal();
+    rows.bottomRightCorner(size, 1) = weight.cwiseProduct(values(wanted) - task.start(wanted));
+    task.tell();
+    return rows;
+  };
+  const Eigen::MatrixXd rows_of_fit = rows_at(solution.values);
+  std::vector<std::string> effects;
+  for (const std::size_t p : wanted) {
+    const std::string& effect = task.parameters[p].effect;
+    if (std::find(effects.begin(), effects.end(), effect) == effects.end()) effects.push_back(effect);
+  }
+  std::vector<Omission> result;
+  for (const std::string& effect : effects) {
+    std::vector<Eigen::Index> others;
+    std::vector<std::size_t> parameters;  // of the others
+    Eigen::VectorXd away = Eigen::VectorXd::Zero(size);
+    Eigen::VectorXd changed = solution.values;
+    for (Eigen::Index k = 0; k < size; ++k) {
+      const std::size_t p = wanted[static_cast<std::size_t>(k)];
+      if (task.parameters[p].effect == effect) {
+        changed[as_index(p)] = task.parameters[p].neutral;
+        away[k] = changed[as_index(p)] - solution.values[as_index(p)];
+      } else {
+        others.push_back(k);
+        parameters.push_back(p);
+      }
+    }
+    Eigen::VectorXd lower(as_index(others.size()));
+    Eigen::VectorXd upper(as_index(others.size()));
+    for (std::size_t i = 0; i < others.size(); ++i) {
+      lower[as_index(i)] = task.parameters[parameters[i]].bounds.lower;
+      upper[as_index(i)] = task.parameters[parameters[i]].bounds.upper;
+    }
+    Eigen::VectorXd x = solution.values(parameters);
+    // From the fit one step leads to the least squares where all is linear; else a few do.
+    for (int round = 0; round < (squares.is_linear() ? 1 : most_steps) && !others.empty(); ++round) {
+      const Eigen::MatrixXd rows = round == 0 ? rows_of_fit : rows_at(changed);
+      const Eigen::MatrixXd columns = rows(Eigen::all, others);
+      Eigen::VectorXd right = columns * x - rows.col(size);
+      if (round == 0) right -= rows.leftCols(size) * away;
+      if (!right.allFinite()) break;
+      const Eigen::VectorXd before = x;
+      x = bounded_least_squares(columns, right, lower, upper, x);
+      changed(parameters) = x;
+      if ((x - before).norm() < 1e-6 * x.norm()) break;
+    }
+    const double left = squares.at(changed);
+    result.push_back({effect, sums.rms_of(left), sums.r_squared(left)});
+  }
+  return result;
+}
+
+}  // namespace pcor::internal

@@ -1,0 +1,215 @@
+#include "fit/solver.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include <pcor/words/error.hpp>
+#include "fit/global_search.hpp"
+#include "fit/loss_function.hpp"
+#include "fit/minimise.hpp"
+#include "numerics/bounded_least_squares.hpp"
+#include "numerics/missing.hpp"
+
+namespace pcor::internal {
+namespace {
+
+void require_samples(const FitFlights& flights) {
+  const FitSetup& setup = flights.setup();
+  if (flights.samples() == 0 && !setup.regimes.empty()) {
+    std::vector<std::string_view> names;
+    for (const Regime regime : setup.regimes) names.push_back(facts_of(regime).name);
+    throw Error(
+        fmt::format("--stage: the flights have no {}; fit without the stage, or give the intervals in a file "
+                    "with --intervals",
+                    fmt::join(names, " or ")));
+  }
+  if (flights.samples() == 0) {
+    throw Error(fmt::format(
+        "{}: no sample is left for the fit: {}; see the variables of the model and --min-airspeed, "
+        "--max-flaps, --exclude",
+        flights.count() == 1 ? flights.name(0) : "the flights", mask_text(flights.masks())));
+  }
+  const std::size_t unknown = setup.wanted.size() + flights.offsets();
+  if (flights.samples() <= unknown) {
+    throw Error(
+        fmt::format("{} samples are too few for {} coefficients (not used: {}); give more flights or fix "
+                    "coefficients",
+                    flights.samples(), unknown, mask_text(flights.masks())));
+  }
+}
+
+/// For how many samples one independent one stands in the residuals at hand: what a starting value is weighed
+/// against.
+double memory_of(FitFlights& flights, const Solution& solution) {
+  std::vector<double> memory(flights.count(), 0.0);
+  flights.visit([&](std::size_t number, std::size_t first_offset, FitFlight& fit) {
+    const FlightSamples& samples = fit.residuals().samples();
+    const std::vector<double> values = fit.values(solution.values, solution.offsets.data() + first_offset);
+    if (values.empty()) return;
+    std::vector<double> series(samples.time.size(), nan);
+    double squares = 0.0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      series[fit.kept()[i]] = values[i] / fit.noise(i);
+      squares += series[fit.kept()[i]] * series[fit.kept()[i]];
+    }
+    const auto count = static_cast<double>(values.size());
+    const Autoregression noise = autoregression(series, stretches_of(series, samples.time, samples.step));
+    memory[number] = count * noise.samples_per_independent(std::sqrt(squares / count));
+  });
+  const double sum = std::accumulate(memory.begin(), memory.end(), 0.0);
+  return std::max(sum / static_cast<double>(flights.samples()), 1.0);
+}
+
+/// The unknowns are the wanted parameters and after them the offsets.
+class Solver {
+ public:
+  Solver(FitFlights& flights, const FitTask& task, Solution from)
+      : flights_(flights),
+        task_(task),
+        wanted_(flights.setup().wanted),
+        fitted_(as_index(wanted_.size())),
+        solution_(std::move(from)),
+        unknowns_(Eigen::VectorXd::Zero(fitted_ + as_index(flights.offsets()))),
+        lower_(Eigen::VectorXd::Constant(unknowns_.size(), -infinity)),
+        upper_(Eigen::VectorXd::Constant(unknowns_.size(), infinity)) {
+    for (const std::size_t p : wanted_) bounds_.push_back(task.parameters[p].bounds);
+    for (Eigen::Index k = 0; k < fitted_; ++k) {
+      lower_[k] = bounds_[static_cast<std::size_t>(k)].lower;
+      upper_[k] = bounds_[static_cast<std::size_t>(k)].upper;
+    }
+    unknowns_.head(fitted_) =
+        solution_.values(wanted_).cwiseMax(lower_.head(fitted_)).cwiseMin(upper_.head(fitted_));
+    spread();
+  }
+
+  Solution solve() {
+    if (task_.options.search) {
+      unknowns_ = global_search(flights_, task_, solution_.values);
+      spread();
+    }
+    if (!task_.uses_prior()) linear_step(nullptr);
+    measure();
+    if (task_.uses_prior()) balance_prior();
+    const Loss loss = task_.options.loss;
+    // The solution of a convex loss is unique; from Huber's the others find the minimum of the bulk.
+    if (loss == Loss::tukey || loss == Loss::cauchy) settles_with(Loss::huber);
+    const int rounds = loss == Loss::none ? 1 : 5;
+    for (int round = 0; round < rounds && !settles_with(loss); ++round) {
+    }
+    solution_.at_bound.resize(task_.parameters.size(), false);
+    for (Eigen::Index k = 0; k < fitted_; ++k)
+      solution_.at_bound[wanted_[static_cast<std::size_t>(k)]] = touches(k);
+    return std::move(solution_);
+  }
+
+ private:
+  /// The unknowns to where they belong.
+  void spread() {
+    solution_.values(wanted_) = unknowns_.head(fitted_);
+    solution_.offsets = unknowns_.tail(unknowns_.size() - fitted_);
+  }
+
+  void measure() {
+    flights_.measure_noise(solution_.values, solution_.offsets);
+    solution_.deviation = flights_.deviation(solution_.values, solution_.offsets);
+  }
+
+  /// The linear problem, in closed form: where derivatives do not depend on the coefficients, its solution.
+  /// Gives the cost before the step.
+  double linear_step(const ceres::LossFunction* loss) {
+    const Reduction reduction = flights_.reduce(solution_.values, solution_.offsets, loss);
+    task_.tell();
+    const Eigen::Index size = unknowns_.size();
+    const Eigen::VectorXd weight = prior_weights(task_, solution_, wanted_);
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2 * size, size);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(2 * size);
+    rows.topRows(size) = reduction.factor.topLeftCorner(size, size);
+    right.head(size) = -reduction.factor.col(size).head(size);
+    rows.block(size, 0, fitted_, fitted_) = weight.asDiagonal();
+    right.segment(size, fitted_) = weight.cwiseProduct(task_.start(wanted_) - unknowns_.head(fitted_));
+    if (!rows.allFinite() || !right.allFinite()) return infinity;
+    unknowns_ = bounded_least_squares(rows, right + rows * unknowns_, lower_, upper_, unknowns_);
+    spread();
+    return reduction.cost;
+  }
+
+  /// The samples count by their noise and memory, which only the residuals of a fit show: again until they
+  /// agree.
+  void balance_prior() {
+    for (int round = 0; round < 10; ++round) {
+      const double before = solution_.prior_strength;
+      solution_.prior_strength = std::sqrt(memory_of(flights_, solution_)) * solution_.deviation;
+      if (std::abs(solution_.prior_strength - before) < 0.05 * before) break;
+      linear_step(nullptr);
+      measure();
+    }
+  }
+
+  Prior prior() const {
+    if (!(solution_.prior_strength > 0.0)) return {};
+    Prior prior{unknowns_, Eigen::VectorXd::Zero(unknowns_.size())};
+    prior.start.head(fitted_) = task_.start(wanted_);
+    prior.weight.head(fitted_) = prior_weights(task_, solution_, wanted_);
+    return prior;
+  }
+
+  bool touches(Eigen::Index k) const {
+    const double near = 1e-9 * std::max(std::abs(unknowns_[k]), 1e-12);
+    return unknowns_[k] <= lower_[k] + near || unknowns_[k] >= upper_[k] - near;
+  }
+
+  bool is_at_bound() const {
+    for (Eigen::Index k = 0; k < fitted_; ++k) {
+      if (touches(k)) return true;
+    }
+    return false;
+  }
+
+  /// Minimises that loss; true where the deviation, which scales it, stays after that.
+  bool settles_with(Loss loss) {
+    const std::unique_ptr<ceres::LossFunction> function = loss_function(loss, solution_.deviation);
+    minimise(flights_, solution_.values, function.get(), prior(), bounds_, task_.tell, unknowns_);
+    spread();
+    // Along a bound, where coefficients are nearly collinear, steps cut off at the bounds stall before the
+    // minimum; steps that know the bounds go on.
+    double cost = infinity;
+    Eigen::VectorXd best = unknowns_;
+    for (int step = 0; step < 20 && is_at_bound(); ++step) {
+      const Eigen::VectorXd now = unknowns_;
+      const double cost_now = linear_step(function.get());
+      if (!(cost_now < (1.0 - 1e-10) * cost)) break;
+      cost = cost_now;
+      best = now;
+    }
+    unknowns_ = best;
+    spread();
+    const double before = solution_.deviation;
+    solution_.deviation = flights_.deviation(solution_.values, solution_.offsets);
+    task_.tell();
+    return std::abs(solution_.deviation - before) < 1e-3 * before;
+  }
+
+  FitFlights& flights_;
+  const FitTask& task_;
+  const std::vector<std::size_t>& wanted_;
+  Eigen::Index fitted_;
+  Solution solution_;
+  Eigen::VectorXd unknowns_;
+  Eigen::VectorXd lower_;
+  Eigen::VectorXd upper_;
+  std::vector<Bounds> bounds_;
+};
+
+}  // namespace
+
+Solution solve(FitFlights& flights, const FitTask& task, Solution from) {
+  require_samples(flights);
+  return Solver(flights, task, std::move(from)).solve();
+}
+
+}  // namespace pcor::internal
