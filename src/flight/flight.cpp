@@ -243,9 +243,10 @@ struct Flight::Implementation {
     const auto found = index.find(name);
     if (found != index.end()) return variables[found->second];
     const std::vector<std::string> alike = suggest(name, names);
-    throw Error(path() + ": " + name + " is not in this file; it has " +
-                (alike.empty() ? fmt::format("{} others, see ncdump -h {}", names.size(), path())
-                               : fmt::format("{}", fmt::join(alike, ", "))));
+    throw Error(Error::Code::variable,
+                path() + ": " + name + " is not in this file; it has " +
+                    (alike.empty() ? fmt::format("{} others, see ncdump -h {}", names.size(), path())
+                                   : fmt::format("{}", fmt::join(alike, ", "))));
   }
 
   // That a variable of the model is absent, and which ones of the file could take its place.
@@ -263,15 +264,18 @@ struct Flight::Implementation {
     const std::vector<std::string> alike = suggest(name, namesakes);
     if (!alike.empty())
       throw Error(
+          Error::Code::variable,
           fmt::format("{}: {} is not in this file; it has {}; change {} in the [variables] of the model",
                       path(), name, fmt::join(alike, ", "), role));
     const std::string absent =
         fmt::format("{}: {} ({} of the model) is not in this file", path(), name, role);
     if (fitting.empty())
-      throw Error(fmt::format(
-          "{}; it has no time series in {} or a unit that converts to it, see ncdump -h {}; change "
-          "[variables] of the model",
-          absent, wanted, path()));
+      throw Error(
+          Error::Code::variable,
+          fmt::format(
+              "{}; it has no time series in {} or a unit that converts to it, see ncdump -h {}; change "
+              "[variables] of the model",
+              absent, wanted, path()));
 
     constexpr std::size_t most_named = 6;
     // What a probe recovers files call total.
@@ -290,6 +294,7 @@ struct Flight::Implementation {
     }
     if (others > 0) named += fmt::format(" and {} more", others);
     throw Error(
+        Error::Code::variable,
         fmt::format("{}; it has {} (units that fit); change [variables] of the model", absent, named));
   }
 
@@ -315,9 +320,11 @@ struct Flight::Implementation {
     std::string dimensions;
     for (const std::string& each : variable.info.dimensions)
       dimensions += (dimensions.empty() ? "" : ", ") + each;
-    throw Error(fmt::format(
-        "{}: {}({}) is not a time series of numbers over (Time) or (Time, spsN); choose another variable",
-        path(), name, dimensions));
+    throw Error(
+        Error::Code::variable,
+        fmt::format(
+            "{}: {}({}) is not a time series of numbers over (Time) or (Time, spsN); choose another variable",
+            path(), name, dimensions));
   }
 
   void check_block(const std::string& name, RecordBlock block) const {
@@ -463,6 +470,7 @@ UnitConversion Flight::conversion(const std::string& name, const std::string& wa
   if (stated.empty()) return UnitConversion::between(own, wanted, {name, path().string(), role});
   if (!is_convertible(stated, wanted))
     throw Error(
+        Error::Code::unit,
         fmt::format("{}: the unit \"{}\" that the model states for {} ({}) is not known or does not convert "
                     "to {}; correct unit.{} in the [units] of the model",
                     path().string(), stated, name, role, wanted, role));
@@ -471,10 +479,12 @@ UnitConversion Flight::conversion(const std::string& name, const std::string& wa
       is_known_unit(own) &&
       !(is_convertible(own, wanted) && is_same(UnitConversion::between(own, wanted, {}), conversion));
   if (file_says_otherwise)
-    throw Error(fmt::format(
-        "{}: {} has the unit \"{}\", and the model states \"{}\"; remove unit.{} from the [units] of the "
-        "model, or mend the units attribute of the file if that is wrong",
-        path().string(), name, own, stated, role));
+    throw Error(
+        Error::Code::unit,
+        fmt::format(
+            "{}: {} has the unit \"{}\", and the model states \"{}\"; remove unit.{} from the [units] of the "
+            "model, or mend the units attribute of the file if that is wrong",
+            path().string(), name, own, stated, role));
   return conversion;
 }
 
@@ -486,7 +496,8 @@ void Flight::require_values(const std::string& name) const {
     implementation_->read(variable, block, values.data());
     if (std::any_of(values.begin(), values.end(), [](double value) { return !std::isnan(value); })) return;
   }
-  throw Error(fmt::format("{}: {} has no value, all {} records are missing; choose another variable",
+  throw Error(Error::Code::variable,
+              fmt::format("{}: {} has no value, all {} records are missing; choose another variable",
                           path().string(), name, records()));
 }
 

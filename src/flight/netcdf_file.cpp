@@ -39,14 +39,17 @@ std::string without_trailing_blanks(std::string text) {
 void check_size_of_classic(const std::filesystem::path& path) {
   const auto promised = promised_size_of_classic(path);
   if (!promised)
-    throw Error(path.string() +
-                " is truncated or damaged: its header cannot be read; fetch it again from its source");
+    throw Error(Error::Code::file,
+                path.string() +
+                    " is truncated or damaged: its header cannot be read; fetch it again from its source");
   const auto size = std::filesystem::file_size(path);
   if (size < *promised)
-    throw Error(fmt::format(
-        "{} is truncated or damaged: its header promises {} bytes and it has {}; fetch it again from its "
-        "source",
-        path.string(), *promised, size));
+    throw Error(
+        Error::Code::file,
+        fmt::format(
+            "{} is truncated or damaged: its header promises {} bytes and it has {}; fetch it again from its "
+            "source",
+            path.string(), *promised, size));
 }
 
 }  // namespace
@@ -55,18 +58,22 @@ std::string netcdf_reason(int status) { return status > 0 ? std::strerror(status
 
 NetcdfFile NetcdfFile::open(const std::filesystem::path& path) {
   const std::string name = path.string();
-  if (path.empty()) throw Error("the input has no name; name a netCDF file");
+  if (path.empty()) throw Error(Error::Code::file, "the input has no name; name a netCDF file");
   std::error_code code;
   const auto status = std::filesystem::status(path, code);
-  if (!std::filesystem::exists(status)) throw Error(name + ": no such file; check the path");
-  if (std::filesystem::is_directory(status)) throw Error(name + " is a directory; name a netCDF file");
+  if (!std::filesystem::exists(status))
+    throw Error(Error::Code::file, name + ": no such file; check the path");
+  if (std::filesystem::is_directory(status))
+    throw Error(Error::Code::file, name + " is a directory; name a netCDF file");
   if (!std::filesystem::is_regular_file(status))
-    throw Error(name + " is not a regular file; name a netCDF file");
+    throw Error(Error::Code::file, name + " is not a regular file; name a netCDF file");
   if (!std::ifstream(path))
-    throw Error(name + " cannot be read: " + std::strerror(errno) + "; check its permissions");
+    throw Error(Error::Code::file,
+                name + " cannot be read: " + std::strerror(errno) + "; check its permissions");
 
   const Content content = content_of(path);
-  if (content == Content::other) throw Error(name + " is not a netCDF file; name one that `ncdump -k` knows");
+  if (content == Content::other)
+    throw Error(Error::Code::file, name + " is not a netCDF file; name one that `ncdump -k` knows");
   if (content == Content::classic) check_size_of_classic(path);
   // HDF5 keeps what it read of every variable; a file that is open twice shares what the first one asked for.
   nc_set_chunk_cache(chunk_cache_bytes, chunk_cache_slots, 1);
@@ -74,8 +81,8 @@ NetcdfFile NetcdfFile::open(const std::filesystem::path& path) {
   std::size_t buffer = classic_buffer_bytes;
   const int opened = nc__open(name.c_str(), NC_NOWRITE, &buffer, &id);
   if (opened != NC_NOERR)
-    throw Error(name + " is truncated or damaged (" + netcdf_reason(opened) +
-                "); fetch it again from its source");
+    throw Error(Error::Code::file, name + " is truncated or damaged (" + netcdf_reason(opened) +
+                                       "); fetch it again from its source");
   return {id, path, Use::reading};
 }
 
@@ -99,14 +106,15 @@ NetcdfFile::~NetcdfFile() {
 void NetcdfFile::check(int status, const std::string& doing) const {
   if (status == NC_NOERR) return;
   std::string message = path_.string() + ": " + doing + ": " + netcdf_reason(status);
-  if (use_ == Use::reading) throw Error(message + "; fetch the file again from its source");
+  if (use_ == Use::reading)
+    throw Error(Error::Code::file, message + "; fetch the file again from its source");
   std::error_code code;
   const auto space = std::filesystem::space(std::filesystem::absolute(path_).parent_path(), code);
   constexpr std::uintmax_t little = 1 << 20;
   const bool full = status == ENOSPC || (!code && space.available < little);
   if (full && status != ENOSPC) message += " (the disk is full)";
-  throw Error(message + (full ? "; make room or choose another output"
-                              : "; check the space and the permissions there"));
+  throw Error(Error::Code::file, message + (full ? "; make room or choose another output"
+                                                 : "; check the space and the permissions there"));
 }
 
 void NetcdfFile::close() { check(nc_close(std::exchange(id_, closed)), "cannot be closed"); }

@@ -112,6 +112,7 @@ ut_system* udunits() {
   }();
   if (!system)
     throw Error(
+        Error::Code::unit,
         "the unit database of UDUNITS cannot be read; install udunits2-data or set UDUNITS2_XML_PATH");
   return system.get();
 }
@@ -145,15 +146,17 @@ UnitConversion UnitConversion::between(const std::string& from, const std::strin
                                        const UnitOwner& owner) {
   const std::lock_guard guard(udunits_lock());
   const std::string whose = (owner.file.empty() ? "" : owner.file + ": ") + owner.variable;
-  if (from.empty()) throw Error(whose + " has no unit; " + how_to_state(owner, to));
+  if (from.empty()) throw Error(Error::Code::unit, whose + " has no unit; " + how_to_state(owner, to));
   const Unit target = parse(to);
-  if (!target) throw Error(whose + ": the wanted unit \"" + to + "\" is not known to UDUNITS");
+  if (!target)
+    throw Error(Error::Code::unit, whose + ": the wanted unit \"" + to + "\" is not known to UDUNITS");
   const Unit source = parse(from);
   if (!source)
-    throw Error(whose + " has the unit \"" + from + "\", which is not known; " + how_to_state(owner, to));
+    throw Error(Error::Code::unit,
+                whose + " has the unit \"" + from + "\", which is not known; " + how_to_state(owner, to));
   if (!ut_are_convertible(source.get(), target.get()))
-    throw Error(whose + " has the unit \"" + from + "\", which cannot be converted to " + to +
-                "; choose another variable, or " + how_to_state(owner, to));
+    throw Error(Error::Code::unit, whose + " has the unit \"" + from + "\", which cannot be converted to " +
+                                       to + "; choose another variable, or " + how_to_state(owner, to));
 
   const Converter converter(ut_get_converter(source.get(), target.get()));
   const auto convert = [&](double value) { return cv_convert_double(converter.get(), value); };
@@ -164,8 +167,8 @@ UnitConversion UnitConversion::between(const std::string& from, const std::strin
   if (std::abs(scale - 1) < 1e-12) scale = 1;
   const double middle = convert(span / 4);
   if (!(std::abs(middle - (scale * span / 4 + offset)) <= 1e-9 * (std::abs(middle) + std::abs(offset))))
-    throw Error(whose + " has the unit \"" + from + "\", which is not proportional to " + to + "; " +
-                how_to_state(owner, to));
+    throw Error(Error::Code::unit, whose + " has the unit \"" + from + "\", which is not proportional to " +
+                                       to + "; " + how_to_state(owner, to));
   return {scale, offset};
 }
 
