@@ -13,9 +13,9 @@ namespace {
 void static_defect(benchmark::State& timing, const ModelEffect& effect) {
   Model model;
   model.effects = {effect};
-  std::string error;
+  BindingError error;
   const std::optional<Chain> chain = Chain::build(model, recorded_roles(), &error);
-  if (!chain) return timing.SkipWithError(error.c_str());
+  if (!chain) return timing.SkipWithError(error.message().c_str());
   State<double> state;
   state[Quantity::static_pressure] = 250.0;
   state[Quantity::dynamic_pressure] = 120.0;

@@ -16,9 +16,9 @@ using namespace internal;
 namespace {
 
 Chain built(const Model& model, const std::vector<Quantity>& recorded, CorrectWith with) {
-  std::string why;
+  BindingError why;
   std::optional<Chain> chain = Chain::build(model, recorded, &why);
-  if (!chain) throw Error(fmt::format("model '{}': {}", model.name, why));
+  if (!chain) throw Error(Error::Code::model, fmt::format("model '{}': {}", model.name, why.message()));
   const auto require = [&](Quantity quantity) {
     if (!chain->derives(quantity)) return;
     throw Error(fmt::format("model '{}': over whole arrays it needs '{}' among them", model.name,

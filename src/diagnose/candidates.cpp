@@ -87,18 +87,6 @@ Candidate candidate_of(const ModelEffect& formula) {
   return candidate;
 }
 
-/// Why the model cannot have `effect` on what is recorded; nothing where it can.
-std::optional<std::string> obstacle(const Model& model, const ModelEffect& effect,
-                                    const std::vector<Quantity>& roles) {
-  Model with = model;
-  with.effects.push_back(effect);
-  std::string why;
-  if (Chain::build(with, roles, &why)) return std::nullopt;
-  const std::string prefix = fmt::format("effect '{}' ", effect.id);
-  if (why.compare(0, prefix.size(), prefix) == 0) why.erase(0, prefix.size());
-  return why;
-}
-
 /// Of a formula: the variable that some flight lacks; empty where there is none.
 std::string missing_variable(const ModelEffect& effect, const std::vector<const Flight*>& flights) {
   const auto formula = Formula::parse(effect.formula, effect.parameter_names, nullptr);
@@ -110,6 +98,7 @@ std::string missing_variable(const ModelEffect& effect, const std::vector<const 
       try {
         flight->require_values(name);
       } catch (const Error& error) {
+        if (error.code() == Error::Code::file) throw;
         return error.what();
       }
     }
@@ -120,16 +109,25 @@ std::string missing_variable(const ModelEffect& effect, const std::vector<const 
 }  // namespace
 
 CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffect>& formulas,
-                             const std::vector<const Flight*>& flights) {
+                             const std::vector<const Flight*>& flights, const Reference& reference) {
   CandidateSet set;
   set.extended = model;
   name_usual_variables(set.extended, flights);
-  const std::vector<Quantity> roles = set.extended.roles();
+  std::vector<Quantity> roles = set.extended.roles();
+  if (reference.kind != Reference::Kind::lams)
+    roles.erase(std::remove(roles.begin(), roles.end(), Quantity::lams_airspeed), roles.end());
+  BindingError error;
+  std::optional<Chain> chain = Chain::build(model.model, roles, &error);
+  if (!chain)
+    throw Error(Error::Code::model, fmt::format("model '{}': {}", model.model.name, error.message()));
   const auto consider = [&](Candidate candidate) {
-    if (std::optional<std::string> why = obstacle(set.extended.model, candidate.effect, roles)) {
-      set.not_testable.push_back({candidate.effect.id, candidate.title, *why});
+    std::optional<Chain> with = chain->with_effect(candidate.effect, &error);
+    if (!with) {
+      set.not_testable.push_back({candidate.effect.id, candidate.title, error.what});
       return;
     }
+    chain = std::move(with);
+    candidate.number = set.extended.model.effects.size();
     set.extended.model.effects.push_back(candidate.effect);
     std::vector<Candidate> variants = variants_of(candidate);
     set.candidates.push_back(std::move(candidate));

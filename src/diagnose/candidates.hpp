@@ -20,7 +20,8 @@ struct CandidateParameter {
 
 /// An effect that the model may lack.
 struct Candidate {
-  ModelEffect effect;  ///< with its neutral parameters, and shapes as they are tried
+  ModelEffect effect;      ///< with its neutral parameters, and shapes as they are tried
+  std::size_t number = 0;  ///< of the effect in the extended model
   std::string title;
   std::vector<CandidateParameter> tested{};
   bool is_variant = false;  ///< the same effect as a candidate before it, in another shape
@@ -35,8 +36,8 @@ struct CandidateSet {
 };
 
 /// The effects of the catalogue that are not in the model, and the formulas. An effect whose inputs some
-/// flight lacks is not testable, and told so.
+/// flight lacks is not testable, and told so. @throws Error if the model cannot be used.
 CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffect>& formulas,
-                             const std::vector<const Flight*>& flights);
+                             const std::vector<const Flight*>& flights, const Reference& reference);
 
 }  // namespace pcor::internal

@@ -26,36 +26,6 @@ Where where_of(const ModelEffect& effect) {
   return effect.is_formula() ? effect.where : effect_facts[effect_named(effect.id)].where;
 }
 
-/// The samples as the model itself would have read them: without the roles that only candidates need.
-FlightSamples without_further_roles(const FlightSamples& samples, const ModelFile& model) {
-  FlightSamples own = samples;
-  const std::vector<Quantity> roles = model.roles();
-  std::vector<Quantity>& given = own.model.roles;
-  given.erase(std::remove_if(given.begin(), given.end(),
-                             [&roles](Quantity quantity) {
-                               return is_role(quantity) &&
-                                      std::find(roles.begin(), roles.end(), quantity) == roles.end();
-                             }),
-              given.end());
-  return own;
-}
-
-/// The model with a unit of whatever acts at each place: its derivative is what an effect there does to the
-/// residual.
-ModelFile with_probes(const ModelFile& model, const std::vector<Where>& places) {
-  ModelFile probed = model;
-  for (const Where place : places) {
-    ModelEffect probe;
-    probe.id = fmt::format("unit at {}", facts_of(place).name);
-    probe.parameters = {0.0};
-    probe.parameter_names = {"k"};
-    probe.formula = "k";
-    probe.where = place;
-    probed.model.effects.push_back(std::move(probe));
-  }
-  return probed;
-}
-
 std::vector<std::size_t> free_parameters(const ModelFile& model) {
   std::vector<std::size_t> free;
   std::size_t number = 0;
@@ -67,55 +37,69 @@ std::vector<std::size_t> free_parameters(const ModelFile& model) {
   return free;
 }
 
-/// A candidate's value at a sample, and its derivatives by the tested parameters.
-class CandidateValue {
- public:
-  CandidateValue(const Candidate& candidate, const std::vector<std::string>& extra_names)
-      : candidate_(&candidate) {
-    if (!candidate.effect.is_formula()) {
-      function_ = effect_functions<double, Jet>[effect_named(candidate.effect.id)];
-      return;
-    }
-    formula_ = Formula::parse(candidate.effect.formula, candidate.effect.parameter_names);
-    for (const std::string& name : formula_->variables()) {
-      Quantity quantity = quantity_named(name);
-      if (quantity == Quantity::count) {
-        const auto found = std::find(extra_names.begin(), extra_names.end(), name);
-        quantity = extra_quantity(static_cast<std::size_t>(found - extra_names.begin()));
-      }
-      variables_.push_back(quantity);
-    }
-  }
-
-  /// Puts the derivatives, one for each tested parameter, at `out`.
-  void derivatives(const State<double>& state, double* out) const {
-    const std::vector<CandidateParameter>& tested = candidate_->tested;
-    std::vector<Jet> parameters(candidate_->effect.parameters.begin(), candidate_->effect.parameters.end());
-    for (std::size_t first = 0; first < tested.size(); first += jet_width) {
-      const std::size_t width = std::min<std::size_t>(jet_width, tested.size() - first);
-      for (std::size_t k = 0; k < width; ++k) parameters[tested[first + k].place].v[as_index(k)] = 1.0;
-      const Jet value = value_of(state, parameters.data());
-      for (std::size_t k = 0; k < width; ++k) {
-        out[first + k] = value.v[as_index(k)];
-        parameters[tested[first + k].place].v[as_index(k)] = 0.0;
-      }
-    }
-  }
-
- private:
-  Jet value_of(const State<double>& state, const Jet* parameters) const {
-    if (!formula_) return function_(state, parameters);
-    std::vector<double> values;
-    values.reserve(variables_.size());
-    for (const Quantity variable : variables_) values.push_back(state[variable]);
-    return formula_->value(values.data(), parameters);
-  }
-
-  const Candidate* candidate_;
-  detail::EffectFunction<double, Jet> function_ = nullptr;
-  std::optional<Formula> formula_{};
-  std::vector<Quantity> variables_{};
+/// One evaluation of a candidate: its derivatives by some of the tested parameters.
+struct Evaluation {
+  std::size_t effect;        // number in the extended model
+  std::size_t place;         // among the places of all candidates
+  std::size_t first_column;  // of the parameters
+  std::size_t width;
+  std::vector<Jet> parameters;
 };
+
+std::vector<Evaluation> evaluations_of(const CandidateSet& set, const std::vector<Where>& places) {
+  std::vector<Evaluation> evaluations;
+  std::size_t column = 0;
+  for (const Candidate& candidate : set.candidates) {
+    const auto place = std::find(places.begin(), places.end(), where_of(candidate.effect)) - places.begin();
+    const std::vector<double>& neutral = candidate.effect.parameters;
+    for (std::size_t first = 0; first < candidate.tested.size(); first += jet_width) {
+      const std::size_t width = std::min<std::size_t>(jet_width, candidate.tested.size() - first);
+      std::vector<Jet> parameters(neutral.begin(), neutral.end());
+      for (std::size_t k = 0; k < width; ++k)
+        parameters[candidate.tested[first + k].place].v[as_index(k)] = 1.0;
+      evaluations.push_back(
+          {candidate.number, static_cast<std::size_t>(place), column, width, std::move(parameters)});
+      column += width;
+    }
+  }
+  return evaluations;
+}
+
+/// Residuals at some samples, and their derivatives.
+struct Linearised {
+  std::vector<double> residual;
+  std::vector<double> derivatives;          // a column of all samples for each parameter
+  std::shared_ptr<const FlightSamples> at;  // where the derivatives were taken
+
+  double derivative(std::size_t parameter, std::size_t k) const {
+    return derivatives[parameter * residual.size() + k];
+  }
+};
+
+Linearised linearised(const Residuals& residuals, const std::shared_ptr<const FlightSamples>& samples,
+                      const ModelFile& model, const Reference& reference, const MaskOptions& mask,
+                      const std::vector<std::size_t>& used, const std::vector<std::size_t>& wanted) {
+  Linearised result{std::vector<double>(used.size()), std::vector<double>(wanted.size() * used.size()),
+                    samples};
+  const double* const start = residuals.parameters().data();
+  if (reference.kind != Reference::Kind::lams) {
+    residuals.evaluate(used.data(), used.size(), start, wanted, result.residual.data(),
+                       result.derivatives.data());
+    return result;
+  }
+  // The noise of the laser is added to the speed along its beam, so that is the measure of its residual. No
+  // column holds that noise: derivatives are taken where the laser shows what the model says.
+  residuals.evaluate_speed(used.data(), used.size(), start, {}, result.residual.data(), nullptr);
+  auto noiseless = std::make_shared<FlightSamples>(*samples);
+  for (auto& [quantity, values] : noiseless->model.columns) {
+    if (quantity == Quantity::lams_airspeed) values = residuals.predicted_beam_speed(start);
+  }
+  result.at = std::move(noiseless);
+  std::vector<double> nothing(used.size());
+  Residuals(result.at, model, reference, mask)
+      .evaluate_speed(used.data(), used.size(), start, wanted, nothing.data(), result.derivatives.data());
+  return result;
+}
 
 /// Gives the few places without a value that of the one before (of the one after at the begin); many stay.
 void bridge(Eigen::Ref<Eigen::VectorXf> column, const std::vector<std::size_t>& used) {
@@ -180,80 +164,38 @@ std::vector<std::string> base_names(const ModelFile& model) {
 FlightColumns find_columns(std::shared_ptr<const FlightSamples> extended, const ModelFile& model,
                            const CandidateSet& set, const Reference& reference, const MaskOptions& mask,
                            double first_part) {
-  const bool lams = reference.kind == Reference::Kind::lams;
-  auto own = std::make_shared<FlightSamples>(without_further_roles(*extended, model));
-  const std::size_t records = own->time.size();
+  const std::size_t records = extended->time.size();
+  const std::vector<Where> places = places_of(set);
+  ModelFile with_additions = model;
+  with_additions.model.additions = places;
+  const Residuals residuals(extended, with_additions, reference, mask);
+  const std::vector<double>& start = residuals.parameters();
 
   FlightColumns columns;
   columns.samples = extended;
-  const Residuals residuals(own, model, reference, mask);
   columns.mask = residuals.mask();
-  const std::vector<double>& start = residuals.parameters();
   const std::vector<std::size_t> used = used_samples(columns.mask, first_part);
-  // The noise of the laser is added to the speed along its beam, so that is the measure of its residual.
-  std::vector<double> at_used(used.size());
-  if (lams) {
-    residuals.evaluate_speed(used.data(), used.size(), start.data(), {}, at_used.data(), nullptr);
-  } else {
-    residuals.evaluate(used.data(), used.size(), start.data(), {}, at_used.data(), nullptr);
-  }
-  columns.given.assign(records, nan);
-  for (std::size_t k = 0; k < used.size(); ++k) columns.given[used[k]] = at_used[k];
-  columns.residual = columns.given;
-
-  // From here on the laser shows what the model says, so its noise is in no column.
-  std::vector<double> predicted;
-  if (lams) {
-    predicted = residuals.predicted_beam_speed(start.data());
-    for (auto& [quantity, values] : own->model.columns) {
-      if (quantity == Quantity::lams_airspeed) values = predicted;
-    }
-  }
-  const std::vector<Where> places = places_of(set);
-  const ModelFile probed = with_probes(model, places);
-  const Residuals at_model(own, probed, reference, mask);
-  const std::vector<double>& parameters = at_model.parameters();
   std::vector<std::size_t> wanted = free_parameters(model);
   const std::size_t base_count = wanted.size();
   std::size_t own_count = 0;
   for (const ModelEffect& effect : model.model.effects) own_count += effect.parameters.size();
   for (std::size_t k = 0; k < places.size(); ++k) wanted.push_back(own_count + k);
-  std::vector<double> derivatives(wanted.size() * used.size());
-  if (lams) {
-    at_model.evaluate_speed(used.data(), used.size(), parameters.data(), wanted, at_used.data(),
-                            derivatives.data());
-  } else {
-    at_model.evaluate(used.data(), used.size(), parameters.data(), wanted, at_used.data(),
-                      derivatives.data());
-  }
-  const auto derivative = [&](std::size_t column, std::size_t k) {
-    return derivatives[column * used.size() + k];
-  };
+  const Linearised found = linearised(residuals, extended, with_additions, reference, mask, used, wanted);
+  columns.given.assign(records, nan);
+  for (std::size_t k = 0; k < used.size(); ++k) columns.given[used[k]] = found.residual[k];
+  columns.residual = columns.given;
   columns.base.setZero(as_index(records), as_index(base_count));
   for (std::size_t c = 0; c < base_count; ++c) {
     for (std::size_t k = 0; k < used.size(); ++k)
-      columns.base(as_index(used[k]), as_index(c)) = static_cast<float>(-derivative(c, k));
+      columns.base(as_index(used[k]), as_index(c)) = static_cast<float>(-found.derivative(c, k));
   }
 
-  std::string why;
+  BindingError why;
   const std::optional<Chain> chain = Chain::build(set.extended.model, extended->model.roles, &why);
-  if (!chain) throw Error(fmt::format("{}: {}", extended->name, why));
-  std::vector<CandidateValue> values;
-  std::size_t column_count = 0;
-  for (const Candidate& candidate : set.candidates) {
-    values.emplace_back(candidate, chain->extra_names());
-    column_count += candidate.tested.size();
-  }
-  std::vector<std::size_t> place_number;
-  for (const Candidate& candidate : set.candidates) {
-    const auto found = std::find(places.begin(), places.end(), where_of(candidate.effect));
-    place_number.push_back(static_cast<std::size_t>(found - places.begin()));
-  }
+  if (!chain) throw Error(Error::Code::model, fmt::format("{}: {}", extended->name, why.message()));
   std::vector<std::pair<Quantity, const double*>> inputs;
-  for (const Quantity input : chain->inputs()) {
-    const bool laser = lams && input == Quantity::lams_airspeed;
-    inputs.emplace_back(input, laser ? predicted.data() : extended->model.find(input)->data());
-  }
+  for (const Quantity input : chain->inputs())
+    inputs.emplace_back(input, found.at->model.find(input)->data());
   const std::array<Quantity, 6> measured{Quantity::attack,
                                          Quantity::sideslip,
                                          Quantity::static_pressure_rate,
@@ -262,21 +204,22 @@ FlightColumns find_columns(std::shared_ptr<const FlightSamples> extended, const 
                                          Quantity::roll};
   for (const Quantity quantity : measured)
     columns.quantities.emplace_back(quantity, std::vector<double>(records, nan));
+  const std::vector<Evaluation> evaluations = evaluations_of(set, places);
+  const std::size_t column_count =
+      evaluations.empty() ? 0 : evaluations.back().first_column + evaluations.back().width;
   columns.candidates.setZero(as_index(records), as_index(column_count));
-  std::vector<double> gradient(column_count);
   for (std::size_t k = 0; k < used.size(); ++k) {
     const std::size_t sample = used[k];
     State<double> state;
     NoQualityFlags flags;
     for (const auto& [quantity, series] : inputs) state[quantity] = series[sample];
     chain->measure(state, chain->parameters().data(), flags);
-    std::size_t column = 0;
-    for (std::size_t c = 0; c < values.size(); ++c) {
-      const std::size_t count = set.candidates[c].tested.size();
-      values[c].derivatives(state, gradient.data());
-      const double at_place = derivative(base_count + place_number[c], k);
-      for (std::size_t p = 0; p < count; ++p, ++column)
-        columns.candidates(as_index(sample), as_index(column)) = static_cast<float>(-at_place * gradient[p]);
+    for (const Evaluation& each : evaluations) {
+      const Jet value = chain->effect_value(each.effect, state, each.parameters.data());
+      const double at_place = found.derivative(base_count + each.place, k);
+      for (std::size_t p = 0; p < each.width; ++p)
+        columns.candidates(as_index(sample), as_index(each.first_column + p)) =
+            static_cast<float>(-at_place * value.v[as_index(p)]);
     }
     for (std::size_t q = 0; q < measured.size(); ++q)
       columns.quantities[q].second[sample] = state[measured[q]];

@@ -226,7 +226,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
 
   Diagnosis diagnosis;
   diagnosis.reference = reference.description();
-  CandidateSet set = find_candidates(model, options.formulas, flights);
+  CandidateSet set = find_candidates(model, options.formulas, flights, reference);
   std::vector<FlightColumns> columns;
   for (const Flight* flight : flights) {
     auto samples =

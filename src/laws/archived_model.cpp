@@ -32,9 +32,9 @@ std::string archived_model(const ModelFile& model, CorrectWith correct_with) {
     bare.variables.erase(Quantity::lams_airspeed);
     bare.model.lams = {};
   }
-  std::string why;
+  BindingError why;
   const std::optional<Chain> chain = Chain::build(bare.model, bare.roles(), &why);
-  if (!chain) throw Error(fmt::format("model '{}': {}", model.model.name, why));
+  if (!chain) throw Error(Error::Code::model, fmt::format("model '{}': {}", model.model.name, why.message()));
 
   ModelFile result;
   result.model = bare.model;

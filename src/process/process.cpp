@@ -135,9 +135,9 @@ void Processing::choose_roles() {
     }
     roles_.push_back(role);
   }
-  std::string why;
+  BindingError why;
   std::optional<Chain> chain = Chain::build(file_.model, roles_, &why);
-  if (!chain) fail_model(why);
+  if (!chain) fail_model(why.message());
   chain_ = std::make_shared<const Chain>(std::move(*chain));
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -53,9 +54,9 @@ std::vector<double> rate_of(const std::vector<double>& values, const std::vector
 }
 
 Chain chain_of(const Model& model, const std::vector<Quantity>& roles) {
-  std::string why;
+  BindingError why;
   std::optional<Chain> chain = Chain::build(model, roles, &why);
-  if (!chain) throw Error(fmt::format("model '{}': {}", model.name, why));
+  if (!chain) throw Error(Error::Code::model, fmt::format("model '{}': {}", model.name, why.message()));
   return std::move(*chain);
 }
 
@@ -123,10 +124,18 @@ FlightMotion read_motion(const Flight& flight, const ModelFile& model, const Fli
   return motion;
 }
 
+/// The roles of samples that the model names: a diagnosis reads more of a flight.
+std::vector<Quantity> roles_of(const ModelFile& file, const ModelSamples& samples) {
+  std::vector<Quantity> roles;
+  std::copy_if(samples.roles.begin(), samples.roles.end(), std::back_inserter(roles),
+               [&](Quantity quantity) { return !is_role(quantity) || file.variables.count(quantity) != 0; });
+  return roles;
+}
+
 /// The samples of one model as its chain reads them.
 class Bound {
  public:
-  Bound(const Model& model, const ModelSamples& samples) : batch_(model, samples.roles) {
+  Bound(const ModelFile& file, const ModelSamples& samples) : batch_(file.model, roles_of(file, samples)) {
     for (const Quantity input : batch_.chain().inputs())
       columns_.push_back({input, samples.find(input)->data()});
   }
@@ -191,6 +200,7 @@ void add_linear(const Model& model, std::vector<bool>& linear) {
     for (std::size_t p = 0; p < effect.parameters.size(); ++p)
       linear.push_back(is && !effect_facts[place].parameters[p].shape);
   }
+  linear.resize(linear.size() + model.additions.size(), false);
 }
 
 }  // namespace
@@ -456,13 +466,13 @@ Residuals::Residuals(std::shared_ptr<const FlightSamples> samples, const ModelFi
   own.samples = std::move(samples);
   own.kind = reference.kind;
   own.model = model.model;
-  own.bound.emplace(own.model, own.samples->model);
+  own.bound.emplace(model, own.samples->model);
   own.parameters = own.bound->chain().parameters();
   own.own_parameters = own.parameters.size();
   add_linear(own.model, own.linear);
   if (reference.kind == Reference::Kind::static_system) {
     own.reference_model = reference.system->model;
-    own.reference.emplace(own.reference_model, own.samples->reference);
+    own.reference.emplace(*reference.system, own.samples->reference);
     const std::vector<double>& more = own.reference->chain().parameters();
     own.parameters.insert(own.parameters.end(), more.begin(), more.end());
     add_linear(own.reference_model, own.linear);

@@ -19,16 +19,6 @@ using namespace internal;
 
 namespace {
 
-/// The role that a message of `Chain::build` says is needed.
-std::optional<Quantity> needed_role(const std::string& message) {
-  const std::string before = "needs the role '";
-  const std::size_t found = message.find(before);
-  if (found == std::string::npos) return std::nullopt;
-  const std::size_t begin = found + before.size();
-  const Quantity role = quantity_named(message.substr(begin, message.find('\'', begin) - begin));
-  return role == Quantity::count ? std::nullopt : std::optional<Quantity>(role);
-}
-
 /// The first of the usual names among `variables`, be it with the suffix of an instrument as in PLWCD_LWOI.
 std::optional<std::string> usual_variable(const std::vector<std::string>& usual,
                                           const std::vector<std::string>& variables) {
@@ -85,19 +75,20 @@ ModelFile with_effects(const ModelFile& model, const std::vector<ModelEffect>& e
                        const std::vector<std::string>& variables) {
   ModelFile file = model;
   for (const ModelEffect& effect : effects) add(file, effect);
-  std::string why;
-  while (!Chain::build(file.model, file.roles(), &why)) {
-    const std::optional<Quantity> role = needed_role(why);
-    if (!role) throw Error(fmt::format("model '{}': {}", one_line(model.model.name), one_line(why)));
-    const std::vector<std::string> usual = usual_variables(*role);
+  BindingError error;
+  while (!Chain::build(file.model, file.roles(), &error)) {
+    const std::string why =
+        fmt::format("model '{}': {}", one_line(model.model.name), one_line(error.message()));
+    if (error.code != BindingError::Code::role_missing) throw Error(Error::Code::model, why);
+    const std::vector<std::string> usual = usual_variables(error.quantity);
     const std::optional<std::string> variable = usual_variable(usual, variables);
     if (!variable) {
-      throw Error(fmt::format("model '{}': {}{}", one_line(model.model.name), one_line(why),
-                              usual.empty() ? fmt::format(" as {} = \"...\"", facts_of(*role).name)
-                                            : fmt::format("; the flight has none of its usual names {}",
-                                                          fmt::join(usual, ", "))));
+      throw Error(Error::Code::model,
+                  why + (usual.empty() ? fmt::format(" as {} = \"...\"", facts_of(error.quantity).name)
+                                       : fmt::format("; the flight has none of its usual names {}",
+                                                     fmt::join(usual, ", "))));
     }
-    file.variables[*role] = *variable;
+    file.variables[error.quantity] = *variable;
   }
   return file;
 }

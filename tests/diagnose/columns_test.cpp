@@ -131,7 +131,7 @@ ModelEffect formula() {
 struct Made {
   ModelFile model = laser_model();
   Reference reference{};
-  CandidateSet set = pcor::internal::find_candidates(model, {formula()}, {});
+  CandidateSet set = pcor::internal::find_candidates(model, {formula()}, {}, reference);
   std::shared_ptr<const FlightSamples> samples;
   FlightColumns columns;
 
@@ -185,7 +185,7 @@ const std::filesystem::path& flight_file() {
 
 CandidateSet candidates_of_file(const ModelFile& model, const std::vector<ModelEffect>& formulas = {}) {
   const pcor::Flight flight(flight_file());
-  return pcor::internal::find_candidates(model, formulas, {&flight});
+  return pcor::internal::find_candidates(model, formulas, {&flight}, Reference{});
 }
 
 }  // namespace

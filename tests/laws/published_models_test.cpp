@@ -78,9 +78,9 @@ class Law {
 
  private:
   static Chain build(const ModelFile& file) {
-    std::string error;
+    BindingError error;
     const std::optional<Chain> chain = Chain::build(file.model, file.roles(), &error);
-    if (!chain) throw std::runtime_error(error);
+    if (!chain) throw std::runtime_error(error.message());
     return *chain;
   }
 

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+using pcor::BindingError;
 using pcor::Chain;
 using pcor::LamsApproach;
 using pcor::Model;
@@ -36,15 +37,15 @@ std::vector<Quantity> roles(const Recorded& recorded) {
 }
 
 Chain build(const Model& model, const Recorded& recorded) {
-  std::string error;
+  BindingError error;
   auto chain = Chain::build(model, roles(recorded), &error);
-  if (!chain) throw std::runtime_error(error);
+  if (!chain) throw std::runtime_error(error.message());
   return *chain;
 }
 
 std::string error_of(const Model& model, const Recorded& recorded) {
-  std::string error;
-  return Chain::build(model, roles(recorded), &error) ? "no error" : error;
+  BindingError error;
+  return Chain::build(model, roles(recorded), &error) ? "no error" : error.message();
 }
 
 struct Sample {
@@ -1006,6 +1007,24 @@ TEST(Build, WantsWhatLamsNeeds) {
               HasSubstr("LAMS needs the role 'sideslip_differential_pressure'"));
 }
 
+TEST(Build, TellsProgramsWhatIsMissing) {
+  const auto error_of = [](const Model& model) {
+    BindingError error;
+    EXPECT_FALSE(Chain::build(model, roles(Truth().recorded()), &error).has_value());
+    return error;
+  };
+  BindingError error = error_of(with({}, catalogued("qcr-angle", {0.0})));
+  EXPECT_EQ(error.code, BindingError::Code::parameter_count);
+  error = error_of(with({}, catalogued("flaps-gear", {0.0})));
+  EXPECT_EQ(error.code, BindingError::Code::role_missing);
+  EXPECT_EQ(error.quantity, Quantity::flaps);
+  EXPECT_EQ(error.who, "effect 'flaps-gear'");
+  EXPECT_EQ(error.message(), error.who + " " + error.what);
+  error = error_of(with({}, written(Where::static_defect, "corrected_mach")));
+  EXPECT_EQ(error.code, BindingError::Code::known_too_late);
+  EXPECT_EQ(error.quantity, Quantity::corrected_mach);
+}
+
 TEST(Build, ToleratesThatNobodyAsksWhy) { EXPECT_FALSE(Chain::build({}, {}, nullptr).has_value()); }
 
 TEST(Chain, IsSharedByThreads) {
@@ -1055,4 +1074,81 @@ TEST(Chain, CompilesForAScalarThatIsNoDouble) {
           Quantity::corrected_airspeed, Quantity::lams_temperature, Quantity::lams_dynamic_pressure})
       EXPECT_NEAR(state[quantity].value(), expected[quantity], 1e-9) << facts_of(quantity).name;
   }
+}
+
+// What is added at a place, and what an effect gives by itself.
+
+TEST(Additions, DoWhatAnEffectThereDoes) {
+  // At every place: the chain with a formula of constant value is the chain with that amount added.
+  Model model = Truth().model();
+  const Recorded recorded = full_record();
+  for (std::size_t i = 0; i < pcor::where_count; ++i) {
+    const auto where = static_cast<Where>(i);
+    SCOPED_TRACE(facts_of(where).name);
+    const Sample by_effect = fly(with(model, written(where, "k", {"k"}, {0.01})), recorded);
+    model.additions = {where};
+    Chain chain = build(model, recorded);
+    ASSERT_EQ(chain.parameters().back(), 0.0);
+    std::vector<double> parameters = chain.parameters();
+    parameters.back() = 0.01;
+    Sample added;
+    for (const auto& [quantity, value] : recorded) added.state[quantity] = value;
+    chain.measure(added.state, parameters.data(), added.flags);
+    added.state[Quantity::static_defect] = chain.static_defect(added.state, parameters.data(), added.flags);
+    EXPECT_EQ(chain.lams_static_defect(added.state, parameters.data(), added.flags),
+              by_effect[Quantity::lams_static_defect]);
+    chain.correct(added.state, added[Quantity::static_defect], added.flags);
+    chain.air(added.state, parameters.data(), added.flags);
+    for (const Quantity each : {Quantity::corrected_static_pressure, Quantity::ambient_temperature,
+                                Quantity::corrected_airspeed, Quantity::attack})
+      EXPECT_EQ(added[each], by_effect[each]);
+    model.additions.clear();
+  }
+}
+
+TEST(Additions, AskForNothingAndChangeNothingWhereAPlaceIsOfNoUse) {
+  // A model whose angle of attack is recorded reads no radome; one without a laser has no beam.
+  const Recorded recorded = without(Truth().recorded(), Quantity::lams_airspeed);
+  Model model = with({}, catalogued("static-attack", {0.001}));
+  const Sample before = fly(model, recorded);
+  model.additions = {Where::radome, Where::attack_ratio, Where::beam_speed, Where::beam_azimuth};
+  const Chain chain = build(model, recorded);
+  for (const Quantity input : {Quantity::radome_dynamic_pressure, Quantity::attack_ratio})
+    EXPECT_FALSE(chain.needs(input));
+  EXPECT_EQ(fly(chain, recorded)[Quantity::corrected_static_pressure],
+            before[Quantity::corrected_static_pressure]);
+}
+
+TEST(EffectValue, IsWhatTheEffectGivesAtItsPlace) {
+  const Recorded recorded = Truth().recorded();
+  Model model = with({}, catalogued("static-qp", {0.03}));
+  model = with(model, written(Where::static_defect, "k * static_pressure", {"k"}, {0.004}));
+  const Chain chain = build(model, recorded);
+  const Sample sample = fly(chain, recorded);
+  const double by_hand = chain.effect_value(0, sample.state, chain.parameters().data()) +
+                         chain.effect_value(1, sample.state, chain.parameters().data() + 1);
+  EXPECT_DOUBLE_EQ(sample[Quantity::static_defect], by_hand);
+  EXPECT_DOUBLE_EQ(chain.effect_value(0, sample.state, std::vector{0.03}.data()),
+                   0.03 * recorded.at(Quantity::dynamic_pressure));
+}
+
+TEST(EffectValue, IsZeroOnABeamThatIsNotThere) {
+  const Recorded recorded = without(Truth().recorded(), Quantity::lams_airspeed);
+  const Chain chain = build(with({}, catalogued("lams-scale", {0.01})), recorded);
+  EXPECT_EQ(chain.effect_value(0, fly(chain, recorded).state, chain.parameters().data()), 0.0);
+}
+
+TEST(WithEffect, IsTheChainOfTheLongerModel) {
+  const Recorded recorded = with(full_record(), Quantity::roll, 20.0);
+  const Chain shorter = build(Truth().model(), recorded);
+  for (const ModelEffect& effect : {catalogued("static-lag", {0.2}), catalogued("psfd-bias", {0.3}),
+                                    written(Where::total_line, "k * roll / 90", {"k"}, {0.5})}) {
+    const auto longer = shorter.with_effect(effect, nullptr);
+    ASSERT_TRUE(longer.has_value());
+    EXPECT_EQ(fly(*longer, recorded)[Quantity::corrected_static_pressure],
+              fly(with(Truth().model(), effect), recorded)[Quantity::corrected_static_pressure]);
+  }
+  BindingError error;
+  EXPECT_FALSE(shorter.with_effect(catalogued("static-bend", {}), &error).has_value());
+  EXPECT_EQ(error.code, BindingError::Code::unknown_effect);
 }

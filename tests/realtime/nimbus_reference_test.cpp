@@ -151,13 +151,13 @@ Model gv_fuselage_pair() {
 }
 
 Chain chain_of(const Model& model) {
-  std::string error;
+  BindingError error;
   const std::optional<Chain> chain =
       Chain::build(model,
                    {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::attack,
                     Quantity::recovery_temperature, Quantity::vapor_pressure},
                    &error);
-  if (!chain) throw std::runtime_error(error);
+  if (!chain) throw std::runtime_error(error.message());
   return *chain;
 }
 

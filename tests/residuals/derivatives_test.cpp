@@ -12,6 +12,7 @@
 
 // Automatic derivatives, of which fits are made, against central differences.
 
+using pcor::BindingError;
 using pcor::Chain;
 using pcor::effect_facts;
 using pcor::effect_functions;
@@ -176,9 +177,9 @@ const std::pair<Quantity, double> record[] = {{Quantity::static_pressure, 697},
 Chain build(const Model& model) {
   std::vector<Quantity> recorded;
   for (const auto& [quantity, value] : record) recorded.push_back(quantity);
-  std::string error;
+  BindingError error;
   auto chain = Chain::build(model, recorded, &error);
-  if (!chain) throw std::runtime_error(error);
+  if (!chain) throw std::runtime_error(error.message());
   return *chain;
 }
 

@@ -111,7 +111,7 @@ struct EffectExample {
 ///     template <class State, class P> static auto value(const State& state, const P* parameters)
 ///
 /// which gives what is added at its place: the correction, which brings what was recorded to what is true.
-/// The value is smooth in its parameters and zero at the neutral ones.
+/// The value is linear in its parameters, but for those that shape it, and zero at the neutral ones.
 struct EffectFacts {
   std::string_view id;
   std::string_view title;

@@ -65,6 +65,10 @@ struct Model {
   std::string name{};
   std::string aircraft{};
   std::vector<ModelEffect> effects{};
+  /// Places where an amount of its own is added, a parameter each behind those of the effects, zero: the
+  /// derivative by it is that by whatever an effect there gives. Where the model has no use for the place the
+  /// amount changes nothing. No model file has them.
+  std::vector<Where> additions{};
   LamsMounting lams;
   RecoveryFactor recovery{{1.0, 0.0, 0.0, 0.0}};
   bool moist = true;  ///< constants of moist air; of dry air where false

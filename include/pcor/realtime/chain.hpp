@@ -1,22 +1,15 @@
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <bitset>
-#include <cstddef>
 #include <limits>
 #include <optional>
-#include <string>
+#include <utility>
 #include <vector>
 
-#include <pcor/effects/catalogue.hpp>
-#include <pcor/model/formula.hpp>
-#include <pcor/model/model.hpp>
 #include <pcor/model/quality.hpp>
-#include <pcor/model/state.hpp>
 #include <pcor/physics/air_data.hpp>
 #include <pcor/physics/humidity.hpp>
 #include <pcor/physics/lams.hpp>
+#include <pcor/realtime/model_binder.hpp>
 
 namespace pcor {
 
@@ -29,60 +22,27 @@ namespace pcor {
 /// parameters, `P`, so that the same lines serve the real-time loop (both `double`), batches (`S` a vector
 /// pack) and fits (`P` a dual number). Where effects act before the static ports, `S` must be the promoted
 /// type. After `build` a chain allocates nothing, throws nothing, and holds nothing of a sample.
-class Chain {
+class Chain : public BoundModel {
  public:
   /// Prepares `model` for states in which the roles `recorded` are known. Returns nothing where the model
-  /// cannot be used; `error` then says why and what to do, in one line.
+  /// cannot be used; `error` then says why and what to do.
   static std::optional<Chain> build(const Model& model, const std::vector<Quantity>& recorded,
-                                    std::string* error);
-
-  /// The coefficients of all effects, one after another in the order of the model.
-  const std::vector<double>& parameters() const { return parameters_; }
-
-  /// The variables that formulas use beyond the quantities of the library, by name. Number i belongs at
-  /// `extra_quantity(i)` of a state.
-  const std::vector<std::string>& extra_names() const { return extra_names_; }
-
-  /// The recorded quantities, those of formulas included.
-  const std::vector<Quantity>& inputs() const { return inputs_; }
-
-  /// True where the quantity is recorded.
-  bool recorded(Quantity quantity) const { return recorded_[index(quantity)]; }
-
-  /// True where some stage needs the quantity.
-  bool needs(Quantity quantity) const { return needed_[index(quantity)]; }
-
-  /// True where the chain computes the quantity from others because it is not recorded.
-  bool derives(Quantity quantity) const { return needs(quantity) && !recorded(quantity); }
-
-  /// True where some effect acts at the place.
-  bool acts(Where where) const { return begin_of(where) != begin_of(where, 1); }
-
-  bool has_temperature() const {
-    return recorded(Quantity::recovery_temperature) || recorded(Quantity::ambient_temperature);
+                                    BindingError* error) {
+    BindingError unasked;
+    return made(ModelBinder::bind(model, recorded, error != nullptr ? *error : unasked));
   }
 
-  /// True where the ambient temperature is found from the recovery temperature; a recorded one goes before
-  /// it.
-  bool derives_temperature() const {
-    return recorded(Quantity::recovery_temperature) && !recorded(Quantity::ambient_temperature);
-  }
-
-  /// True where a recorded ambient temperature is calibrated, which `measure` does in its place.
-  bool calibrates_recorded_temperature() const {
-    return acts(Where::ambient_temperature) && recorded(Quantity::ambient_temperature);
-  }
-
-  bool has_lams() const { return recorded(Quantity::lams_airspeed); }
-  bool needs_rates() const {
-    return std::any_of(rates.begin(), rates.end(), [this](const Rate& each) { return needs(each.rate); });
+  /// This chain with one more effect at the end of its model, or nothing; `error` then says why.
+  std::optional<Chain> with_effect(const ModelEffect& effect, BindingError* error) const {
+    BindingError unasked;
+    return made(ModelBinder::with_effect(*this, effect, error != nullptr ? *error : unasked));
   }
 
   /// The quantities in which the laws stand, the pressures at the ports, and the calibration of a recorded
   /// ambient temperature. A recorded value that is infinite is missing from here on.
   template <class S, class P, class Flags>
   void measure(State<S>& state, const P* parameters, Flags& flags) const {
-    for (const Quantity input : inputs_) state[input] = finite_or_missing(state[input]);
+    for (const Quantity input : inputs()) state[input] = finite_or_missing(state[input]);
     const S p = state[Quantity::static_pressure];
     const S q = state[Quantity::dynamic_pressure];
     flags.set(is_missing(p), Quality::static_pressure_missing);
@@ -179,17 +139,8 @@ class Chain {
     flags.set(p <= S(0.0), Quality::impossible_static_pressure);
     S humidity = recorded_humidity(state, parameters, p, flags);
     MoistAir<S> constants = solve_air(state, parameters, humidity, thermometer, delta, flags);
-    // Most air is far from saturation; only where it may not be is saturation itself computed.
-    if (counts_vapor() &&
-        any(humidity * p > vapor_pressure_below_saturation(state[Quantity::ambient_temperature]))) {
-      const S saturation = vapor_pressure_over_water(state[Quantity::ambient_temperature]) / p;
-      const auto above = humidity > saturation;
-      flags.set(above, Quality::humidity_limited);
-      if (any(above)) {
-        humidity = select(above, saturation, humidity);
-        constants = solve_air(state, parameters, humidity, thermometer, delta, flags);
-      }
-    }
+    if (limit_to_saturation(humidity, p, state[Quantity::ambient_temperature], flags))
+      constants = solve_air(state, parameters, humidity, thermometer, delta, flags);
     state[Quantity::humidity] = humidity;
     state[Quantity::corrected_airspeed] =
         true_airspeed(state[Quantity::corrected_mach], state[Quantity::ambient_temperature], constants);
@@ -207,15 +158,8 @@ class Chain {
     const S delta = sum<S>(Where::recovery, state, parameters);
     const auto recovery = [this, &delta](const S& mach) { return recovery_(mach) + delta; };
     LamsSolution<S> solution = solve_lams(p, q, v, e, state, parameters, thermometer, recovery);
-    if (counts_vapor() && any(e > vapor_pressure_below_saturation(solution.temperature))) {
-      const S saturation = vapor_pressure_over_water(solution.temperature);
-      const auto above = e > saturation;
-      flags.set(above, Quality::humidity_limited);
-      if (any(above)) {
-        e = select(above, saturation, e);
-        solution = solve_lams(p, q, v, e, state, parameters, thermometer, recovery);
-      }
-    }
+    if (limit_to_saturation(e, S(1.0), solution.temperature, flags))
+      solution = solve_lams(p, q, v, e, state, parameters, thermometer, recovery);
     const auto valid = p > S(0.0) && q > S(0.0) && v > S(0.0);
     const S defect = select(valid, finite_or_missing(solution.static_defect), missing<S>());
     flags.set(is_missing(defect), Quality::lams_missing);
@@ -246,56 +190,10 @@ class Chain {
   }
 
  private:
-  // An effect of the model: of the catalogue, or the formula of that number.
-  struct Term {
-    std::size_t effect = catalogue_size;
-    std::size_t formula = 0;
-    std::size_t first_parameter = 0;
-    Where where = Where::static_defect;
-  };
+  explicit Chain(BoundModel bound) : BoundModel(std::move(bound)) {}
 
-  static constexpr std::size_t formula_variable_capacity = 12;
-
-  struct BoundFormula {
-    Formula formula;
-    std::vector<Quantity> variables;
-  };
-
-  struct Range {
-    Quantity quantity;
-    double lower;
-    double upper;
-  };
-
-  class Builder;
-
-  Chain() = default;
-
-  std::size_t begin_of(Where where, std::size_t next = 0) const {
-    return where_begin_[static_cast<std::size_t>(where) + next];
-  }
-
-  template <class R, class S, class P>
-  R sum(Where where, const State<S>& state, const P* parameters) const {
-    return acts(where) ? sum_of_terms<R>(where, state, parameters) : R(0.0);
-  }
-
-  template <class R, class S, class P>
-  R sum_of_terms(Where where, const State<S>& state, const P* parameters) const {
-    R total(0.0);
-    for (std::size_t i = begin_of(where); i < begin_of(where, 1); ++i) {
-      total = total + value(terms_[i], state, parameters + terms_[i].first_parameter);
-    }
-    return finite_or_missing(total);
-  }
-
-  template <class S, class P>
-  Promoted<S, P> value(const Term& term, const State<S>& state, const P* parameters) const {
-    if (term.effect != catalogue_size) return effect_functions<S, P>[term.effect](state, parameters);
-    const BoundFormula& bound = formulas_[term.formula];
-    std::array<S, formula_variable_capacity> variables;
-    for (std::size_t i = 0; i < bound.variables.size(); ++i) variables[i] = state[bound.variables[i]];
-    return bound.formula.value(variables.data(), parameters);
+  static std::optional<Chain> made(std::optional<BoundModel> bound) {
+    return bound ? std::optional<Chain>(Chain(std::move(*bound))) : std::nullopt;
   }
 
   template <class S, class P>
@@ -418,6 +316,20 @@ class Chain {
     return select(unknown || negative, S(0.0), e / p);
   }
 
+  // Brings a vapour pressure in units of `unit`, hPa, down to saturation over water. True where any was
+  // above.
+  template <class S, class Flags>
+  bool limit_to_saturation(S& vapor, const S& unit, const S& temperature, Flags& flags) const {
+    // Most air is far from saturation; only where it may not be is saturation itself computed.
+    if (!counts_vapor() || !any(vapor * unit > vapor_pressure_below_saturation(temperature))) return false;
+    const S saturation = vapor_pressure_over_water(temperature) / unit;
+    const auto above = vapor > saturation;
+    flags.set(above, Quality::humidity_limited);
+    if (!any(above)) return false;
+    vapor = select(above, saturation, vapor);
+    return true;
+  }
+
   // The ambient temperature after the effects that calibrate it, which are found from it as it was before
   // them.
   template <class S, class P, class Flags>
@@ -471,272 +383,6 @@ class Chain {
     }
     return constants;
   }
-
-  std::vector<Term> terms_;  // by place
-  std::array<std::size_t, where_count + 1> where_begin_{};
-  std::vector<BoundFormula> formulas_;
-  std::vector<double> parameters_;
-  std::vector<std::string> extra_names_;
-  std::vector<Range> domain_;
-  std::vector<Quantity> inputs_;
-  std::bitset<state_capacity> recorded_;
-  std::bitset<state_capacity> needed_;
-  LamsMounting lams_;
-  RecoveryFactor recovery_;
-  RadomeCalibration attack_radome_;
-  RadomeCalibration sideslip_radome_;
-  Policy policy_;
-  bool moist_ = true;
 };
-
-// Checks a model against what is recorded, and fills a chain.
-class Chain::Builder {
- public:
-  Builder(const Model& model, const std::vector<Quantity>& recorded, std::string& error)
-      : model_(model), error_(error) {
-    for (const Quantity quantity : recorded) chain_.recorded_.set(index(quantity));
-  }
-
-  bool run() {
-    chain_.lams_ = model_.lams;
-    chain_.recovery_ = model_.recovery;
-    chain_.attack_radome_ = model_.attack_radome;
-    chain_.sideslip_radome_ = model_.sideslip_radome;
-    chain_.policy_ = model_.policy;
-    chain_.moist_ = model_.moist;
-    for (const Quantity pressure : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
-      if (!require(pressure, "the chain")) return false;
-    }
-    for (const ModelEffect& effect : model_.effects) {
-      if (!(effect.is_formula() ? add_formula(effect) : add_effect(effect))) return false;
-    }
-    for (const DomainRange& range : model_.domain) {
-      if (!add_range(range)) return false;
-    }
-    if (chain_.has_lams() && !require_lams()) return false;
-    sort_terms();
-    for (std::size_t i = 0; i < state_capacity; ++i) {
-      if (chain_.recorded_[i]) chain_.inputs_.push_back(static_cast<Quantity>(i));
-    }
-    return true;
-  }
-
-  Chain take() { return std::move(chain_); }
-
- private:
-  bool fail(std::string why) {
-    error_ = std::move(why);
-    return false;
-  }
-
-  static std::string quoted(std::string_view name) { return "'" + std::string(name) + "'"; }
-
-  bool add_effect(const ModelEffect& effect) {
-    const std::size_t place = effect_named(effect.id);
-    if (place == catalogue_size) return fail("there is no effect " + quoted(effect.id));
-    const EffectFacts& facts = effect_facts[place];
-    if (effect.parameters.size() != facts.parameter_count()) {
-      return fail("effect " + quoted(effect.id) + " takes " + std::to_string(facts.parameter_count()) +
-                  " parameter(s), not " + std::to_string(effect.parameters.size()));
-    }
-    if (is_beyond_reach(facts.where)) return add_parameters(effect);
-    if (!require_place(facts.where, "effect " + quoted(effect.id))) return false;
-    for (std::size_t i = 0; i < facts.need_count(); ++i) {
-      if (is_at_hand(facts.needs[i], facts.where)) continue;
-      if (!require(facts.needs[i], "effect " + quoted(effect.id))) return false;
-    }
-    Term term;
-    term.effect = place;
-    term.where = facts.where;
-    return add_term(term, effect);
-  }
-
-  bool add_formula(const ModelEffect& effect) {
-    FormulaError formula_error;
-    std::optional<Formula> formula = Formula::parse(effect.formula, effect.parameter_names, &formula_error);
-    if (!formula) return fail("formula of effect " + quoted(effect.id) + ": " + formula_error.message);
-    if (effect.parameters.size() != effect.parameter_names.size()) {
-      return fail("effect " + quoted(effect.id) + " takes " + std::to_string(effect.parameter_names.size()) +
-                  " parameter(s), not " + std::to_string(effect.parameters.size()));
-    }
-    if (formula->variables().size() > formula_variable_capacity) {
-      return fail("formula of effect " + quoted(effect.id) + " uses more than " +
-                  std::to_string(formula_variable_capacity) + " variables");
-    }
-    if (is_beyond_reach(effect.where)) return add_parameters(effect);
-    if (!require_place(effect.where, "the formula of effect " + quoted(effect.id))) return false;
-    BoundFormula bound{std::move(*formula), {}};
-    for (const std::string& name : bound.formula.variables()) {
-      Quantity quantity = quantity_named(name);
-      if (quantity == Quantity::count && !find_extra(name, quantity)) {
-        return fail("the formulas of the model use more than " + std::to_string(extra_capacity) +
-                    " further variables");
-      }
-      if (!is_at_hand(quantity, effect.where) &&
-          !require(quantity, "the formula of effect " + quoted(effect.id)))
-        return false;
-      bound.variables.push_back(quantity);
-    }
-    Term term;
-    term.formula = chain_.formulas_.size();
-    term.where = effect.where;
-    chain_.formulas_.push_back(std::move(bound));
-    return add_term(term, effect);
-  }
-
-  // Without a laser nothing acts on its beam, and what such an effect needs may be missing.
-  bool is_beyond_reach(Where where) const {
-    const bool on_beam =
-        where == Where::beam_elevation || where == Where::beam_azimuth || where == Where::beam_speed;
-    return on_beam && !chain_.has_lams();
-  }
-
-  // What an effect corrects is there, and is computed.
-  bool require_place(Where where, const std::string& who) {
-    if (where == Where::radome) return require(Quantity::radome_dynamic_pressure, who);
-    if (where == Where::attack_ratio) return require(Quantity::attack_ratio, who);
-    if (where == Where::ambient_temperature && !chain_.has_temperature()) {
-      return fail(who +
-                  " needs the role 'recovery_temperature' or 'ambient_temperature': name its variable in the "
-                  "table [variables]");
-    }
-    return true;
-  }
-
-  // What calibrates the ambient temperature is found from it, derived or recorded.
-  static bool is_at_hand(Quantity quantity, Where where) {
-    return where == Where::ambient_temperature && quantity == Quantity::ambient_temperature;
-  }
-
-  bool add_term(Term term, const ModelEffect& effect) {
-    term.first_parameter = chain_.parameters_.size();
-    chain_.terms_.push_back(term);
-    return add_parameters(effect);
-  }
-
-  bool add_parameters(const ModelEffect& effect) {
-    chain_.parameters_.insert(chain_.parameters_.end(), effect.parameters.begin(), effect.parameters.end());
-    return true;
-  }
-
-  // Finds the place of a further variable; a new one where the name is new. False where there is no room.
-  bool find_extra(const std::string& name, Quantity& place) {
-    std::vector<std::string>& names = chain_.extra_names_;
-    const auto found = std::find(names.begin(), names.end(), name);
-    const auto number = static_cast<std::size_t>(found - names.begin());
-    if (number == extra_capacity) return false;
-    place = extra_quantity(number);
-    if (found == names.end()) {
-      names.push_back(name);
-      chain_.recorded_.set(index(place));
-    }
-    return true;
-  }
-
-  bool add_range(const DomainRange& range) {
-    const Quantity quantity = quantity_named(range.quantity);
-    if (quantity == Quantity::count) return fail("there is no quantity " + quoted(range.quantity));
-    if (!require(quantity, "the domain of the model")) return false;
-    chain_.domain_.push_back({quantity, range.lower, range.upper});
-    return true;
-  }
-
-  bool require_lams() {
-    if (!require(Quantity::attack, "LAMS, for the angle between its beam and the wind,")) return false;
-    if (chain_.recorded(Quantity::sideslip) || model_.sideslip_radome.is_calibrated()) {
-      if (!require(Quantity::sideslip, "LAMS")) return false;
-    }
-    const Quantity thermometer = model_.lams.approach == LamsApproach::with_temperature
-                                     ? Quantity::ambient_temperature
-                                     : Quantity::recovery_temperature;
-    return require(thermometer, "LAMS");
-  }
-
-  // Marks a quantity and all that it is derived from as needed.
-  bool require(Quantity quantity, const std::string& who) {
-    chain_.needed_.set(index(quantity));
-    if (chain_.recorded_[index(quantity)]) return true;
-    switch (quantity) {
-      case Quantity::time:
-      case Quantity::dynamic_ratio:
-      case Quantity::mach:
-      case Quantity::static_pressure_rate:
-      case Quantity::dynamic_pressure_rate:
-        return true;
-      case Quantity::recovery_temperature_rate:
-        return require(Quantity::recovery_temperature, who);
-      case Quantity::ambient_temperature_rate:
-        return require(Quantity::ambient_temperature, who);
-      case Quantity::airspeed_rate:
-        return require_airspeed_rate(who);
-      case Quantity::vapor_pressure:
-        return require_vapor_pressure(who);
-      case Quantity::attack_ratio:
-        return require(Quantity::attack_differential_pressure, who) &&
-               require(Quantity::radome_dynamic_pressure, who);
-      case Quantity::sideslip_ratio:
-        return require(Quantity::sideslip_differential_pressure, who) &&
-               require(Quantity::radome_dynamic_pressure, who);
-      case Quantity::attack:
-        return require_angle(model_.attack_radome, quantity, Quantity::attack_ratio, who);
-      case Quantity::sideslip:
-        return require_angle(model_.sideslip_radome, quantity, Quantity::sideslip_ratio, who);
-      default:
-        return fail_missing(quantity, who);
-    }
-  }
-
-  bool require_airspeed_rate(const std::string& who) {
-    const bool ambient = chain_.recorded(Quantity::ambient_temperature);
-    return require(Quantity::static_pressure_rate, who) && require(Quantity::dynamic_pressure_rate, who) &&
-           require(ambient ? Quantity::ambient_temperature_rate : Quantity::recovery_temperature_rate, who);
-  }
-
-  bool require_vapor_pressure(const std::string& who) {
-    for (const Quantity mirror : {Quantity::dew_point, Quantity::frost_point}) {
-      if (chain_.recorded(mirror)) return require(mirror, who);
-    }
-    return fail_missing(Quantity::vapor_pressure, who);
-  }
-
-  bool require_angle(const RadomeCalibration& radome, Quantity angle, Quantity ratio,
-                     const std::string& who) {
-    const std::string name(facts_of(angle).name);
-    if (!radome.is_calibrated()) {
-      return fail(who + " needs the role '" + name +
-                  "': name its variable in the table [variables], or give [radome] " + name +
-                  " = [offset, slope] to derive it from the radome pressures");
-    }
-    if (radome.needs_mach() && !require(Quantity::mach, who)) return false;
-    return require(ratio, who);
-  }
-
-  bool fail_missing(Quantity quantity, const std::string& who) {
-    const std::string name(facts_of(quantity).name);
-    if (!is_role(quantity))
-      return fail(who + " needs " + quoted(name) + ", which is known only after delta-p");
-    return fail(who + " needs the role " + quoted(name) + ": name its variable in the table [variables]");
-  }
-
-  void sort_terms() {
-    std::stable_sort(chain_.terms_.begin(), chain_.terms_.end(),
-                     [](const Term& a, const Term& b) { return a.where < b.where; });
-    for (const Term& term : chain_.terms_) ++chain_.where_begin_[static_cast<std::size_t>(term.where) + 1];
-    for (std::size_t i = 0; i < where_count; ++i) chain_.where_begin_[i + 1] += chain_.where_begin_[i];
-  }
-
-  const Model& model_;
-  std::string& error_;
-  Chain chain_;
-};
-
-inline std::optional<Chain> Chain::build(const Model& model, const std::vector<Quantity>& recorded,
-                                         std::string* error) {
-  std::string why;
-  Builder builder(model, recorded, why);
-  if (builder.run()) return builder.take();
-  if (error != nullptr) *error = why;
-  return std::nullopt;
-}
 
 }  // namespace pcor

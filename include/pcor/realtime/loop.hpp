@@ -161,8 +161,12 @@ inline bool Loop::order(std::string* error) {
 
 inline std::optional<Loop> Loop::build(const Model& model, const std::vector<Quantity>& recorded, double rate,
                                        std::string* error, CorrectWith with) {
-  std::optional<Chain> chain = Chain::build(model, recorded, error);
-  if (!chain) return std::nullopt;
+  BindingError why;
+  std::optional<Chain> chain = Chain::build(model, recorded, &why);
+  if (!chain) {
+    if (error != nullptr) *error = why.message();
+    return std::nullopt;
+  }
   return build(std::make_shared<const Chain>(std::move(*chain)), rate, error, with);
 }
 

@@ -1,0 +1,157 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bitset>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/model/formula.hpp>
+#include <pcor/model/model.hpp>
+#include <pcor/model/state.hpp>
+
+namespace pcor {
+
+/// A model bound to what is recorded: its effects by the places where they act, with the quantities that they
+/// read, and what is needed, recorded and derived. `ModelBinder` makes one.
+class BoundModel {
+ public:
+  /// The coefficients of all effects, one after another in the order of the model; after them, zero, what is
+  /// added at each of the model's `additions`.
+  const std::vector<double>& parameters() const { return parameters_; }
+
+  /// The variables that formulas use beyond the quantities of the library, by name. Number i belongs at
+  /// `extra_quantity(i)` of a state.
+  const std::vector<std::string>& extra_names() const { return extra_names_; }
+
+  /// The recorded quantities, those of formulas included.
+  const std::vector<Quantity>& inputs() const { return inputs_; }
+
+  /// True where the quantity is recorded.
+  bool recorded(Quantity quantity) const { return recorded_[index(quantity)]; }
+
+  /// True where some stage needs the quantity.
+  bool needs(Quantity quantity) const { return needed_[index(quantity)]; }
+
+  /// True where the chain computes the quantity from others because it is not recorded.
+  bool derives(Quantity quantity) const { return needs(quantity) && !recorded(quantity); }
+
+  /// True where some effect acts at the place.
+  bool acts(Where where) const { return begin_of(where) != begin_of(where, 1); }
+
+  bool has_temperature() const {
+    return recorded(Quantity::recovery_temperature) || recorded(Quantity::ambient_temperature);
+  }
+
+  /// True where the ambient temperature is found from the recovery temperature; a recorded one goes before
+  /// it.
+  bool derives_temperature() const {
+    return recorded(Quantity::recovery_temperature) && !recorded(Quantity::ambient_temperature);
+  }
+
+  /// True where a recorded ambient temperature is calibrated, which `Chain::measure` does in its place.
+  bool calibrates_recorded_temperature() const {
+    return acts(Where::ambient_temperature) && recorded(Quantity::ambient_temperature);
+  }
+
+  bool has_lams() const { return recorded(Quantity::lams_airspeed); }
+  bool needs_rates() const {
+    return std::any_of(rates.begin(), rates.end(), [this](const Rate& each) { return needs(each.rate); });
+  }
+
+  /// What effect number `effect` of the model gives for a state that `Chain::measure` has been through, in
+  /// the unit of its place. Zero for an effect on the laser's beam where there is no laser.
+  /// @param own the coefficients of this effect alone
+  template <class S, class P>
+  Promoted<S, P> effect_value(std::size_t effect, const State<S>& state, const P* own) const {
+    const Term& term = effects_[effect];
+    return is_within_reach(term.where) ? value(term, state, own) : Promoted<S, P>(0.0);
+  }
+
+ protected:
+  // The sum of what acts at a place.
+  template <class R, class S, class P>
+  R sum(Where where, const State<S>& state, const P* parameters) const {
+    return acts(where) ? sum_of_terms<R>(where, state, parameters) : R(0.0);
+  }
+
+  LamsMounting lams_;
+  RecoveryFactor recovery_;
+  RadomeCalibration attack_radome_;
+  RadomeCalibration sideslip_radome_;
+  Policy policy_;
+  bool moist_ = true;
+
+  struct Range {
+    Quantity quantity;
+    double lower;
+    double upper;
+  };
+  std::vector<Range> domain_;
+
+ private:
+  friend class ModelBinder;
+
+  // What acts at a place: an effect of the catalogue, a formula of that number, or an amount that is a
+  // parameter itself.
+  struct Term {
+    static constexpr std::size_t is_formula = catalogue_size;
+    static constexpr std::size_t is_addition = catalogue_size + 1;
+
+    std::size_t effect = is_formula;
+    std::size_t formula = 0;
+    std::size_t first_parameter = 0;
+    Where where = Where::static_defect;
+  };
+
+  static constexpr std::size_t formula_variable_capacity = 12;
+
+  struct BoundFormula {
+    Formula formula;
+    std::vector<Quantity> variables;
+  };
+
+  std::size_t begin_of(Where where, std::size_t next = 0) const {
+    return where_begin_[static_cast<std::size_t>(where) + next];
+  }
+
+  // Without a laser nothing acts on its beam.
+  bool is_within_reach(Where where) const {
+    const bool on_beam =
+        where == Where::beam_elevation || where == Where::beam_azimuth || where == Where::beam_speed;
+    return !on_beam || has_lams();
+  }
+
+  template <class R, class S, class P>
+  R sum_of_terms(Where where, const State<S>& state, const P* parameters) const {
+    R total(0.0);
+    for (std::size_t i = begin_of(where); i < begin_of(where, 1); ++i) {
+      total = total + value(terms_[i], state, parameters + terms_[i].first_parameter);
+    }
+    return finite_or_missing(total);
+  }
+
+  template <class S, class P>
+  Promoted<S, P> value(const Term& term, const State<S>& state, const P* own) const {
+    if (term.effect < catalogue_size) return effect_functions<S, P>[term.effect](state, own);
+    if (term.effect == Term::is_addition) return Promoted<S, P>(*own);
+    const BoundFormula& bound = formulas_[term.formula];
+    std::array<S, formula_variable_capacity> variables;
+    for (std::size_t i = 0; i < bound.variables.size(); ++i) variables[i] = state[bound.variables[i]];
+    return bound.formula.value(variables.data(), own);
+  }
+
+  std::vector<Term> effects_;  // in the order of the model
+  std::vector<Term> terms_;    // what acts, by place
+  std::array<std::size_t, where_count + 1> where_begin_{};
+  std::vector<BoundFormula> formulas_;
+  std::vector<double> parameters_;
+  std::vector<std::string> extra_names_;
+  std::vector<Quantity> inputs_;
+  std::bitset<state_capacity> recorded_;
+  std::bitset<state_capacity> needed_;
+};
+
+}  // namespace pcor

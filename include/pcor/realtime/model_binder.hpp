@@ -1,0 +1,316 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <pcor/realtime/bound_model.hpp>
+
+namespace pcor {
+
+/// Why a model cannot be used on what is recorded.
+struct BindingError {
+  enum class Code : std::uint8_t {
+    unknown_effect,
+    unknown_quantity,
+    parameter_count,
+    formula,         ///< it cannot be read, or uses too many variables
+    role_missing,    ///< `quantity` is a role without a variable
+    known_too_late,  ///< `quantity` is known only after delta-p
+  };
+
+  Code code = Code::unknown_effect;
+  Quantity quantity = Quantity::count;  ///< that is missing
+  std::string who{};                    ///< e.g. "effect 'qcf-lag'"; empty where the sentence names it
+  std::string what{};                   ///< what is wrong and what to do, e.g. "needs the role ..."
+
+  /// Both in one line.
+  std::string message() const { return who.empty() ? what : who + " " + what; }
+};
+
+/// Checks a model against what is recorded, and binds it.
+class ModelBinder {
+ public:
+  /// `model` bound to the roles `recorded`, or why it cannot be.
+  static std::optional<BoundModel> bind(const Model& model, const std::vector<Quantity>& recorded,
+                                        BindingError& error) {
+    ModelBinder binder(BoundModel{}, error);
+    if (!binder.add_model(model, recorded)) return std::nullopt;
+    return binder.take();
+  }
+
+  /// `bound` with one more effect at the end of the model, or why it cannot be had.
+  static std::optional<BoundModel> with_effect(BoundModel bound, const ModelEffect& effect,
+                                               BindingError& error) {
+    ModelBinder binder(std::move(bound), error);
+    if (!binder.add(effect)) return std::nullopt;
+    return binder.take();
+  }
+
+ private:
+  using Code = BindingError::Code;
+  using Term = BoundModel::Term;
+
+  ModelBinder(BoundModel bound, BindingError& error) : bound_(std::move(bound)), error_(error) {}
+
+  BoundModel take() {
+    bound_.inputs_.clear();
+    for (std::size_t i = 0; i < state_capacity; ++i) {
+      if (bound_.recorded_[i]) bound_.inputs_.push_back(static_cast<Quantity>(i));
+    }
+    return std::move(bound_);
+  }
+
+  bool add_model(const Model& model, const std::vector<Quantity>& recorded) {
+    for (const Quantity quantity : recorded) bound_.recorded_.set(index(quantity));
+    bound_.lams_ = model.lams;
+    bound_.recovery_ = model.recovery;
+    bound_.attack_radome_ = model.attack_radome;
+    bound_.sideslip_radome_ = model.sideslip_radome;
+    bound_.policy_ = model.policy;
+    bound_.moist_ = model.moist;
+    for (const Quantity pressure : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
+      if (!require(pressure, "the chain")) return false;
+    }
+    for (const ModelEffect& effect : model.effects) {
+      if (!add(effect)) return false;
+    }
+    for (const Where where : model.additions) add_addition(where);
+    for (const DomainRange& range : model.domain) {
+      if (!add_range(range)) return false;
+    }
+    return !bound_.has_lams() || require_lams();
+  }
+
+  bool fail(Code code, std::string who, std::string what, Quantity quantity = Quantity::count) {
+    error_ = {code, quantity, std::move(who), std::move(what)};
+    return false;
+  }
+
+  static std::string quoted(std::string_view name) { return "'" + std::string(name) + "'"; }
+
+  bool add(const ModelEffect& effect) {
+    return effect.is_formula() ? add_formula(effect) : add_catalogued(effect);
+  }
+
+  bool add_catalogued(const ModelEffect& effect) {
+    const std::string who = "effect " + quoted(effect.id);
+    const std::size_t place = effect_named(effect.id);
+    if (place == catalogue_size) return fail(Code::unknown_effect, "", "there is no " + who);
+    const EffectFacts& facts = effect_facts[place];
+    if (!require_count(effect, facts.parameter_count())) return false;
+    if (bound_.is_within_reach(facts.where)) {
+      if (!require_place(facts.where, who)) return false;
+      for (std::size_t i = 0; i < facts.need_count(); ++i) {
+        if (is_at_hand(facts.needs[i], facts.where)) continue;
+        if (!require(facts.needs[i], who)) return false;
+      }
+    }
+    Term term;
+    term.effect = place;
+    term.where = facts.where;
+    add_effect(term, effect);
+    return true;
+  }
+
+  bool add_formula(const ModelEffect& effect) {
+    FormulaError formula_error;
+    std::optional<Formula> formula = Formula::parse(effect.formula, effect.parameter_names, &formula_error);
+    const std::string who = "formula of effect " + quoted(effect.id);
+    if (!formula) return fail(Code::formula, who + ":", formula_error.message);
+    if (!require_count(effect, effect.parameter_names.size())) return false;
+    if (formula->variables().size() > BoundModel::formula_variable_capacity) {
+      return fail(Code::formula, who,
+                  "uses more than " + std::to_string(BoundModel::formula_variable_capacity) + " variables");
+    }
+    Term term;
+    term.formula = bound_.formulas_.size();
+    term.where = effect.where;
+    BoundModel::BoundFormula bound{std::move(*formula), {}};
+    if (bound_.is_within_reach(effect.where) && !bind_variables(bound, effect.where, "the " + who))
+      return false;
+    bound_.formulas_.push_back(std::move(bound));
+    add_effect(term, effect);
+    return true;
+  }
+
+  bool bind_variables(BoundModel::BoundFormula& bound, Where where, const std::string& who) {
+    if (!require_place(where, who)) return false;
+    for (const std::string& name : bound.formula.variables()) {
+      Quantity quantity = quantity_named(name);
+      if (quantity == Quantity::count && !find_extra(name, quantity)) {
+        return fail(Code::formula, "",
+                    "the formulas of the model use more than " + std::to_string(extra_capacity) +
+                        " further variables");
+      }
+      if (!is_at_hand(quantity, where) && !require(quantity, who)) return false;
+      bound.variables.push_back(quantity);
+    }
+    return true;
+  }
+
+  bool require_count(const ModelEffect& effect, std::size_t count) {
+    return effect.parameters.size() == count ||
+           fail(Code::parameter_count, "effect " + quoted(effect.id),
+                "takes " + std::to_string(count) + " parameter(s), not " +
+                    std::to_string(effect.parameters.size()));
+  }
+
+  // What an effect corrects is there, and is computed.
+  bool require_place(Where where, const std::string& who) {
+    if (where == Where::radome) return require(Quantity::radome_dynamic_pressure, who);
+    if (where == Where::attack_ratio) return require(Quantity::attack_ratio, who);
+    if (where == Where::ambient_temperature && !bound_.has_temperature()) {
+      return fail(Code::role_missing, who,
+                  "needs the role 'recovery_temperature' or 'ambient_temperature': name its variable in the "
+                  "table [variables]",
+                  Quantity::recovery_temperature);
+    }
+    return true;
+  }
+
+  // What calibrates the ambient temperature is found from it, derived or recorded.
+  static bool is_at_hand(Quantity quantity, Where where) {
+    return where == Where::ambient_temperature && quantity == Quantity::ambient_temperature;
+  }
+
+  void add_effect(Term term, const ModelEffect& effect) {
+    term.first_parameter = bound_.parameters_.size();
+    bound_.parameters_.insert(bound_.parameters_.end(), effect.parameters.begin(), effect.parameters.end());
+    bound_.effects_.push_back(term);
+    if (bound_.is_within_reach(term.where)) add_term(term);
+  }
+
+  // An amount at a place asks for nothing: where the place is of no use to the model, it changes nothing.
+  void add_addition(Where where) {
+    Term term;
+    term.effect = Term::is_addition;
+    term.where = where;
+    term.first_parameter = bound_.parameters_.size();
+    bound_.parameters_.push_back(0.0);
+    add_term(term);
+  }
+
+  // Behind the others of its place.
+  void add_term(const Term& term) {
+    const auto end = static_cast<std::ptrdiff_t>(bound_.begin_of(term.where, 1));
+    bound_.terms_.insert(bound_.terms_.begin() + end, term);
+    for (std::size_t next = static_cast<std::size_t>(term.where) + 1; next <= where_count; ++next)
+      ++bound_.where_begin_[next];
+  }
+
+  // Finds the place of a further variable; a new one where the name is new. False where there is no room.
+  bool find_extra(const std::string& name, Quantity& place) {
+    std::vector<std::string>& names = bound_.extra_names_;
+    const auto found = std::find(names.begin(), names.end(), name);
+    const auto number = static_cast<std::size_t>(found - names.begin());
+    if (number == extra_capacity) return false;
+    place = extra_quantity(number);
+    if (found == names.end()) {
+      names.push_back(name);
+      bound_.recorded_.set(index(place));
+    }
+    return true;
+  }
+
+  bool add_range(const DomainRange& range) {
+    const Quantity quantity = quantity_named(range.quantity);
+    if (quantity == Quantity::count)
+      return fail(Code::unknown_quantity, "", "there is no quantity " + quoted(range.quantity));
+    if (!require(quantity, "the domain of the model")) return false;
+    bound_.domain_.push_back({quantity, range.lower, range.upper});
+    return true;
+  }
+
+  bool require_lams() {
+    if (!require(Quantity::attack, "LAMS, for the angle between its beam and the wind,")) return false;
+    if (bound_.recorded(Quantity::sideslip) || bound_.sideslip_radome_.is_calibrated()) {
+      if (!require(Quantity::sideslip, "LAMS")) return false;
+    }
+    const Quantity thermometer = bound_.lams_.approach == LamsApproach::with_temperature
+                                     ? Quantity::ambient_temperature
+                                     : Quantity::recovery_temperature;
+    return require(thermometer, "LAMS");
+  }
+
+  // Marks a quantity and all that it is derived from as needed.
+  bool require(Quantity quantity, const std::string& who) {
+    bound_.needed_.set(index(quantity));
+    if (bound_.recorded(quantity)) return true;
+    switch (quantity) {
+      case Quantity::time:
+      case Quantity::dynamic_ratio:
+      case Quantity::mach:
+      case Quantity::static_pressure_rate:
+      case Quantity::dynamic_pressure_rate:
+        return true;
+      case Quantity::recovery_temperature_rate:
+        return require(Quantity::recovery_temperature, who);
+      case Quantity::ambient_temperature_rate:
+        return require(Quantity::ambient_temperature, who);
+      case Quantity::airspeed_rate:
+        return require_airspeed_rate(who);
+      case Quantity::vapor_pressure:
+        return require_vapor_pressure(who);
+      case Quantity::attack_ratio:
+        return require(Quantity::attack_differential_pressure, who) &&
+               require(Quantity::radome_dynamic_pressure, who);
+      case Quantity::sideslip_ratio:
+        return require(Quantity::sideslip_differential_pressure, who) &&
+               require(Quantity::radome_dynamic_pressure, who);
+      case Quantity::attack:
+        return require_angle(bound_.attack_radome_, quantity, Quantity::attack_ratio, who);
+      case Quantity::sideslip:
+        return require_angle(bound_.sideslip_radome_, quantity, Quantity::sideslip_ratio, who);
+      default:
+        return fail_missing(quantity, who);
+    }
+  }
+
+  bool require_airspeed_rate(const std::string& who) {
+    const bool ambient = bound_.recorded(Quantity::ambient_temperature);
+    return require(Quantity::static_pressure_rate, who) && require(Quantity::dynamic_pressure_rate, who) &&
+           require(ambient ? Quantity::ambient_temperature_rate : Quantity::recovery_temperature_rate, who);
+  }
+
+  bool require_vapor_pressure(const std::string& who) {
+    for (const Quantity mirror : {Quantity::dew_point, Quantity::frost_point}) {
+      if (bound_.recorded(mirror)) return require(mirror, who);
+    }
+    return fail_missing(Quantity::vapor_pressure, who);
+  }
+
+  bool require_angle(const RadomeCalibration& radome, Quantity angle, Quantity ratio,
+                     const std::string& who) {
+    if (!radome.is_calibrated()) {
+      const std::string name(facts_of(angle).name);
+      return fail(Code::role_missing, who,
+                  "needs the role '" + name +
+                      "': name its variable in the table [variables], or give [radome] " + name +
+                      " = [offset, slope] to derive it from the radome pressures",
+                  angle);
+    }
+    if (radome.needs_mach() && !require(Quantity::mach, who)) return false;
+    return require(ratio, who);
+  }
+
+  bool fail_missing(Quantity quantity, const std::string& who) {
+    const std::string name = quoted(facts_of(quantity).name);
+    if (!is_role(quantity))
+      return fail(Code::known_too_late, who, "needs " + name + ", which is known only after delta-p",
+                  quantity);
+    return fail(Code::role_missing, who,
+                "needs the role " + name + ": name its variable in the table [variables]", quantity);
+  }
+
+  BoundModel bound_;
+  BindingError& error_;
+};
+
+}  // namespace pcor

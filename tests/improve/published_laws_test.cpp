@@ -1,0 +1,91 @@
+// Every published law through compare, refit, diagnose and improve, on a flight that has all variables.
+#include <gmock/gmock.h>
+#include <pcor/compare/compare.hpp>
+#include <pcor/diagnose/diagnose.hpp>
+#include <pcor/fit/refit.hpp>
+#include <pcor/improve/improve.hpp>
+#include <pcor/simulate/simulate.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "support/temporary_directory.hpp"
+
+using pcor::ModelFile;
+using pcor::Quantity;
+using pcor::Reference;
+using testing::Gt;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+namespace {
+
+const std::filesystem::path data = std::filesystem::path(PCOR_SOURCE_DIR) / "data";
+const pcor::test::TemporaryDirectory directory;
+
+/// A quarter of an hour of a C-130, with pressures, radome, flow angles, laser and all else.
+std::vector<std::filesystem::path> flight() {
+  static const std::filesystem::path path = [] {
+    std::filesystem::path made = directory / "flight.nc";
+    pcor::simulate_flight(pcor::read_scenario(data / "scenarios" / "c130-short.toml"), made);
+    return made;
+  }();
+  return {path};
+}
+
+/// The law on the variables of the flight: those that only other aircraft have get their like, and the laser
+/// and its angle of attack join.
+ModelFile law(const std::filesystem::path& path) {
+  const std::map<std::string, std::string> alike{
+      {"PSF", "PSFD"}, {"PSTF", "PSFRD"}, {"QCTF", "QCFR"}, {"TTHR1", "TTRR"}, {"RTH1", "RTF1"}};
+  ModelFile file = pcor::read_model(path);
+  for (auto& [role, variable] : file.variables) {
+    if (const auto found = alike.find(variable); found != alike.end()) variable = found->second;
+  }
+  file.variables.emplace(Quantity::attack, "ATTACK");
+  file.variables.emplace(Quantity::lams_airspeed, "VLAMS");
+  return file;
+}
+
+class PublishedLaw : public testing::TestWithParam<std::filesystem::path> {};
+
+std::vector<std::filesystem::path> laws() {
+  std::vector<std::filesystem::path> paths;
+  for (const auto& entry : std::filesystem::directory_iterator(data / "models")) {
+    if (entry.path().extension() == ".toml") paths.push_back(entry.path());
+  }
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+std::string name_of(const testing::TestParamInfo<std::filesystem::path>& info) {
+  std::string name = info.param.stem().string();
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+}  // namespace
+
+TEST(PublishedLaws, AreTwentyFive) { EXPECT_THAT(laws(), SizeIs(25)); }
+
+TEST_P(PublishedLaw, GoesThroughEveryCommandOnAFlightThatHasAllVariables) {
+  const ModelFile file = law(GetParam());
+  for (const std::string text : {"lams", "pressure:PS_A"}) {
+    SCOPED_TRACE(text);
+    const Reference reference = pcor::read_reference(text, file);
+    const pcor::Comparison comparison = pcor::compare(flight(), {{"law", file, reference}});
+    EXPECT_THAT(comparison.models.front().all.samples, Gt(500U));
+    EXPECT_THAT(pcor::refit(flight(), file, reference).samples, Gt(500U));
+    const pcor::Diagnosis diagnosis = pcor::diagnose(flight(), file, reference);
+    EXPECT_THAT(diagnosis.candidates, Gt(10U));
+    pcor::ImproveOptions once;
+    once.most_steps = 1;
+    EXPECT_THAT(pcor::improve(flight(), file, reference, once).steps, Not(IsEmpty()));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Data, PublishedLaw, testing::ValuesIn(laws()), name_of);
