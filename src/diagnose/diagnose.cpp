@@ -14,6 +14,7 @@
 #include "diagnose/candidates.hpp"
 #include "diagnose/columns.hpp"
 #include "diagnose/findings.hpp"
+#include "diagnose/rms.hpp"
 #include "diagnose/unexplained.hpp"
 #include "numerics/triangular_factor.hpp"
 
@@ -86,32 +87,6 @@ std::vector<ColumnGroup> groups_of(const std::vector<Candidate>& candidates) {
     first += group.count;
   }
   return groups;
-}
-
-double given_rms(const std::vector<FlightColumns>& flights) {
-  double squares = 0.0;
-  double count = 0.0;
-  for (const FlightColumns& flight : flights) {
-    for (const double value : flight.given) {
-      if (std::isnan(value)) continue;
-      squares += value * value;
-      count += 1.0;
-    }
-  }
-  return std::sqrt(squares / count);
-}
-
-double rms_of(const std::vector<FlightDiagnosis>& flights, std::vector<double> FlightDiagnosis::*series) {
-  double squares = 0.0;
-  double count = 0.0;
-  for (const FlightDiagnosis& flight : flights) {
-    for (const double value : flight.*series) {
-      if (std::isnan(value)) continue;
-      squares += value * value;
-      count += 1.0;
-    }
-  }
-  return std::sqrt(squares / count);
 }
 
 std::vector<FlightDiagnosis> flights_of(const Analysis& analysis) {
@@ -263,7 +238,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
   diagnosis.limits = limits_of(analysis, set.candidates, diagnosis.findings);
   diagnosis.not_testable = std::move(set.not_testable);
   diagnosis.flights = flights_of(analysis);
-  diagnosis.rms_given = given_rms(analysis.flights());
+  diagnosis.rms_given = rms_of(analysis.flights(), &FlightColumns::given);
   diagnosis.residual_rms = rms_of(diagnosis.flights, &FlightDiagnosis::before);
   diagnosis.residual_rms_held_out = analysis.held_out_rms({});
   diagnosis.noise_rms = noise_of(diagnosis.flights);

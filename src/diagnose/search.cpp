@@ -1,5 +1,7 @@
 #include "diagnose/search.hpp"
 
+#include <boost/random/normal_distribution.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -75,7 +77,7 @@ std::vector<std::size_t> without(std::vector<std::size_t> set, std::size_t value
 }  // namespace
 
 Search::Search(const Scores& scores, Eigen::Index base, const std::vector<ColumnGroup>& groups)
-    : scores_(&scores), base_(base), groups_(&groups) {
+    : scores_(&scores), base_(base), groups_(groups) {
   const Eigen::MatrixXd& information = scores.information;
   const Eigen::Index columns = scores.columns();
   const Eigen::Index tested = columns - base;
@@ -166,7 +168,7 @@ Search::Conditional Search::given(const std::vector<std::size_t>& groups) const 
 
 GroupScore Search::score_in(const Conditional& conditional, std::size_t group) const {
   GroupScore result;
-  const ColumnGroup& columns = (*groups_)[group];
+  const ColumnGroup& columns = groups_[group];
   const Eigen::Index count = turned_[group].cols();
   const Eigen::Index begin = begin_[group];
   result.estimate = Eigen::VectorXd::Zero(columns.count);
@@ -232,7 +234,7 @@ double Search::threshold_of(const Conditional& conditional, const std::vector<st
   const Eigen::MatrixXd root =
       solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
   std::mt19937_64 engine(options.seed);
-  std::normal_distribution<double> normal;
+  boost::random::normal_distribution<double> normal;  // the same on every machine
   const Eigen::MatrixXd independent = Eigen::MatrixXd::NullaryExpr(
       turn.cols(), as_index(options.draws), [&](Eigen::Index, Eigen::Index) { return normal(engine); });
   std::vector<double> maxima = greatest(root * independent, freedom);
@@ -245,7 +247,7 @@ std::vector<Eigen::VectorXd> Search::leftover_rows(std::size_t group,
                                                    const std::vector<std::size_t>& others) const {
   const Eigen::Index columns = scores_->columns();
   Eigen::VectorXd weight = Eigen::VectorXd::Zero(columns);  // of the columns as they are
-  const ColumnGroup& own = (*groups_)[group];
+  const ColumnGroup& own = groups_[group];
   GroupScore found = score(group, others);
   if (found.estimate.isZero()) {
     const Eigen::Index kept = turned_[group].cols();
@@ -257,7 +259,7 @@ std::vector<Eigen::VectorXd> Search::leftover_rows(std::size_t group,
   std::vector<Eigen::Index> rest(static_cast<std::size_t>(base_));
   std::iota(rest.begin(), rest.end(), Eigen::Index{0});
   for (const std::size_t other : without(others, group)) {
-    const ColumnGroup& columns_of = (*groups_)[other];
+    const ColumnGroup& columns_of = groups_[other];
     for (Eigen::Index k = 0; k < columns_of.count; ++k) rest.push_back(base_ + columns_of.first + k);
   }
   const Eigen::MatrixXd scaled =
@@ -298,7 +300,7 @@ std::vector<Eigen::VectorXd> Search::left(const std::vector<std::size_t>& chosen
   coefficients.head(base_) = estimate.head(base_);
   Eigen::Index place = base_;
   for (const std::size_t group : chosen) {
-    const ColumnGroup& columns = (*groups_)[group];
+    const ColumnGroup& columns = groups_[group];
     coefficients.segment(base_ + columns.first, columns.count) = estimate.segment(place, columns.count);
     place += columns.count;
   }
@@ -329,7 +331,7 @@ double Search::explained(const std::vector<std::size_t>& chosen) const {
 
 bool Search::is_taken(std::size_t group, const std::vector<std::size_t>& chosen) const {
   return std::any_of(chosen.begin(), chosen.end(), [&](std::size_t each) {
-    return each != group && (*groups_)[each].effect == (*groups_)[group].effect;
+    return each != group && groups_[each].effect == groups_[group].effect;
   });
 }
 
@@ -356,7 +358,7 @@ void Search::improve(std::vector<std::size_t>& chosen) const {
     chosen = set;
   };
   if (chosen.size() == 2) {
-    for (std::size_t a = 0; a < groups_->size(); ++a) {
+    for (std::size_t a = 0; a < groups_.size(); ++a) {
       for (std::size_t b = 0; b < a; ++b) {
         if (!is_absorbed(a) && !is_absorbed(b)) consider({a, b});
       }
@@ -365,7 +367,7 @@ void Search::improve(std::vector<std::size_t>& chosen) const {
   }
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const std::vector<std::size_t> now = chosen;
-    for (std::size_t other = 0; other < groups_->size(); ++other) {
+    for (std::size_t other = 0; other < groups_.size(); ++other) {
       if (is_absorbed(other) || is_in(other, now)) continue;
       std::vector<std::size_t> set = now;
       set[i] = other;
@@ -377,7 +379,7 @@ void Search::improve(std::vector<std::size_t>& chosen) const {
 SearchResult Search::run(const SearchOptions& options) const {
   SearchResult result;
   std::vector<std::size_t> open;
-  for (std::size_t g = 0; g < groups_->size(); ++g) {
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
     if (!is_absorbed(g)) open.push_back(g);
   }
   std::vector<std::size_t>& chosen = result.chosen;
@@ -388,20 +390,20 @@ SearchResult Search::run(const SearchOptions& options) const {
   while (true) {
     const Conditional conditional = given(chosen);
     std::vector<std::size_t> rest;
-    std::size_t winner = groups_->size();
+    std::size_t winner = groups_.size();
     GroupScore best;
     for (const std::size_t group : open) {
       if (is_in(group, chosen) || is_taken(group, chosen)) continue;
       rest.push_back(group);
       const GroupScore score = score_in(conditional, group);
-      if (!score.possible || (winner != groups_->size() && score.equivalent <= best.equivalent)) continue;
+      if (!score.possible || (winner != groups_.size() && score.equivalent <= best.equivalent)) continue;
       best = score;
       winner = group;
     }
     const double threshold =
         options.threshold ? *options.threshold : threshold_of(conditional, rest, options);
     if (chosen.empty()) result.threshold = threshold;
-    if (winner == groups_->size() || chosen.size() >= options.most_effects || !(best.equivalent > threshold))
+    if (winner == groups_.size() || chosen.size() >= options.most_effects || !(best.equivalent > threshold))
       break;
     if (!options.threshold && !(best.equivalent > level(winner, chosen, threshold))) break;
     if (best.chi2 < least_share * least_share * (options.explained + explained(chosen))) break;
@@ -453,10 +455,10 @@ void Search::fit(const std::vector<std::size_t>& chosen, Eigen::VectorXd& estima
   Eigen::Index size = base_;
   for (const std::size_t group : chosen) {
     for (const Eigen::Index column : told_[group]) {
-      places.push_back(base_ + (*groups_)[group].first + column);
+      places.push_back(base_ + groups_[group].first + column);
       out.push_back(size + column);
     }
-    size += (*groups_)[group].count;
+    size += groups_[group].count;
   }
   const Eigen::VectorXd scale = scale_(places);
   const Eigen::MatrixXd inverse =

@@ -46,7 +46,8 @@ struct SearchResult {
 /// Which groups of columns explain residuals that the base cannot.
 class Search {
  public:
-  /// @param base how many of the scores' columns are the model's own; the rest are those of the groups
+  /// @param scores are kept by address; @param base how many of the scores' columns are the model's own; the
+  /// rest are those of the groups
   Search(const Scores& scores, Eigen::Index base, const std::vector<ColumnGroup>& groups);
 
   /// The part of a group's variance that the base leaves, of its best direction. 0 to 1.
@@ -112,7 +113,7 @@ class Search {
 
   const Scores* scores_;
   Eigen::Index base_;
-  const std::vector<ColumnGroup>* groups_;
+  std::vector<ColumnGroup> groups_;
   Eigen::VectorXd scale_;  // of every column, to unit length
   std::vector<double> remaining_;
   std::vector<std::vector<Eigen::Index>> told_;

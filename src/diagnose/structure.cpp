@@ -144,15 +144,15 @@ double StructureTest::threshold(double probability) const {
   return boost::math::quantile(boost::math::complement(boost::math::chi_squared(1.0), each));
 }
 
-const Structure* StructureTest::strongest() const {
+std::optional<std::size_t> StructureTest::strongest() const {
+  if (structures_.empty()) return std::nullopt;
   const auto found =
       std::max_element(structures_.begin(), structures_.end(),
                        [](const Structure& a, const Structure& b) { return a.equivalent < b.equivalent; });
-  return found == structures_.end() ? nullptr : &*found;
+  return static_cast<std::size_t>(found - structures_.begin());
 }
 
-double StructureTest::effective_blocks(const Structure& structure) const {
-  const auto number = static_cast<std::size_t>(&structure - structures_.data());
+double StructureTest::effective_blocks(std::size_t number) const {
   const Eigen::MatrixXd& scores = block_scores_[number];
   // Along the direction in which it scores.
   const Eigen::VectorXd along = scores * scores.colwise().sum().transpose();

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,11 +42,11 @@ class StructureTest {
   /// The score that chance exceeds somewhere among all variables with that probability.
   double threshold(double probability) const;
 
-  /// The strongest of all by its equivalent; null where nothing was added.
-  const Structure* strongest() const;
+  /// The number of the strongest of all by its equivalent; nothing where nothing was added.
+  std::optional<std::size_t> strongest() const;
 
-  /// On how many minutes of equal weight a structure rests.
-  double effective_blocks(const Structure& structure) const;
+  /// On how many minutes of equal weight structure number `number` rests.
+  double effective_blocks(std::size_t number) const;
 
   /// The columns that describe a variable, in bins, of each flight: to put them into a model.
   std::vector<Eigen::MatrixXd> columns_of(const std::vector<const double*>& values) const;

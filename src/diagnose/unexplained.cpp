@@ -7,6 +7,7 @@
 #include <set>
 
 #include <pcor/words/error.hpp>
+#include "diagnose/rms.hpp"
 #include "diagnose/structure.hpp"
 #include "numerics/chi_squared.hpp"
 
@@ -83,8 +84,12 @@ std::set<std::string> left_out(const std::vector<Flight>& files, const ModelFile
   return names;
 }
 
-/// The names that simulated flights give to the truth beside what was recorded.
-bool is_truth(const std::string& name) { return name.compare(0, 5, "TRUE_") == 0; }
+/// Whether a simulated flight holds the variable as the truth beside what was recorded.
+bool is_truth(const VariableInfo& variable) {
+  return std::any_of(variable.attributes.begin(), variable.attributes.end(), [](const auto& attribute) {
+    return attribute.first == "Category" && attribute.second == truth_category;
+  });
+}
 
 Series read_series(const std::vector<Flight>& files, const std::string& name) {
   Series series;
@@ -164,30 +169,19 @@ std::vector<std::vector<double>> residuals_after(const Analysis& analysis,
   return after;
 }
 
-double rms_of(const std::vector<std::vector<double>>& series) {
-  double squares = 0.0;
-  double count = 0.0;
-  for (const std::vector<double>& each : series) {
-    for (const double value : each) {
-      if (std::isnan(value)) continue;
-      squares += value * value;
-      count += 1.0;
-    }
-  }
-  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
-}
-
 /// Whether the strongest structure is beyond chance: for normal noise, and for the noise that is there, which
 /// is known when that structure is taken off.
 bool is_significant(const StructureTest& test, const Analysis& analysis,
                     const std::vector<std::size_t>& chosen, const std::vector<const Series*>& tested,
                     std::uint64_t seed) {
-  const Structure* const best = test.strongest();
-  if (best == nullptr || !(best->equivalent > test.threshold(chance))) return false;
+  const std::optional<std::size_t> best = test.strongest();
+  if (!best) return false;
+  const double score = test.structures()[*best].equivalent;
+  if (!(score > test.threshold(chance))) return false;
   const double blocks = test.effective_blocks(*best);
   if (blocks < enough_blocks)
-    return best->equivalent > test.threshold(chance) * (1.0 + few_blocks_penalty / std::max(blocks, 1.0));
-  const Series& series = *tested[static_cast<std::size_t>(best - test.structures().data())];
+    return score > test.threshold(chance) * (1.0 + few_blocks_penalty / std::max(blocks, 1.0));
+  const Series& series = *tested[*best];
   std::vector<Eigen::MatrixXd> columns = analysis.columns_of(chosen);
   const std::vector<Eigen::MatrixXd> more = test.columns_of(series.pointers());
   for (std::size_t f = 0; f < columns.size(); ++f) {
@@ -197,7 +191,7 @@ bool is_significant(const StructureTest& test, const Analysis& analysis,
   }
   StructureTest noise_alone(analysis.bins(), columns, analysis.residuals(), analysis.noise());
   for (const Series* each : tested) noise_alone.add(each->name, each->pointers());
-  return noise_alone.chance_of(best->equivalent, flips, seed) <= 2.0 * chance;
+  return noise_alone.chance_of(score, flips, seed) <= 2.0 * chance;
 }
 
 }  // namespace
@@ -215,7 +209,7 @@ UnexplainedStructure find_unexplained(const Analysis& analysis, const std::vecto
       const bool everywhere = std::all_of(files.begin(), files.end(), [&name](const Flight& file) {
         return file.has(name) && file.variable(name).is_series;
       });
-      if (!everywhere || without.count(name) != 0 || is_truth(name)) continue;
+      if (!everywhere || without.count(name) != 0 || is_truth(files.front().variable(name))) continue;
       Series series = read_series(files, name);
       if (shares_noise(after, series.pointers())) {
         result.found.shares_noise.push_back(name);
@@ -260,22 +254,23 @@ UnexplainedStructure find_unexplained(const Analysis& analysis, const std::vecto
   const bool drifts = analysis.drift_gain() > least_drift_gain;
   std::vector<std::vector<double>> drift;
   for (std::size_t f = 0; f < files.size(); ++f) drift.push_back(analysis.drift(f, chosen));
-  result.found.drift_rms = rms_of(drift);
+  const auto whole = [](const std::vector<double>& series) -> const std::vector<double>& { return series; };
+  result.found.drift_rms = rms_of(drift, whole);
   const bool large_drift = drifts && result.found.drift_rms > least_drift * noise_rms;
   result.found.significant = structure_left || large_drift;
   if (!result.found.significant) return result;
 
   const std::vector<std::vector<double>> left = result.overrules ? residuals_after(analysis, {}) : after;
-  const double rms = result.overrules ? rms_of(left) : residual_rms;
+  const double rms = result.overrules ? rms_of(left, whole) : residual_rms;
   // What is beyond the noise; at least what drifts, and what the best variable explains.
-  const double share = shown->strongest() == nullptr ? 0.0 : shown->strongest()->share;
+  const std::optional<std::size_t> best = shown->strongest();
+  const Structure strongest = best ? shown->structures()[*best] : Structure{};
   result.found.rms =
       std::max({result.found.drift_rms, std::sqrt(std::max(0.0, rms * rms - noise_rms * noise_rms)),
-                structure_left ? std::sqrt(share) * rms : 0.0});
+                structure_left ? std::sqrt(strongest.share) * rms : 0.0});
   result.found.regime = worst_regime(analysis, left, noise_rms);
-  result.found.p_value = std::min(
-      1.0, static_cast<double>(tested.size()) *
-               (shown->strongest() == nullptr ? 1.0 : chi_squared_tail(shown->strongest()->equivalent, 1.0)));
+  result.found.p_value =
+      std::min(1.0, static_cast<double>(tested.size()) * chi_squared_tail(strongest.equivalent, 1.0));
   const double squares = static_cast<double>(analysis.scores().row_count());
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < shown->structures().size(); ++i) {

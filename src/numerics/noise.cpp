@@ -62,7 +62,8 @@ std::vector<Stretch> stretches_of(const std::vector<double>& values, const std::
   std::vector<Stretch> result;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (std::isnan(values[i])) continue;
-    const bool goes_on = i > 0 && !std::isnan(values[i - 1]) && time[i] - time[i - 1] <= 1.5 * step;
+    const double since = i > 0 ? time[i] - time[i - 1] : 0.0;
+    const bool goes_on = since > 0.0 && since <= 1.5 * step && !std::isnan(values[i - 1]);
     if (!goes_on) result.push_back({i, 0});
     ++result.back().count;
   }

@@ -71,6 +71,7 @@ class Recording {
     variable.units = units;
     variable.long_name = what;
     variable.data_quality = "Simulated";
+    if (name.rfind("TRUE_", 0) == 0) variable.category = truth_category;
     columns_.push_back({std::move(variable), std::move(values)});
   }
 
@@ -290,7 +291,7 @@ SimulationSummary simulate_flight(const Scenario& scenario, const std::filesyste
   FlightWriter writer(output, flight, description_of(scenario, summary, options.history));
   for (const Column& column : columns) {
     writer.define(column.variable);
-    const bool truth = column.variable.name.rfind("TRUE_", 0) == 0;
+    const bool truth = column.variable.category == truth_category;
     (truth ? summary.truth : summary.variables).push_back(column.variable.name);
   }
   std::vector<double> times;

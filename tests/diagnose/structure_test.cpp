@@ -93,9 +93,7 @@ struct Flight {
 };
 
 const Structure& strongest(const StructureTest& test) {
-  return *std::max_element(
-      test.structures().begin(), test.structures().end(),
-      [](const Structure& a, const Structure& b) { return a.equivalent < b.equivalent; });
+  return test.structures().at(test.strongest().value());
 }
 
 }  // namespace

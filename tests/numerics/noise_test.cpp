@@ -55,6 +55,16 @@ TEST(Stretches, EndAtMissingValuesAndGaps) {
   EXPECT_EQ(stretches[3].count, 1U);
 }
 
+TEST(Stretches, EndWhereTimeDoesNotGoOn) {
+  // Two flights one after another, the earlier one last, and a time that stands.
+  const std::vector<Stretch> stretches =
+      pcor::stretches_of({1, 2, 3, 4, 5, 6}, {100, 101, 20, 21, 22, 22}, 1.0);
+  ASSERT_EQ(stretches.size(), 3U);
+  EXPECT_EQ(stretches[1].first, 2U);
+  EXPECT_EQ(stretches[1].count, 3U);
+  EXPECT_EQ(stretches[2].first, 5U);
+}
+
 TEST(RobustDeviation, IsThatOfTheBulk) {
   std::vector<double> values = first_order(20000, 0.0, 1);
   for (std::size_t i = 0; i < values.size(); i += 5) values[i] = 1000.0;

@@ -155,6 +155,17 @@ TEST(Simulate, GivesOtherDataForAnotherSeed) {
   EXPECT_FALSE(same_bits(values, Simulated(text).raw("PSFD")));
 }
 
+TEST(Simulate, MarksTheTruthThatADiagnosisMustNotSee) {
+  const Simulated flight(head + systems + aloft + leg("level", "duration = 60"));
+  for (const std::string& name : flight.flight().variables()) {
+    const auto& attributes = flight.flight().variable(name).attributes;
+    const bool marked =
+        std::find(attributes.begin(), attributes.end(),
+                  std::pair<std::string, std::string>("Category", truth_category)) != attributes.end();
+    EXPECT_EQ(marked, name.rfind("TRUE_", 0) == 0) << name;
+  }
+}
+
 TEST(Simulate, ChangesNoOtherSensorWithTheNoiseOfOne) {
   const std::string text = head + systems + aloft + leg("level", "duration = 60");
   EXPECT_THAT(differences(Simulated(text), Simulated(text + "[noise]\nQCFR = 0.5\n")),

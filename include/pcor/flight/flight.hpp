@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -39,6 +40,9 @@ struct VariableInfo {
   std::vector<std::pair<std::string, std::string>> attributes;  ///< all of them as text, without trailing NUL
   std::optional<std::array<double, 2>> modulus_range;           ///< of an angle: where it starts again
 };
+
+/// The attribute Category of what a simulated flight holds beside what was recorded: what really was.
+inline constexpr std::string_view truth_category = "Truth";
 
 /// Where the step to the next record is more than half as long again as the usual one.
 struct TimeGap {

@@ -11,8 +11,9 @@ struct Stretch {
   std::size_t count = 0;
 };
 
-/// The stretches of `values`, where NaN is missing. A time more than one and a half usual steps after the one
-/// before begins a new stretch; `time` (s) has as many entries as `values`, `step` is the usual step, s.
+/// The stretches of `values`, where NaN is missing. A time that is more than one and a half usual steps after
+/// the one before, or not after it, begins a new stretch: series of several flights may follow each other.
+/// `time` (s) has as many entries as `values`, `step` is the usual step, s.
 std::vector<Stretch> stretches_of(const std::vector<double>& values, const std::vector<double>& time,
                                   double step);
 
