@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <pcor/diagnose/diagnosis_report.hpp>
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/model/formula.hpp>
 #include <pcor/words/utc.hpp>
@@ -11,8 +12,6 @@
 
 namespace pcor::internal::report {
 namespace {
-
-constexpr std::size_t rivals_in_title = 2;
 
 const std::string mach = "mach";
 const std::string pressure = "static_pressure";
@@ -41,16 +40,6 @@ std::string column_of(Quantity quantity) {
     if (quantity == of) return std::string(facts_of(shown).name);
   }
   return std::string(facts_of(quantity).name);
-}
-
-std::string either(const Finding& finding) {
-  std::string names = finding.effect.id;
-  if (finding.aliases.size() > rivals_in_title) {
-    names += fmt::format(" or one of {} others", finding.aliases.size());
-  } else {
-    for (const Alias& alias : finding.aliases) names += " or " + alias.effect;
-  }
-  return fmt::format("An effect is missing, {}: these flights cannot tell which", names);
 }
 
 ReportTable variables_table(const Unexplained& unexplained) {
@@ -96,38 +85,6 @@ std::vector<std::string> inputs_of(const ModelEffect& effect) {
 
 std::string cell(double value, int decimals) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "";
-}
-
-std::string what_is_missing(const Diagnosis& diagnosis) {
-  std::vector<std::string> ids;
-  for (const Finding& finding : diagnosis.findings) ids.push_back(finding.effect.id);
-  const std::string effects = ids.size() == 1 ? "An effect is missing: " + diagnosis.findings.front().title
-                                              : "Effects are missing: " + list_text(ids);
-  switch (diagnosis.verdict) {
-    case Verdict::identified:
-      return effects;
-    case Verdict::ambiguous:
-      return ids.size() == 1 ? either(diagnosis.findings.front())
-                             : effects + "; these flights cannot tell all of them from others";
-    case Verdict::partial:
-      return effects + "; structure is left that no effect explains";
-    case Verdict::unexplained:
-      return "Structure is left that no effect explains";
-    case Verdict::silent:
-      break;
-  }
-  return "Nothing is missing that these flights could show";
-}
-
-std::string coefficient_limits(const UpperLimit& limit) {
-  std::vector<std::string> all;
-  for (std::size_t i = 0; i < std::min(limit.estimates.size(), limit.limits.size()); ++i) {
-    const Estimate& e = limit.estimates[i];
-    if (std::isfinite(limit.limits[i]))
-      all.push_back(
-          fmt::format("|{}| < {}", e.name, with_unit(fmt::format("{:.2g}", limit.limits[i]), e.unit)));
-  }
-  return list_text(all);
 }
 
 DiagnosisPanels::DiagnosisPanels(const Flights& flights) {
@@ -277,7 +234,7 @@ void add_tables(DiagnosisPanels& panels, const Diagnosis& diagnosis) {
       "coefficients.";
   limits.headers = {"effect", "estimate", "limit", "rms, hPa", "what"};
   for (const UpperLimit& limit : diagnosis.limits) {
-    limits.rows.push_back({limit.effect, estimates_text(limit.estimates), coefficient_limits(limit),
+    limits.rows.push_back({limit.effect, estimates_text(limit.estimates), limits_text(limit),
                            cell(limit.rms, 3),
                            limit.note.empty() ? limit.title : limit.title + ": " + limit.note});
   }

@@ -37,9 +37,6 @@ std::vector<std::string> inputs_of(const ModelEffect& effect);
 /// Empty for what is no number.
 std::string cell(double value, int decimals);
 
-/// The verdict as a title.
-std::string what_is_missing(const Diagnosis& diagnosis);
-
 /// The columns and panels of a report about diagnoses of the same flights. Its samples are those in which the
 /// first diagnosis has a residual.
 class DiagnosisPanels {
@@ -146,8 +143,5 @@ void add_unexplained(DiagnosisPanels& panels, const Diagnosis& diagnosis, const 
 void add_traced(DiagnosisPanels& panels, const Diagnosis& diagnosis);
 
 void add_residual_panels(DiagnosisPanels& panels, const std::vector<std::string>& residuals);
-
-/// The largest values that coefficients may have, 95 % confidence: "|a0| < 0.001".
-std::string coefficient_limits(const UpperLimit& limit);
 
 }  // namespace pcor::internal::report

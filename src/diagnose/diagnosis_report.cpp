@@ -22,6 +22,17 @@ namespace {
 using namespace internal::report;
 
 constexpr std::size_t limits_in_summary = 3;
+constexpr std::size_t rivals_in_title = 2;
+
+std::string either(const Finding& finding) {
+  std::string names = finding.effect.id;
+  if (finding.aliases.size() > rivals_in_title) {
+    names += fmt::format(" or one of {} others", finding.aliases.size());
+  } else {
+    for (const Alias& alias : finding.aliases) names += " or " + alias.effect;
+  }
+  return fmt::format("An effect is missing, {}: these flights cannot tell which", names);
+}
 
 void summarise(Report& report, const Diagnosis& diagnosis) {
   report.summary.push_back(fmt::format(
@@ -36,7 +47,7 @@ void summarise(Report& report, const Diagnosis& diagnosis) {
   std::vector<std::string> limits;
   for (const UpperLimit& limit : diagnosis.limits) {
     if (limits.size() == limits_in_summary) break;
-    if (std::string bound = coefficient_limits(limit); !bound.empty())
+    if (std::string bound = limits_text(limit); !bound.empty())
       limits.push_back(fmt::format("{} {} ({} hPa rms)", limit.effect, bound, hpa(limit.rms)));
   }
   if (!limits.empty()) {
@@ -157,11 +168,54 @@ void add_findings(DiagnosisPanels& panels, const Diagnosis& diagnosis,
 
 }  // namespace
 
+std::string verdict_text(const Diagnosis& diagnosis) {
+  std::vector<std::string> ids;
+  for (const Finding& finding : diagnosis.findings) ids.push_back(finding.effect.id);
+  const std::string effects = ids.size() == 1 ? "An effect is missing: " + diagnosis.findings.front().title
+                                              : "Effects are missing: " + list_text(ids);
+  switch (diagnosis.verdict) {
+    case Verdict::identified:
+      return effects;
+    case Verdict::ambiguous:
+      return ids.size() == 1 ? either(diagnosis.findings.front())
+                             : effects + "; these flights cannot tell all of them from others";
+    case Verdict::partial:
+      return effects + "; structure is left that no effect explains";
+    case Verdict::unexplained:
+      return "Structure is left that no effect explains";
+    case Verdict::silent:
+      break;
+  }
+  return "Nothing is missing that these flights could show";
+}
+
+std::string estimates_text(const std::vector<Estimate>& estimates) {
+  std::vector<std::string> all;
+  for (const Estimate& e : estimates) {
+    all.push_back(
+        std::isfinite(e.value)
+            ? fmt::format("{} = {}", e.name, with_unit(with_error(e.value, e.standard_error), e.unit))
+            : e.name + " unknown");
+  }
+  return list_text(all);
+}
+
+std::string limits_text(const UpperLimit& limit) {
+  std::vector<std::string> all;
+  for (std::size_t i = 0; i < std::min(limit.estimates.size(), limit.limits.size()); ++i) {
+    const Estimate& e = limit.estimates[i];
+    if (std::isfinite(limit.limits[i]))
+      all.push_back(
+          fmt::format("|{}| < {}", e.name, with_unit(fmt::format("{:.2g}", limit.limits[i]), e.unit)));
+  }
+  return list_text(all);
+}
+
 Report diagnosis_report(const Diagnosis& diagnosis, const ModelFile& model) {
   using F = FlightDiagnosis;
   DiagnosisPanels panels(diagnosis.flights);
   Report& report = panels.report();
-  report.title = what_is_missing(diagnosis);
+  report.title = verdict_text(diagnosis);
   report.subtitle = fmt::format("Diagnosis of {} against {}", model.model.name, diagnosis.reference);
   summarise(report, diagnosis);
   add_facts(panels, diagnosis, model, numbers_of(diagnosis));

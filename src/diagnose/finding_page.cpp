@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include <pcor/diagnose/diagnosis_report.hpp>
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/words/utc.hpp>
 
@@ -157,17 +158,6 @@ std::string probability(double p) {
 std::string percent(double share) {
   if (!std::isfinite(share)) return "unknown";
   return fmt::format("{:.{}f} %", 100.0 * share, std::abs(share) < 0.0995 ? 1 : 0);
-}
-
-std::string estimates_text(const std::vector<Estimate>& estimates) {
-  std::vector<std::string> all;
-  for (const Estimate& e : estimates) {
-    all.push_back(
-        std::isfinite(e.value)
-            ? fmt::format("{} = {}", e.name, with_unit(with_error(e.value, e.standard_error), e.unit))
-            : e.name + " unknown");
-  }
-  return list_text(all);
 }
 
 double size_to_usual(const std::vector<Estimate>& estimates) {

@@ -30,9 +30,6 @@ std::string probability(double p);
 /// "12 %".
 std::string percent(double share);
 
-/// "tau = 0.151 ± 0.006 s".
-std::string estimates_text(const std::vector<Estimate>& estimates);
-
 /// How large the first coefficient with a known usual size is, in units of it; 0 without.
 double size_to_usual(const std::vector<Estimate>& estimates);
 

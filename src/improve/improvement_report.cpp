@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include <pcor/diagnose/diagnosis_report.hpp>
 #include <pcor/words/error.hpp>
 
 #include "diagnose/diagnosis_panels.hpp"
@@ -75,7 +76,7 @@ void summarise(Report& report, const Improvement& improvement) {
     report.summary.push_back(std::move(text));
   }
   if (!improvement.why_stopped.empty()) report.summary.push_back(sentence(improvement.why_stopped));
-  std::string verdict = what_is_missing(last.diagnosis);
+  std::string verdict = verdict_text(last.diagnosis);
   verdict.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(verdict.front())));
   report.summary.push_back("At the top of the ladder: " + verdict + ".");
   for (const Finding& finding : last.diagnosis.findings) report.summary.push_back(finding_summary(finding));

@@ -171,7 +171,7 @@ class Diagnose(DiagnosisTest):
         self.model(name="my model.toml")
         self.link(LAGGING, "flight 1.nc")
         text = self.done("diagnose", "flight 1.nc", "-m", "my model.toml", cwd=self.path).stdout
-        self.assertTrue(text.startswith("The model lacks"), text)
+        self.assertTrue(text.startswith("An effect is missing"), text)
         command = self.run_as_printed(text)
         self.assertRegex(command, "pcor add .* && pcor refit")
         self.assertTrue((self.path / "fitted.toml").exists())

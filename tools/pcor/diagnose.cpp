@@ -30,33 +30,6 @@ struct Options {
 
 constexpr std::size_t shortened = 5;
 
-std::string names_of(const std::vector<Finding>& findings) {
-  std::vector<std::string> names;
-  for (const Finding& finding : findings) names.push_back(finding.effect.id);
-  return fmt::format("{}", fmt::join(names, " and "));
-}
-
-std::string sentence_of(const Diagnosis& diagnosis) {
-  const std::string found = names_of(diagnosis.findings);
-  const double left = diagnosis.unexplained.rms;
-  switch (diagnosis.verdict) {
-    case Verdict::silent:
-      return fmt::format("Nothing is missing that these flights could show, of {} effects tested.",
-                         diagnosis.candidates);
-    case Verdict::identified:
-      return fmt::format("The model lacks {}.", found);
-    case Verdict::ambiguous:
-      return fmt::format("The model lacks {}, or what these flights cannot tell from it.", found);
-    case Verdict::partial:
-      return fmt::format("{} takes up much of what is left, but not all: do not take the name for the cause.",
-                         found);
-    case Verdict::unexplained:
-      return fmt::format("There is structure of {:.3f} hPa rms that no effect of the catalogue explains.",
-                         left);
-  }
-  return "";
-}
-
 void print_finding(const Finding& finding) {
   fmt::print("\n{}: {}\n", finding.effect.id, finding.title);
   if (finding.effect.is_formula()) fmt::print("  formula: {}\n", finding.effect.formula);
@@ -71,7 +44,7 @@ void print_finding(const Finding& finding) {
                                                         : fmt::format(", {:.2g} times its usual size",
                                                                       std::abs(alias.size_to_usual));
     fmt::print("  cannot be told from {} with {}: correlation {:+.3f}, chi2 {:.1f} {}{}\n", alias.effect,
-               in_words(alias.estimates), alias.correlation, std::abs(alias.chi2_less),
+               estimates_text(alias.estimates), alias.correlation, std::abs(alias.chi2_less),
                alias.chi2_less < 0.0 ? "more" : "less", size);
   }
   const Advice& advice = finding.advice;
@@ -86,7 +59,7 @@ void print_findings(const std::vector<Finding>& findings) {
              "rms, hPa", "largest", "chi2", "p", "before", "after", "events");
   for (const Finding& finding : findings) {
     fmt::print("{:<20} {:<32} {:>9.3f} {:>+9.3f} {:>8.1f} {:>8} {:>9.4f} {:>9.4f} {:>7.0f}\n",
-               finding.effect.id, in_words(finding.estimates), finding.rms, finding.worst, finding.chi2,
+               finding.effect.id, estimates_text(finding.estimates), finding.rms, finding.worst, finding.chi2,
                probability(finding.p_value), finding.rms_before, finding.rms_after, finding.events);
   }
   fmt::print(
@@ -112,13 +85,9 @@ void print_others(const Diagnosis& diagnosis, bool all) {
   for (const NotTestable& effect : diagnosis.not_testable)
     not_testable.push_back(fmt::format("{} ({})", effect.effect, effect.reason));
   for (const UpperLimit& limit : diagnosis.limits) {
-    std::vector<std::string> sizes;
-    for (std::size_t i = 0; i < std::min(limit.limits.size(), limit.estimates.size()); ++i) {
-      sizes.push_back(fmt::format("{} {:.2g}{}", limit.estimates[i].name, limit.limits[i],
-                                  unit_after_number(limit.estimates[i].unit)));
-    }
-    limits.push_back(fmt::format("{} ({}: {:.3f} hPa{}{})", limit.effect, fmt::join(sizes, ", "), limit.rms,
-                                 limit.note.empty() ? "" : "; ", limit.note));
+    const std::string sizes = limits_text(limit);
+    limits.push_back(fmt::format("{} ({}{}{:.3f} hPa{}{})", limit.effect, sizes, sizes.empty() ? "" : ": ",
+                                 limit.rms, limit.note.empty() ? "" : "; ", limit.note));
   }
   fmt::print("\n");
   print_list("not found, and at most (95 %)", std::move(limits), all);
@@ -170,7 +139,7 @@ std::string next_command(const Diagnosis& diagnosis, const Options& options) {
 }
 
 void print(const Diagnosis& diagnosis, const Options& options) {
-  fmt::print("{}\n\n", sentence_of(diagnosis));
+  fmt::print("{}.\n\n", verdict_text(diagnosis));
   fmt::print("reference: {}\n", diagnosis.reference);
   fmt::print("used {} samples; not used: {}\n", diagnosis.samples, mask_text(diagnosis.masks));
   fmt::print(

@@ -165,19 +165,6 @@ std::string command_line(const CandidateOptions& options) {
   return line;
 }
 
-std::string unit_after_number(const std::string& unit) {
-  return unit.empty() || unit == "1" ? "" : " " + unit;
-}
-
-std::string in_words(const std::vector<Estimate>& estimates) {
-  std::vector<std::string> words;
-  for (const Estimate& estimate : estimates) {
-    words.push_back(fmt::format("{} = {:.3g} +- {:.2g}{}", estimate.name, estimate.value,
-                                estimate.standard_error, unit_after_number(estimate.unit)));
-  }
-  return fmt::format("{}", fmt::join(words, ", "));
-}
-
 std::string probability(double p) { return p < 0.001 ? "< 0.001" : fmt::format("{:.3f}", p); }
 
 void print_unexplained(const Unexplained& unexplained) {

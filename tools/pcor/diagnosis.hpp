@@ -29,12 +29,6 @@ std::string command_line(const CandidateOptions& options);
 /// @throws Error that names `option`, if the formula cannot be read or does not use k.
 ModelEffect formula_effect(const std::string& id, const std::string& formula, const std::string& option);
 
-/// A unit as it follows a number, with a blank before it; nothing where there is none.
-std::string unit_after_number(const std::string& unit);
-
-/// "tau = 0.21 +- 0.02 s"
-std::string in_words(const std::vector<Estimate>& estimates);
-
 /// "< 0.001", or the number.
 std::string probability(double p);
 

@@ -3,7 +3,19 @@
 #include <pcor/diagnose/diagnose.hpp>
 #include <pcor/report/report.hpp>
 
+#include <string>
+#include <vector>
+
 namespace pcor {
+
+/// The verdict in one line, with the names of what is missing; no full stop.
+std::string verdict_text(const Diagnosis& diagnosis);
+
+/// "tau = 0.151 ± 0.006 s": values with their errors, both to two digits of the error.
+std::string estimates_text(const std::vector<Estimate>& estimates);
+
+/// "|tau| < 0.12 s": how large the coefficients of an effect that was not found may be.
+std::string limits_text(const UpperLimit& limit);
 
 /// The report of a diagnosis: what is missing, how sure that is, how large, and what cannot be told apart;
 /// the residual before and after in time and against the inputs of each effect, the evidence in time and over
