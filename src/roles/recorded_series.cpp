@@ -17,7 +17,8 @@ std::vector<double> values_if_fit(const Flight& flight, const std::string& varia
         flight, variable, UnitConversion::between(own, unit, {variable, flight.path().string(), ""}));
     const bool any = std::any_of(values.begin(), values.end(), [](double x) { return !std::isnan(x); });
     return any ? std::move(values) : std::vector<double>{};
-  } catch (const Error&) {
+  } catch (const Error& error) {
+    if (error.code() == Error::Code::file) throw;
     return {};  // a variable of that name with another unit is not the one that is meant
   }
 }
@@ -68,7 +69,8 @@ bool has_values(const Flight& flight, const std::string& variable, const std::st
   try {
     flight.conversion(variable, unit);
     flight.require_values(variable);
-  } catch (const Error&) {
+  } catch (const Error& error) {
+    if (error.code() == Error::Code::file) throw;
     return false;
   }
   return true;
