@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bitset>
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -32,11 +34,10 @@ Chain built(const Model& model, const std::vector<Quantity>& recorded, CorrectWi
   return std::move(*chain);
 }
 
-bool comes_after_correction(Quantity quantity) {
-  const auto after = {
-      Quantity::humidity,           Quantity::corrected_mach,   Quantity::ambient_temperature,
-      Quantity::corrected_airspeed, Quantity::lams_temperature, Quantity::lams_dynamic_pressure};
-  return std::find(after.begin(), after.end(), quantity) != after.end();
+std::bitset<state_capacity> set_of(const Quantities& quantities) {
+  std::bitset<state_capacity> set;
+  for (const Quantity quantity : quantities) set.set(index(quantity));
+  return set;
 }
 
 bool has_avx2() {
@@ -55,27 +56,49 @@ BatchKernel kernel() {
 }  // namespace
 
 Batch::Batch(const Model& model, const std::vector<Quantity>& recorded, CorrectWith with)
-    : chain_(built(model, recorded, with)), with_(with) {}
+    : chain_(built(model, recorded, with)), with_(with), recorded_(set_of(chain_.inputs())) {
+  std::size_t number = 0;
+  Stages::each([&](auto stage) {
+    const Correction correction{chain_, with_};
+    stages_[number++] = {set_of(stage.reads(correction)), set_of(stage.writes(correction))};
+  });
+}
+
+std::string Batch::name_of(Quantity quantity) const {
+  const std::vector<std::string>& extras = chain_.extra_names();
+  if (index(quantity) < quantity_count) return std::string(facts_of(quantity).name);
+  return extra_number(quantity) < extras.size() ? extras[extra_number(quantity)] : "no quantity";
+}
+
+bool Batch::finds(Quantity quantity) const {
+  return recorded_[index(quantity)] ||
+         std::any_of(stages_.begin(), stages_.end(),
+                     [quantity](const StageFacts& stage) { return stage.writes[index(quantity)]; });
+}
 
 void Batch::run(const std::vector<Input>& inputs, const std::vector<Output>& outputs, std::size_t samples,
                 const double* parameters) const {
   for (const Quantity needed : chain_.inputs()) {
     const bool given = std::any_of(inputs.begin(), inputs.end(),
                                    [needed](const Input& input) { return input.quantity == needed; });
-    if (given) continue;
-    const std::size_t place = index(needed);
-    throw Error(fmt::format(
-        "the values of '{}' are missing",
-        place < quantity_count ? facts_of(needed).name : chain_.extra_names()[place - quantity_count]));
+    if (!given) throw Error(fmt::format("the values of '{}' are missing", name_of(needed)));
+  }
+  std::bitset<state_capacity> wanted;
+  for (const Output& output : outputs) {
+    if (!finds(output.quantity)) {
+      throw Error(fmt::format(
+          "'{}' is not found over whole arrays: it needs what is not recorded, or samples before its own",
+          name_of(output.quantity)));
+    }
+    wanted.set(index(output.quantity));
   }
   BatchJob job;
   job.chain = &chain_;
+  job.with = with_;
   job.parameters = parameters != nullptr ? parameters : chain_.parameters().data();
-  job.corrects_with_lams = with_ == CorrectWith::lams;
-  job.finds_lams = job.corrects_with_lams;
-  for (const Output& output : outputs) {
-    job.finds_lams |= chain_.has_lams() && output.quantity == Quantity::lams_static_defect;
-    job.finds_air |= comes_after_correction(output.quantity);
+  for (std::size_t i = stages_.size(); i-- > 0;) {
+    job.runs[i] = (stages_[i].writes & wanted).any();
+    if (job.runs[i]) wanted |= stages_[i].reads;
   }
   job.inputs = inputs.data();
   job.input_count = inputs.size();

@@ -1,20 +1,20 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 
 #include <pcor/batch/batch.hpp>
-#include <pcor/realtime/chain.hpp>
+#include <pcor/realtime/stages.hpp>
 
 namespace pcor::internal {
 
 /// What a kernel does: plain pointers, because its code may be compiled for another processor than the rest.
 struct BatchJob {
   const Chain* chain = nullptr;
+  CorrectWith with = CorrectWith::model;
   const double* parameters = nullptr;
-  bool finds_lams = false;  ///< delta-p from LAMS is asked for or corrects
-  bool corrects_with_lams = false;
-  bool finds_air = false;  ///< something after the corrected pressures is asked for
+  std::array<bool, Stages::count> runs{};  ///< the stages that what is asked for needs
   const Batch::Input* inputs = nullptr;
   std::size_t input_count = 0;
   const Batch::Output* outputs = nullptr;
@@ -31,7 +31,7 @@ extern const BatchKernel run_batch_avx2;
 /// The chain over all samples of a job, `Pack::size` at a time.
 template <class Pack>
 void run_batch_in(const BatchJob& job) {
-  const Chain& chain = *job.chain;
+  const Correction correction{*job.chain, job.with};
   NoQualityFlags flags;
   State<Pack> state;
   for (std::size_t at = 0; at < job.samples; at += Pack::size) {
@@ -39,19 +39,10 @@ void run_batch_in(const BatchJob& job) {
     for (std::size_t i = 0; i < job.input_count; ++i) {
       state[job.inputs[i].quantity] = Pack::load(job.inputs[i].values + at, count);
     }
-    chain.measure(state, job.parameters, flags);
-    Pack defect = chain.static_defect(state, job.parameters, flags);
-    state[Quantity::static_defect] = defect;
-    if (job.finds_lams) {
-      const Pack lams = chain.lams_static_defect(state, job.parameters, flags);
-      state[Quantity::lams_static_defect] = lams;
-      if (job.corrects_with_lams) defect = select(is_missing(lams), defect, lams);
-    }
-    chain.correct(state, defect, flags);
-    if (job.finds_air) {
-      chain.air(state, job.parameters, flags);
-      if (chain.has_lams()) chain.lams_air(state, job.parameters);
-    }
+    std::size_t number = 0;
+    Stages::each([&](auto stage) {
+      if (job.runs[number++]) stage.compute(correction, state, job.parameters, flags);
+    });
     for (std::size_t i = 0; i < job.output_count; ++i) {
       state[job.outputs[i].quantity].store(job.outputs[i].values + at, count);
     }

@@ -4,7 +4,7 @@
 #include <string>
 
 #include <pcor/laws/model_file.hpp>
-#include <pcor/realtime/functors.hpp>
+#include <pcor/realtime/stages.hpp>
 
 namespace pcor::internal {
 

@@ -14,6 +14,7 @@
 
 #include "laws/effect_reader.hpp"
 #include "laws/model_names.hpp"
+#include "laws/output_table.hpp"
 #include "words/toml_reader.hpp"
 
 namespace pcor::internal {
@@ -218,7 +219,7 @@ class Reader final : TomlReader {
   }
 
   void read_output(const Entry& section_entry) {
-    const Names known(output_names.begin(), output_names.end());
+    const Names known = output_names();
     const std::vector<Entry> entries = entries_of(table(section_entry), "[output]");
     for (const Entry& entry : entries) {
       if (!contains(known, entry.key)) {

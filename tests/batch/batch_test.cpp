@@ -94,7 +94,9 @@ std::vector<Batch::Output> outputs_of(Arrays& arrays) {
 
 Arrays in_batch(const Batch& batch, const Arrays& recorded, std::size_t count) {
   Arrays result;
-  for (const Quantity quantity : derived) result[quantity].resize(count);
+  for (const Quantity quantity : derived) {
+    if (batch.finds(quantity)) result[quantity].resize(count);
+  }
   batch.run(inputs_of(recorded), outputs_of(result), count);
   return result;
 }
@@ -133,7 +135,8 @@ double rounding(Quantity quantity, double value, double mach) {
 void expect_equal(const Arrays& found, const Arrays& expected, double iteration = 0.0) {
   for (const auto& [quantity, values] : expected) {
     for (std::size_t i = 0; i < values.size(); ++i) {
-      const double value = found.at(quantity)[i];
+      // What a batch does not find, the loop does not either.
+      const double value = found.count(quantity) > 0 ? found.at(quantity)[i] : nan;
       if (std::isnan(value) && std::isnan(values[i])) continue;
       const double mach = expected.at(Quantity::corrected_mach)[i];
       const double allowed =
@@ -297,7 +300,7 @@ TEST(Batch, IsTheSameInTheKernelForEveryProcessor) {
   BatchJob job;
   job.chain = &batch.chain();
   job.parameters = batch.chain().parameters().data();
-  job.finds_lams = job.finds_air = true;
+  job.runs.fill(true);
   job.inputs = inputs.data();
   job.input_count = inputs.size();
   job.outputs = outputs.data();
@@ -317,6 +320,41 @@ TEST(Batch, SaysWhichValuesAreMissing) {
               ThrowsMessage<Error>(HasSubstr("'dynamic_pressure'")));
   EXPECT_THAT([] { Batch(gv(), gv_roles, CorrectWith::lams); },
               ThrowsMessage<Error>(HasSubstr("'lams_airspeed'")));
+}
+
+// Whatever can be asked for comes out as it does beside all the others, and what cannot is refused: no value
+// is missing because a stage was forgotten.
+TEST(Batch, FindsEveryQuantityForItselfOrRefusesIt) {
+  for (const CorrectWith with : {CorrectWith::model, CorrectWith::lams}) {
+    const std::vector<Quantity> roles = with_lams(gv_roles);
+    const Batch batch(gv(), roles, with);
+    constexpr std::size_t count = 50;
+    const Arrays recorded = random_samples(count, roles);
+    const Arrays together = in_batch(batch, recorded, count);
+    for (std::size_t place = 0; place < state_capacity; ++place) {
+      const auto quantity = static_cast<Quantity>(place);
+      std::vector<double> values(count);
+      const auto run = [&] { batch.run(inputs_of(recorded), {{quantity, values.data()}}, count); };
+      if (!batch.finds(quantity)) {
+        EXPECT_THAT(run, ThrowsMessage<Error>(HasSubstr("is not found over whole arrays"))) << place;
+        continue;
+      }
+      run();
+      EXPECT_GT(values_in(values), count / 2) << facts_of(quantity).name;
+      if (together.count(quantity) == 0) continue;
+      EXPECT_THAT(values, testing::Pointwise(testing::NanSensitiveDoubleEq(), together.at(quantity)))
+          << facts_of(quantity).name;
+    }
+  }
+}
+
+TEST(Batch, RefusesWhatIsNotRecordedOrNeedsEarlierSamples) {
+  const Batch batch(gv(), {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::attack});
+  for (const Quantity quantity :
+       {Quantity::corrected_airspeed, Quantity::lams_temperature, Quantity::height_step,
+        Quantity::filtered_lams_temperature, Quantity::roll}) {
+    EXPECT_FALSE(batch.finds(quantity)) << facts_of(quantity).name;
+  }
 }
 
 }  // namespace

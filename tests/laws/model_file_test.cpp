@@ -22,6 +22,7 @@
 #include <pcor/physics/lams.hpp>
 #include <pcor/physics/recovery_factor.hpp>
 #include <pcor/words/error.hpp>
+#include "laws/output_table.hpp"
 
 namespace {
 
@@ -294,8 +295,8 @@ class ModelGenerator {
       file.variables[role] = "V" + std::to_string(i);
       if (maybe()) file.units[role] = facts_of(role).unit;
     }
-    for (const std::string_view name : output_names) {
-      if (maybe()) file.output[std::string(name)] = "my " + std::string(name);
+    for (const std::string& name : internal::output_names()) {
+      if (maybe()) file.output[name] = "my " + name;
     }
   }
 

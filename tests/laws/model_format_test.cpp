@@ -19,6 +19,7 @@
 #include <pcor/physics/recovery_factor.hpp>
 #include <pcor/realtime/chain.hpp>
 #include <pcor/words/error.hpp>
+#include "laws/output_table.hpp"
 
 namespace pcor {
 namespace {
@@ -176,8 +177,7 @@ TEST(ModelFormat, ListsTheQualityBits) {
 
 TEST(ModelFormat, ListsTheResults) {
   ASSERT_EQ(tables("result").size(), 1u);
-  EXPECT_THAT(names_of(tables("result")[0]),
-              ElementsAreArray(Lines(output_names.begin(), output_names.end())));
+  EXPECT_THAT(names_of(tables("result")[0]), ElementsAreArray(internal::output_names()));
 }
 
 TEST(ModelFormat, ListsTheKeysOfEveryTable) {

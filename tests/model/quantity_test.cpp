@@ -90,8 +90,12 @@ TEST(State, HoldsFurtherVariablesBehindTheQuantities) {
     state[static_cast<Quantity>(i)] = static_cast<double>(i);
   for (std::size_t i = 0; i < quantity_count; ++i)
     EXPECT_EQ(state[static_cast<Quantity>(i)], static_cast<double>(i));
-  for (std::size_t i = 0; i < pcor::extra_capacity; ++i)
-    EXPECT_EQ(state[pcor::extra_quantity(i)], static_cast<double>(quantity_count + i));
+  for (std::size_t i = 0; i < pcor::extra_capacity; ++i) {
+    const Quantity extra = pcor::extra_quantity(i);
+    EXPECT_EQ(state[extra], static_cast<double>(quantity_count + 1 + i));
+    EXPECT_EQ(pcor::extra_number(extra), i);
+    EXPECT_NE(extra, Quantity::count) << "which is none";
+  }
 }
 
 TEST(Quality, EachBitIsOneBitOfItsOwnAndIsExplained) {

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <array>
+#include <bitset>
 #include <cstddef>
+#include <string>
 #include <vector>
 
-#include <pcor/realtime/functors.hpp>
+#include <pcor/realtime/stages.hpp>
 
 namespace pcor {
 
@@ -34,17 +37,29 @@ class Batch {
 
   const Chain& chain() const { return chain_; }
 
+  /// True where `run` can give the quantity: it is recorded, or a stage of the chain writes it.
+  bool finds(Quantity quantity) const;
+
   /// Runs the chain over `samples` samples. Every recorded quantity of the chain (`Chain::inputs`) has to be
-  /// among the inputs; outputs may be any quantities, and only what they need is computed. An output may not
-  /// overlap an input or another output. `parameters` takes the place of the model's coefficients, in the
-  /// order of `Chain::parameters`. May be called by several threads at once.
-  /// @throws Error if an input is missing.
+  /// among the inputs; outputs are any that it finds, and only the stages that they need are run. An output
+  /// may not overlap an input or another output. `parameters` takes the place of the model's coefficients, in
+  /// the order of `Chain::parameters`. May be called by several threads at once.
+  /// @throws Error if an input is missing, or an output is not found.
   void run(const std::vector<Input>& inputs, const std::vector<Output>& outputs, std::size_t samples,
            const double* parameters = nullptr) const;
 
  private:
+  struct StageFacts {
+    std::bitset<state_capacity> reads;
+    std::bitset<state_capacity> writes;
+  };
+
+  std::string name_of(Quantity quantity) const;
+
   Chain chain_;
   CorrectWith with_;
+  std::bitset<state_capacity> recorded_;
+  std::array<StageFacts, Stages::count> stages_;
 };
 
 }  // namespace pcor

@@ -61,11 +61,6 @@ struct ProvenanceValue : std::variant<std::string, double, std::int64_t, bool, P
   using variant::variant;
 };
 
-/// The names under which results are written unless a model's [output] table renames them.
-inline constexpr std::array<std::string_view, 12> output_names{"PCOR",    "PCOR_LAMS", "PSXC",    "QCXC",
-                                                               "MACHX",   "ATX",       "TASX",    "ATLAMS",
-                                                               "ATLAMSF", "QCLAMS",    "HYDSTEP", "PCORFLAG"};
-
 /// A model as its file holds it: what the real-time part needs, and what only files, fits and people need.
 struct ModelFile {
   Model model;

@@ -64,6 +64,7 @@ enum class Quantity : std::uint8_t {
   lams_temperature,
   lams_dynamic_pressure,
   filtered_lams_temperature,
+  height_step,
 
   count
 };
@@ -78,81 +79,117 @@ inline constexpr std::size_t role_count = index(Quantity::time);
 /// How many further variables one model or loop may name beyond the quantities of the library.
 inline constexpr std::size_t extra_capacity = 24;
 
-/// The number of values that a state holds.
-inline constexpr std::size_t state_capacity = quantity_count + extra_capacity;
+/// The number of values that a state holds: the place of `Quantity::count`, which is no quantity, stays
+/// empty.
+inline constexpr std::size_t state_capacity = quantity_count + 1 + extra_capacity;
 
-/// The place of the further variable number `number`.
+/// The place of the further variable number `number`, and the number of one that is no quantity of the
+/// library.
 constexpr Quantity extra_quantity(std::size_t number) {
-  return static_cast<Quantity>(quantity_count + number);
+  return static_cast<Quantity>(quantity_count + 1 + number);
 }
+constexpr std::size_t extra_number(Quantity quantity) { return index(quantity) - quantity_count - 1; }
 
 /// What a quantity is called, its unit inside the library, and what it is.
 struct QuantityFacts {
   std::string_view name;
   std::string_view unit;
   std::string_view description;
+  Quantity quantity = Quantity::count;
 };
 
 /// The facts of every quantity, in the order of the enumeration.
 inline constexpr std::array<QuantityFacts, quantity_count> quantity_facts{{
-    {"static_pressure", "hPa", "static pressure as measured, p_m"},
-    {"dynamic_pressure", "hPa", "dynamic pressure as measured, q_m"},
-    {"recovery_temperature", "K", "temperature that a thermometer in the airstream shows, T_r"},
-    {"ambient_temperature", "K", "temperature of the undisturbed air, T"},
-    {"vapor_pressure", "hPa", "water vapour pressure, e"},
-    {"dew_point", "K", "dew point: where the vapour would saturate over water, at any temperature"},
-    {"frost_point", "K", "temperature of a chilled mirror: over ice below the ice point, over water above"},
-    {"radome_dynamic_pressure", "hPa", "dynamic pressure at the centre of the radome, QCR"},
-    {"attack_differential_pressure", "hPa", "vertical differential pressure of the radome, ADIFR"},
-    {"sideslip_differential_pressure", "hPa", "horizontal differential pressure of the radome, BDIFR"},
-    {"attack", "deg", "angle of attack, alpha"},
-    {"sideslip", "deg", "sideslip, beta, positive for wind from starboard"},
-    {"lams_airspeed", "m/s", "airspeed along the laser beam, v_L"},
-    {"mach", "1", "Mach number in the laws: an independent one, else from the measured pair in dry air"},
-    {"true_airspeed", "m/s", "true airspeed of the recording system"},
-    {"altitude", "m", "GPS altitude"},
-    {"vertical_speed", "m/s", "vertical speed of the aircraft"},
-    {"latitude", "deg", "latitude, north positive"},
-    {"pitch", "deg", "pitch, nose up positive"},
-    {"roll", "deg", "roll, starboard wing down positive"},
-    {"heading", "deg", "true heading"},
-    {"ground_speed", "m/s", "ground speed"},
-    {"ground_track", "deg", "true ground track"},
-    {"normal_acceleration", "m/s2", "acceleration along the normal axis, up positive, without gravity"},
+    {"static_pressure", "hPa", "static pressure as measured, p_m", Quantity::static_pressure},
+    {"dynamic_pressure", "hPa", "dynamic pressure as measured, q_m", Quantity::dynamic_pressure},
+    {"recovery_temperature", "K", "temperature that a thermometer in the airstream shows, T_r",
+     Quantity::recovery_temperature},
+    {"ambient_temperature", "K", "temperature of the undisturbed air, T", Quantity::ambient_temperature},
+    {"vapor_pressure", "hPa", "water vapour pressure, e", Quantity::vapor_pressure},
+    {"dew_point", "K", "dew point: where the vapour would saturate over water, at any temperature",
+     Quantity::dew_point},
+    {"frost_point", "K", "temperature of a chilled mirror: over ice below the ice point, over water above",
+     Quantity::frost_point},
+    {"radome_dynamic_pressure", "hPa", "dynamic pressure at the centre of the radome, QCR",
+     Quantity::radome_dynamic_pressure},
+    {"attack_differential_pressure", "hPa", "vertical differential pressure of the radome, ADIFR",
+     Quantity::attack_differential_pressure},
+    {"sideslip_differential_pressure", "hPa", "horizontal differential pressure of the radome, BDIFR",
+     Quantity::sideslip_differential_pressure},
+    {"attack", "deg", "angle of attack, alpha", Quantity::attack},
+    {"sideslip", "deg", "sideslip, beta, positive for wind from starboard", Quantity::sideslip},
+    {"lams_airspeed", "m/s", "airspeed along the laser beam, v_L", Quantity::lams_airspeed},
+    {"mach", "1", "Mach number in the laws: an independent one, else from the measured pair in dry air",
+     Quantity::mach},
+    {"true_airspeed", "m/s", "true airspeed of the recording system", Quantity::true_airspeed},
+    {"altitude", "m", "GPS altitude", Quantity::altitude},
+    {"vertical_speed", "m/s", "vertical speed of the aircraft", Quantity::vertical_speed},
+    {"latitude", "deg", "latitude, north positive", Quantity::latitude},
+    {"pitch", "deg", "pitch, nose up positive", Quantity::pitch},
+    {"roll", "deg", "roll, starboard wing down positive", Quantity::roll},
+    {"heading", "deg", "true heading", Quantity::heading},
+    {"ground_speed", "m/s", "ground speed", Quantity::ground_speed},
+    {"ground_track", "deg", "true ground track", Quantity::ground_track},
+    {"normal_acceleration", "m/s2", "acceleration along the normal axis, up positive, without gravity",
+     Quantity::normal_acceleration},
     {"longitudinal_acceleration", "m/s2",
-     "acceleration along the longitudinal axis, forward positive, as an accelerometer shows it"},
-    {"flaps", "percent", "flap position"},
-    {"engine_torque", "percent", "torque of the engines"},
-    {"height_above_ground", "m", "height above the ground"},
-    {"liquid_water", "g/m3", "liquid water content"},
-    {"transducer_temperature", "K", "temperature of the pressure transducers"},
-    {"cabin_pressure", "hPa", "cabin pressure"},
+     "acceleration along the longitudinal axis, forward positive, as an accelerometer shows it",
+     Quantity::longitudinal_acceleration},
+    {"flaps", "percent", "flap position", Quantity::flaps},
+    {"engine_torque", "percent", "torque of the engines", Quantity::engine_torque},
+    {"height_above_ground", "m", "height above the ground", Quantity::height_above_ground},
+    {"liquid_water", "g/m3", "liquid water content", Quantity::liquid_water},
+    {"transducer_temperature", "K", "temperature of the pressure transducers",
+     Quantity::transducer_temperature},
+    {"cabin_pressure", "hPa", "cabin pressure", Quantity::cabin_pressure},
 
-    {"time", "s", "time since the first record"},
-    {"dynamic_ratio", "1", "dynamic over static pressure as measured, q_m/p_m"},
-    {"attack_ratio", "1", "ADIFR/QCR"},
-    {"sideslip_ratio", "1", "BDIFR/QCR"},
-    {"static_pressure_rate", "hPa/s", "rate of change of the measured static pressure"},
-    {"dynamic_pressure_rate", "hPa/s", "rate of change of the measured dynamic pressure"},
-    {"recovery_temperature_rate", "K/s", "rate of change of the recovery temperature"},
-    {"ambient_temperature_rate", "K/s", "rate of change of the ambient temperature"},
+    {"time", "s", "time since the first record", Quantity::time},
+    {"dynamic_ratio", "1", "dynamic over static pressure as measured, q_m/p_m", Quantity::dynamic_ratio},
+    {"attack_ratio", "1", "ADIFR/QCR", Quantity::attack_ratio},
+    {"sideslip_ratio", "1", "BDIFR/QCR", Quantity::sideslip_ratio},
+    {"static_pressure_rate", "hPa/s", "rate of change of the measured static pressure",
+     Quantity::static_pressure_rate},
+    {"dynamic_pressure_rate", "hPa/s", "rate of change of the measured dynamic pressure",
+     Quantity::dynamic_pressure_rate},
+    {"recovery_temperature_rate", "K/s", "rate of change of the recovery temperature",
+     Quantity::recovery_temperature_rate},
+    {"ambient_temperature_rate", "K/s", "rate of change of the ambient temperature",
+     Quantity::ambient_temperature_rate},
     {"airspeed_rate", "m/s2",
-     "rate of change of the airspeed, from the measured pressures and the temperature"},
-    {"port_static_pressure", "hPa", "static pressure at the port, after effects of transducer and line"},
-    {"port_dynamic_pressure", "hPa", "dynamic pressure at the ports, after effects of transducer and line"},
+     "rate of change of the airspeed, from the measured pressures and the temperature",
+     Quantity::airspeed_rate},
+    {"port_static_pressure", "hPa", "static pressure at the port, after effects of transducer and line",
+     Quantity::port_static_pressure},
+    {"port_dynamic_pressure", "hPa", "dynamic pressure at the ports, after effects of transducer and line",
+     Quantity::port_dynamic_pressure},
 
-    {"static_defect", "hPa", "delta-p of the model, added to the static pressure"},
-    {"lams_static_defect", "hPa", "delta-p from LAMS"},
-    {"corrected_static_pressure", "hPa", "corrected static pressure, p"},
-    {"corrected_dynamic_pressure", "hPa", "corrected dynamic pressure, q"},
-    {"humidity", "1", "water vapour pressure over static pressure, e/p, not above saturation"},
-    {"corrected_mach", "1", "Mach number from the corrected pressures"},
-    {"corrected_airspeed", "m/s", "true airspeed from the corrected pressures"},
-    {"lams_temperature", "K", "ambient temperature from LAMS without a thermometer"},
-    {"lams_dynamic_pressure", "hPa", "dynamic pressure from LAMS"},
+    {"static_defect", "hPa", "delta-p of the model, added to the static pressure", Quantity::static_defect},
+    {"lams_static_defect", "hPa", "delta-p from LAMS", Quantity::lams_static_defect},
+    {"corrected_static_pressure", "hPa", "corrected static pressure, p", Quantity::corrected_static_pressure},
+    {"corrected_dynamic_pressure", "hPa", "corrected dynamic pressure, q",
+     Quantity::corrected_dynamic_pressure},
+    {"humidity", "1", "water vapour pressure over static pressure, e/p, not above saturation",
+     Quantity::humidity},
+    {"corrected_mach", "1", "Mach number from the corrected pressures", Quantity::corrected_mach},
+    {"corrected_airspeed", "m/s", "true airspeed from the corrected pressures", Quantity::corrected_airspeed},
+    {"lams_temperature", "K", "ambient temperature from LAMS without a thermometer",
+     Quantity::lams_temperature},
+    {"lams_dynamic_pressure", "hPa", "dynamic pressure from LAMS", Quantity::lams_dynamic_pressure},
     {"filtered_lams_temperature", "K",
-     "ambient temperature from LAMS without periods under 3 s, half a window ago"},
+     "ambient temperature from LAMS without periods under 3 s, half a window ago",
+     Quantity::filtered_lams_temperature},
+    {"height_step", "m/K", "step of geopotential height per kelvin since the sample before",
+     Quantity::height_step},
 }};
+
+/// True where every row of the facts stands at the place of its quantity.
+constexpr bool facts_are_in_order() {
+  for (std::size_t i = 0; i < quantity_count; ++i) {
+    if (index(quantity_facts[i].quantity) != i) return false;
+  }
+  return true;
+}
+static_assert(facts_are_in_order(), "a quantity has its row of facts at its place in the enumeration");
 
 constexpr const QuantityFacts& facts_of(Quantity quantity) { return quantity_facts[index(quantity)]; }
 

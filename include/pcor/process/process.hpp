@@ -10,7 +10,7 @@
 #include <pcor/flight/flight.hpp>
 #include <pcor/laws/model_file.hpp>
 #include <pcor/model/quality.hpp>
-#include <pcor/realtime/functors.hpp>
+#include <pcor/realtime/stages.hpp>
 
 namespace pcor {
 

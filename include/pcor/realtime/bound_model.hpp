@@ -41,6 +41,25 @@ class BoundModel {
   /// True where some effect acts at the place.
   bool acts(Where where) const { return begin_of(where) != begin_of(where, 1); }
 
+  /// What the effects at the place read, and at the static ports the domain of the model.
+  std::vector<Quantity> read_at(Where where) const {
+    std::vector<Quantity> read;
+    for (std::size_t i = begin_of(where); i < begin_of(where, 1); ++i) {
+      const Term& term = terms_[i];
+      if (term.effect < catalogue_size) {
+        const EffectFacts& facts = effect_facts[term.effect];
+        read.insert(read.end(), facts.needs.begin(), facts.needs.begin() + facts.need_count());
+      } else if (term.effect == Term::is_formula) {
+        const std::vector<Quantity>& variables = formulas_[term.formula].variables;
+        read.insert(read.end(), variables.begin(), variables.end());
+      }
+    }
+    if (where == Where::static_defect) {
+      for (const Range& range : domain_) read.push_back(range.quantity);
+    }
+    return read;
+  }
+
   bool has_temperature() const {
     return recorded(Quantity::recovery_temperature) || recorded(Quantity::ambient_temperature);
   }
@@ -55,6 +74,9 @@ class BoundModel {
   bool calibrates_recorded_temperature() const {
     return acts(Where::ambient_temperature) && recorded(Quantity::ambient_temperature);
   }
+
+  /// True where water vapour changes the constants of the air: with moist constants, or by an effect.
+  bool counts_vapor() const { return moist_ || acts(Where::humidity); }
 
   bool has_lams() const { return recorded(Quantity::lams_airspeed); }
   bool needs_rates() const {

@@ -283,9 +283,6 @@ class Chain : public BoundModel {
     return select(temperature > S(0.0), temperature, missing<S>());
   }
 
-  // True where water vapour changes the constants of the air: with moist constants, or by an effect.
-  bool counts_vapor() const { return moist_ || acts(Where::humidity); }
-
   // Vapour pressure as recorded, hPa; a dew point gives one at static pressure p.
   template <class S>
   S recorded_vapor_pressure(const State<S>& state, const S& p) const {

@@ -11,8 +11,8 @@ namespace pcor {
 /// missing, which the quality bits of that sample tell.
 class HeightStep final : public Functor {
  public:
-  explicit HeightStep(Quantity step)
-      : Functor({Quantity::corrected_static_pressure, Quantity::humidity}, {step}), step_(step) {}
+  HeightStep()
+      : Functor({Quantity::corrected_static_pressure, Quantity::humidity}, {Quantity::height_step}) {}
 
   void reset() noexcept override { pressure_ = missing<double>(); }
 
@@ -20,13 +20,12 @@ class HeightStep final : public Functor {
     const double pressure = state[Quantity::corrected_static_pressure];
     const double humidity = state[Quantity::humidity];
     const double gas_constant = moist_air(0.5 * (humidity_ + humidity)).gas_constant;
-    state[step_] = finite_or_missing(hydrostatic_step(pressure_, pressure, gas_constant));
+    state[Quantity::height_step] = finite_or_missing(hydrostatic_step(pressure_, pressure, gas_constant));
     pressure_ = pressure;
     humidity_ = humidity;
   }
 
  private:
-  Quantity step_;
   double pressure_ = missing<double>();
   double humidity_ = missing<double>();
 };

@@ -10,11 +10,30 @@
 #include <utility>
 #include <vector>
 
-#include <pcor/realtime/functors.hpp>
+#include <pcor/realtime/functor.hpp>
 #include <pcor/realtime/low_pass.hpp>
 #include <pcor/realtime/rate_of_change.hpp>
+#include <pcor/realtime/stages.hpp>
 
 namespace pcor {
+
+/// A stage of a chain as a functor of the sample loop.
+template <class Stage>
+class StageFunctor final : public Functor {
+ public:
+  StageFunctor(std::shared_ptr<const Chain> chain, CorrectWith with)
+      : Functor(Stage::reads({*chain, with}), Stage::writes({*chain, with})),
+        chain_(std::move(chain)),
+        with_(with) {}
+
+  void compute(State<double>& state, QualityFlags& flags) noexcept override {
+    Stage::compute({*chain_, with_}, state, chain_->parameters().data(), flags);
+  }
+
+ private:
+  std::shared_ptr<const Chain> chain_;
+  CorrectWith with_;
+};
 
 /// The host of a sample loop at one rate: runs functors in the order of their dependencies, sample by sample.
 ///
@@ -59,6 +78,14 @@ class Loop {
   /// they wait for each other; `error` says which.
   bool order(std::string* error);
 
+  /// True where some functor writes the quantity.
+  bool writes(Quantity quantity) const {
+    return std::any_of(functors_.begin(), functors_.end(), [quantity](const auto& functor) {
+      const std::vector<Quantity>& outputs = functor->outputs();
+      return std::find(outputs.begin(), outputs.end(), quantity) != outputs.end();
+    });
+  }
+
   /// The values of this sample: set what is recorded, run, read what is derived.
   State<double>& state() { return state_; }
   const State<double>& state() const { return state_; }
@@ -93,9 +120,8 @@ class Loop {
 
  private:
   std::string name_of(Quantity quantity) const {
-    const std::size_t place = index(quantity);
-    return place < quantity_count ? std::string(quantity_facts[place].name)
-                                  : extra_names_[place - quantity_count];
+    return index(quantity) < quantity_count ? std::string(facts_of(quantity).name)
+                                            : extra_names_[extra_number(quantity)];
   }
 
   std::vector<std::unique_ptr<Functor>> functors_;
@@ -190,13 +216,11 @@ inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, doubl
       loop.add(std::make_unique<RateOfChange>(each.quantity, each.rate));
     }
   }
-  loop.add(std::make_unique<MeasuredQuantities>(chain));
-  loop.add(std::make_unique<StaticDefect>(chain));
-  loop.add(std::make_unique<CorrectedPressures>(chain, with));
-  loop.add(std::make_unique<AirState>(chain));
+  Stages::each([&](auto stage) {
+    auto functor = std::make_unique<StageFunctor<decltype(stage)>>(chain, with);
+    if (!functor->outputs().empty()) loop.add(std::move(functor));
+  });
   if (chain->has_lams()) {
-    loop.add(std::make_unique<LamsStaticDefect>(chain));
-    loop.add(std::make_unique<LamsAir>(chain));
     loop.add(
         std::make_unique<LowPass>(Quantity::lams_temperature, Quantity::filtered_lams_temperature, rate));
   }

@@ -1,0 +1,253 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <initializer_list>
+#include <utility>
+#include <vector>
+
+#include <pcor/realtime/chain.hpp>
+
+namespace pcor {
+
+/// Which delta-p corrects the pressures.
+enum class CorrectWith { model, lams };
+
+/// What the stages work on: a chain, and which delta-p corrects the pressures.
+struct Correction {
+  const Chain& chain;
+  CorrectWith with = CorrectWith::model;
+};
+
+/// The stages of a chain. Each says what it reads and writes, and computes it for one sample, or one pack of
+/// samples; nothing is remembered. By what they say a sample loop puts them in order among functors of the
+/// user's own, and a batch runs those that it needs for what it is asked for. One that writes nothing for a
+/// chain is left out.
+///
+/// To add one: write it here, name it in `Stages`, and what it writes in `Quantity`.
+
+using Quantities = std::vector<Quantity>;
+
+inline Quantities joined(std::initializer_list<Quantities> lists) {
+  Quantities all;
+  for (const Quantities& list : lists) all.insert(all.end(), list.begin(), list.end());
+  return all;
+}
+
+/// Those of `quantities` that are recorded or derived.
+inline Quantities known(const Chain& chain, std::initializer_list<Quantity> quantities) {
+  Quantities known;
+  for (const Quantity quantity : quantities) {
+    if (chain.recorded(quantity) || chain.needs(quantity)) known.push_back(quantity);
+  }
+  return known;
+}
+
+/// What temperature and humidity are found from: what is recorded of them, and what their effects read. What
+/// calibrates an ambient temperature takes that temperature from the stage that finds it.
+inline Quantities read_of_air(const Chain& chain) {
+  Quantities read = joined({chain.read_at(Where::temperature), chain.read_at(Where::recovery),
+                            chain.read_at(Where::humidity), chain.read_at(Where::ambient_temperature)});
+  read.erase(std::remove(read.begin(), read.end(), Quantity::ambient_temperature), read.end());
+  for (const Quantity recorded : {Quantity::recovery_temperature, Quantity::ambient_temperature,
+                                  Quantity::vapor_pressure, Quantity::dew_point, Quantity::frost_point}) {
+    if (chain.recorded(recorded)) read.push_back(recorded);
+  }
+  return read;
+}
+
+/// What the airspeed from LAMS is found from: the speed along the beam and the angle of the beam to the wind.
+inline Quantities read_of_beam(const Chain& chain) {
+  return joined({known(chain, {Quantity::lams_airspeed, Quantity::attack, Quantity::sideslip}),
+                 chain.read_at(Where::beam_speed), chain.read_at(Where::beam_elevation),
+                 chain.read_at(Where::beam_azimuth)});
+}
+
+/// Pressures at the ports, and the quantities in which the laws stand: `Chain::measure`.
+struct MeasuredQuantities {
+  static Quantities reads(const Correction& correction) {
+    const Chain& chain = correction.chain;
+    Quantities read = writes_in_place(chain);
+    for (const Quantity input : chain.inputs()) {
+      if (chain.needs(input)) read.push_back(input);
+    }
+    for (const Rate& each : rates) {
+      if (chain.derives(each.rate)) read.push_back(each.rate);
+    }
+    if (chain.needs(Quantity::time)) read.push_back(Quantity::time);
+    return read;
+  }
+
+  static Quantities writes(const Correction& correction) {
+    const Chain& chain = correction.chain;
+    Quantities written = writes_in_place(chain);
+    written.insert(written.end(), {Quantity::port_static_pressure, Quantity::port_dynamic_pressure});
+    for (const Quantity derived :
+         {Quantity::dynamic_ratio, Quantity::mach, Quantity::attack_ratio, Quantity::sideslip_ratio,
+          Quantity::attack, Quantity::sideslip, Quantity::vapor_pressure, Quantity::airspeed_rate}) {
+      if (chain.derives(derived)) written.push_back(derived);
+    }
+    return written;
+  }
+
+  template <class S, class P, class Flags>
+  static void compute(const Correction& correction, State<S>& state, const P* parameters, Flags& flags) {
+    correction.chain.measure(state, parameters, flags);
+  }
+
+  /// The recorded quantities that `quantity`, recorded or derived, is found from.
+  static Quantities sources(const Chain& chain, Quantity quantity) {
+    const auto of = [&chain](Quantity other) { return sources(chain, other); };
+    if (chain.recorded(quantity)) return {quantity};
+    for (const Rate& each : rates) {
+      if (each.rate == quantity) return of(each.quantity);
+    }
+    switch (quantity) {
+      case Quantity::dynamic_ratio:
+      case Quantity::mach:
+        return {Quantity::static_pressure, Quantity::dynamic_pressure};
+      case Quantity::airspeed_rate:
+        return joined({of(Quantity::mach),
+                       known(chain, {chain.derives_temperature() ? Quantity::recovery_temperature
+                                                                 : Quantity::ambient_temperature})});
+      case Quantity::vapor_pressure:
+        return joined(
+            {{Quantity::static_pressure}, known(chain, {Quantity::dew_point, Quantity::frost_point})});
+      case Quantity::attack:
+      case Quantity::sideslip:
+        return joined({of(quantity == Quantity::attack ? Quantity::attack_ratio : Quantity::sideslip_ratio),
+                       chain.needs(Quantity::mach) ? of(Quantity::mach) : Quantities{}});
+      case Quantity::attack_ratio:
+        return {Quantity::attack_differential_pressure, Quantity::radome_dynamic_pressure};
+      case Quantity::sideslip_ratio:
+        return {Quantity::sideslip_differential_pressure, Quantity::radome_dynamic_pressure};
+      default:
+        return {};
+    }
+  }
+
+ private:
+  // What is recorded and completed by effects.
+  static Quantities writes_in_place(const Chain& chain) {
+    Quantities completed;
+    const auto completes = [&](Where where, Quantity quantity) {
+      if (chain.acts(where) && chain.recorded(quantity)) completed.push_back(quantity);
+    };
+    completes(Where::radome, Quantity::radome_dynamic_pressure);
+    completes(Where::attack, Quantity::attack);
+    completes(Where::sideslip, Quantity::sideslip);
+    completes(Where::ambient_temperature, Quantity::ambient_temperature);
+    return completed;
+  }
+};
+
+/// Delta-p of the model, hPa: `Chain::static_defect`.
+struct StaticDefect {
+  static Quantities reads(const Correction& correction) {
+    return joined({{Quantity::static_pressure, Quantity::dynamic_pressure},
+                   correction.chain.read_at(Where::static_defect)});
+  }
+  static Quantities writes(const Correction&) { return {Quantity::static_defect}; }
+
+  template <class S, class P, class Flags>
+  static void compute(const Correction& correction, State<S>& state, const P* parameters, Flags& flags) {
+    state[Quantity::static_defect] = correction.chain.static_defect(state, parameters, flags);
+  }
+};
+
+/// Delta-p from LAMS, hPa: `Chain::lams_static_defect`.
+struct LamsStaticDefect {
+  static Quantities reads(const Correction& correction) {
+    return joined({{Quantity::port_static_pressure, Quantity::port_dynamic_pressure},
+                   read_of_beam(correction.chain),
+                   read_of_air(correction.chain)});
+  }
+  static Quantities writes(const Correction& correction) {
+    return correction.chain.has_lams() ? Quantities{Quantity::lams_static_defect} : Quantities{};
+  }
+
+  template <class S, class P, class Flags>
+  static void compute(const Correction& correction, State<S>& state, const P* parameters, Flags& flags) {
+    state[Quantity::lams_static_defect] = correction.chain.lams_static_defect(state, parameters, flags);
+  }
+};
+
+/// Corrected static and dynamic pressure, hPa: `Chain::correct`, with delta-p of the model, or with that of
+/// LAMS where it is valid and the quality bit `corrected_with_lams` says so.
+struct CorrectedPressures {
+  static Quantities reads(const Correction& correction) {
+    Quantities read{Quantity::port_static_pressure, Quantity::port_dynamic_pressure, Quantity::static_defect};
+    if (correction.with == CorrectWith::lams) read.push_back(Quantity::lams_static_defect);
+    return read;
+  }
+  static Quantities writes(const Correction&) {
+    return {Quantity::corrected_static_pressure, Quantity::corrected_dynamic_pressure};
+  }
+
+  template <class S, class P, class Flags>
+  static void compute(const Correction& correction, State<S>& state, const P*, Flags& flags) {
+    S defect = state[Quantity::static_defect];
+    if (correction.with == CorrectWith::lams) {
+      const S lams = state[Quantity::lams_static_defect];
+      const auto valid = !is_missing(lams);
+      flags.set(valid, Quality::corrected_with_lams);
+      defect = select(valid, lams, defect);
+    }
+    correction.chain.correct(state, defect, flags);
+  }
+};
+
+/// Humidity, Mach number, ambient temperature (K) and true airspeed (m/s) from the corrected pressures:
+/// `Chain::air`.
+struct AirState {
+  static Quantities reads(const Correction& correction) {
+    return joined({{Quantity::corrected_static_pressure, Quantity::corrected_dynamic_pressure},
+                   read_of_air(correction.chain)});
+  }
+  static Quantities writes(const Correction& correction) {
+    Quantities written{Quantity::humidity, Quantity::corrected_mach};
+    if (correction.chain.has_temperature()) written.push_back(Quantity::corrected_airspeed);
+    if (correction.chain.derives_temperature()) written.push_back(Quantity::ambient_temperature);
+    return written;
+  }
+
+  template <class S, class P, class Flags>
+  static void compute(const Correction& correction, State<S>& state, const P* parameters, Flags& flags) {
+    correction.chain.air(state, parameters, flags);
+  }
+};
+
+/// Temperature (K) and dynamic pressure (hPa) from LAMS and the corrected pressures: `Chain::lams_air`.
+struct LamsAir {
+  static Quantities reads(const Correction& correction) {
+    return joined({{Quantity::corrected_static_pressure, Quantity::corrected_mach, Quantity::humidity,
+                    Quantity::ambient_temperature},
+                   read_of_beam(correction.chain)});
+  }
+  static Quantities writes(const Correction& correction) {
+    if (!correction.chain.has_lams()) return {};
+    return {Quantity::lams_temperature, Quantity::lams_dynamic_pressure};
+  }
+
+  template <class S, class P, class Flags>
+  static void compute(const Correction& correction, State<S>& state, const P* parameters, Flags&) {
+    correction.chain.lams_air(state, parameters);
+  }
+};
+
+template <class... Stage>
+struct StageList {
+  static constexpr std::size_t count = sizeof...(Stage);
+
+  /// Calls `visit` with every stage, in their order.
+  template <class Visit>
+  static void each(const Visit& visit) {
+    (visit(Stage{}), ...);
+  }
+};
+
+/// All stages, in an order in which each finds what it reads.
+using Stages =
+    StageList<MeasuredQuantities, StaticDefect, LamsStaticDefect, CorrectedPressures, AirState, LamsAir>;
+
+}  // namespace pcor

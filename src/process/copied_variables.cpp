@@ -1,0 +1,52 @@
+#include "process/copied_variables.hpp"
+
+#include <algorithm>
+
+#include "laws/archived_model.hpp"
+#include "roles/usual_variables.hpp"
+
+namespace pcor::internal {
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// The first of some names that is a time series of the flight; empty where none is.
+std::string first_series(const Flight& flight, const Names& names) {
+  const auto found = std::find_if(names.begin(), names.end(), [&flight](const std::string& name) {
+    return flight.has(name) && flight.variable(name).is_series;
+  });
+  return found == names.end() ? std::string() : *found;
+}
+
+std::string variable_of(const ModelFile& model, Quantity role) {
+  const auto found = model.variables.find(role);
+  return found == model.variables.end() ? std::string() : found->second;
+}
+
+}  // namespace
+
+void name_coordinates(const Flight& flight, const ModelFile& model, FileDescription& description) {
+  const auto coordinate = [&flight](const char* attribute, const std::string& given, Names usual) {
+    usual.insert(usual.begin(), {flight.attribute(attribute), given});
+    return first_series(flight, usual);
+  };
+  description.latitude = coordinate("latitude_coordinate", variable_of(model, Quantity::latitude),
+                                    usual_variables(Quantity::latitude));
+  description.longitude = coordinate("longitude_coordinate", "", usual_series("longitude").names);
+  description.altitude =
+      coordinate("zaxis_coordinate", variable_of(model, Quantity::altitude), usual_heights());
+}
+
+Names flown_variables(const Flight& flight, const ModelFile& model) {
+  Names flown;
+  for (const Quantity role : flown_quantities) {
+    Names names = role == Quantity::altitude ? usual_heights() : usual_variables(role);
+    names.insert(names.begin(), variable_of(model, role));
+    flown.push_back(first_series(flight, names));
+  }
+  for (const char* velocity : {"ground_speed_east", "ground_speed_north"})
+    flown.push_back(first_series(flight, usual_series(velocity).names));
+  return flown;
+}
+
+}  // namespace pcor::internal

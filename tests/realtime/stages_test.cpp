@@ -1,0 +1,162 @@
+// What the stages of a chain say of themselves is true, so that loops and batches may rely on it.
+#include <pcor/realtime/stages.hpp>
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <string>
+
+namespace pcor {
+namespace {
+
+double sample_of(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::static_pressure:
+      return 700.0;
+    case Quantity::dynamic_pressure:
+    case Quantity::radome_dynamic_pressure:
+      return 67.0;
+    case Quantity::lams_airspeed:
+      return 122.0;
+    case Quantity::vapor_pressure:
+      return 3.0;
+    default:
+      return facts_of(quantity).unit == "K" ? 275.0 + 0.01 * static_cast<double>(index(quantity)) : 1.5;
+  }
+}
+
+// All of the catalogue, each with parameters of a size that is felt and breaks nothing.
+Model every_effect(LamsApproach approach) {
+  Model model;
+  for (const EffectFacts& facts : effect_facts) {
+    model.effects.push_back({std::string(facts.id), std::vector<double>(facts.parameter_count(), 1e-4)});
+  }
+  ModelEffect formula;
+  formula.id = "of-the-user";
+  formula.formula = "0.001 * pitch + 0.01 * PROBE";
+  model.effects.push_back(formula);
+  model.domain = {{"altitude", 0.0, 1.0}};
+  model.lams.approach = approach;
+  model.recovery = {{0.95}};
+  model.attack_radome = {4.9, 13.4, 6.1};
+  model.sideslip_radome = {0.1, 11.8, 0.0};
+  return model;
+}
+
+Quantities roles_without(const Quantities& left_out) {
+  Quantities roles;
+  for (std::size_t i = 0; i < role_count; ++i) {
+    const auto role = static_cast<Quantity>(i);
+    if (std::find(left_out.begin(), left_out.end(), role) == left_out.end()) roles.push_back(role);
+  }
+  return roles;
+}
+
+bool is_in(const Quantities& quantities, std::size_t place) {
+  return std::find(quantities.begin(), quantities.end(), static_cast<Quantity>(place)) != quantities.end();
+}
+
+// A stage makes the same of its sample whatever stands in quantities that it does not say it reads, and
+// leaves alone those that it does not say it writes.
+void expect_true_words(const Correction& correction) {
+  State<double> before;
+  for (const Quantity input : correction.chain.inputs()) {
+    before[input] = index(input) < quantity_count ? sample_of(input) : 0.5;
+  }
+  for (const Rate& each : rates) before[each.rate] = 0.01;
+  before[Quantity::time] = 100.0;
+  std::size_t number = 0;
+  Stages::each([&](auto stage) {
+    SCOPED_TRACE(testing::Message() << "stage " << number++);
+    const Quantities reads = stage.reads(correction);
+    const Quantities writes = stage.writes(correction);
+    const double* const parameters = correction.chain.parameters().data();
+    NoQualityFlags none;
+    State<double> after = before;
+    State<double> other = before;
+    for (std::size_t i = 0; i < state_capacity; ++i) {
+      if (!is_in(reads, i)) other[static_cast<Quantity>(i)] = 1.1 * before[static_cast<Quantity>(i)] + 0.1;
+    }
+    const State<double> other_before = other;
+    if (!writes.empty()) {
+      stage.compute(correction, after, parameters, none);
+      stage.compute(correction, other, parameters, none);
+    }
+    for (std::size_t i = 0; i < state_capacity; ++i) {
+      const auto quantity = static_cast<Quantity>(i);
+      if (is_in(writes, i)) {
+        EXPECT_FALSE(is_missing(after[quantity])) << facts_of(quantity).name;
+        EXPECT_THAT(other[quantity], testing::NanSensitiveDoubleEq(after[quantity]))
+            << facts_of(quantity).name << " depends on what is not said to be read";
+      } else {
+        EXPECT_THAT(other[quantity], testing::NanSensitiveDoubleEq(other_before[quantity]))
+            << "place " << i << " is written, which is not said";
+      }
+    }
+    before = after;
+  });
+}
+
+void expect_true_words(const Model& model, const Quantities& roles, CorrectWith with) {
+  std::string error;
+  const std::optional<Chain> chain = Chain::build(model, roles, &error);
+  ASSERT_TRUE(chain) << error;
+  expect_true_words({*chain, with});
+}
+
+TEST(Stages, ReadAndWriteWhatTheySay) {
+  for (const CorrectWith with : {CorrectWith::model, CorrectWith::lams}) {
+    for (const LamsApproach approach : {LamsApproach::iterated, LamsApproach::simultaneous}) {
+      const Model model = every_effect(approach);
+      expect_true_words(
+          model, roles_without({Quantity::ambient_temperature, Quantity::attack, Quantity::sideslip}), with);
+      expect_true_words(model, roles_without({Quantity::ambient_temperature, Quantity::vapor_pressure}),
+                        with);
+    }
+    expect_true_words(every_effect(LamsApproach::with_temperature), roles_without({}), with);
+  }
+}
+
+// Only what a quantity is said to be found from moves it.
+TEST(Stages, KnowTheSourcesOfWhatIsDerived) {
+  Model model;
+  model.effects = {{"static-alpha", {0.02}}, {"static-qp", {0.03}}, {"static-beta-odd", {0.01}},
+                   {"static-mach2", {0.01}}, {"clock-skew", {0.1}}, {"humidity-error", {0.1}}};
+  model.attack_radome = {4.9, 13.4, 6.1};
+  model.sideslip_radome = {0.1, 11.8, 0.0};
+  std::string error;
+  const std::optional<Chain> chain =
+      Chain::build(model,
+                   roles_without({Quantity::mach, Quantity::attack, Quantity::sideslip,
+                                  Quantity::vapor_pressure, Quantity::ambient_temperature}),
+                   &error);
+  ASSERT_TRUE(chain) << error;
+  State<double> state;
+  for (const Quantity input : chain->inputs()) state[input] = sample_of(input);
+  for (const Rate& each : rates) state[each.rate] = 0.01;
+  NoQualityFlags none;
+  for (const Quantity derived :
+       {Quantity::dynamic_ratio, Quantity::mach, Quantity::attack_ratio, Quantity::sideslip_ratio,
+        Quantity::attack, Quantity::sideslip, Quantity::vapor_pressure, Quantity::airspeed_rate}) {
+    State<double> before = state;
+    chain->measure(before, chain->parameters().data(), none);
+    const Quantities sources = MeasuredQuantities::sources(*chain, derived);
+    for (const Quantity input : chain->inputs()) {
+      State<double> after = state;
+      after[input] = 1.01 * state[input];
+      chain->measure(after, chain->parameters().data(), none);
+      EXPECT_TRUE(after[derived] == before[derived] || is_in(sources, index(input)))
+          << facts_of(derived).name << " is moved by " << facts_of(input).name;
+    }
+    EXPECT_FALSE(sources.empty()) << facts_of(derived).name;
+  }
+}
+
+TEST(Stages, WithoutLaserAndTemperatureReadAndWriteWhatTheySay) {
+  Model model;
+  model.effects = {{"static-qp", {0.03}}, {"static-mach2", {0.01}}};
+  expect_true_words(model, {Quantity::static_pressure, Quantity::dynamic_pressure}, CorrectWith::model);
+}
+
+}  // namespace
+}  // namespace pcor
