@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <netcdf.h>
 #include <pcor/flight/flight.hpp>
 #include <pcor/words/error.hpp>
 #include <pcor/words/suggest.hpp>
@@ -15,7 +14,8 @@
 #include <set>
 #include <unordered_map>
 
-#include "flight/netcdf_file.hpp"
+#include "flight/absent_variable.hpp"
+#include "flight/flight_file.hpp"
 #include "flight/time_source.hpp"
 
 namespace pcor {
@@ -35,51 +35,21 @@ struct Variable {
   bool rate_dimension = false;         // (Time, spsN), also with N = 1
   std::vector<double> missing_values;  // as numbers of the stored type
   UnitConversion unpacking;            // scale_factor and add_offset
-  bool cache_is_fit = false;
 };
 
-std::optional<int> rate_of_dimension(const NetcdfFile& file, int dimension) {
+std::optional<int> rate_of_dimension(const FlightFile& file, int dimension) {
   const std::string name = file.dimension_name(dimension);
   if (name.rfind("sps", 0) != 0 || name.find_first_not_of("0123456789", 3) != std::string::npos)
     return std::nullopt;
   return static_cast<int>(file.dimension_length(dimension));
 }
 
-bool is_numeric(int type) { return type != NC_CHAR && type > NC_NAT && type < NC_STRING; }
-
-std::optional<double> default_fill(int type) {
-  switch (type) {
-    case NC_SHORT:
-      return NC_FILL_SHORT;
-    case NC_INT:
-      return NC_FILL_INT;
-    case NC_FLOAT:
-      return static_cast<double>(NC_FILL_FLOAT);
-    case NC_DOUBLE:
-      return NC_FILL_DOUBLE;
-    default:
-      return std::nullopt;
-  }
-}
-
-std::vector<double> missing_values_of(const NetcdfFile& file, int variable, int type) {
-  std::vector<double> values;
-  for (const char* name : {"_FillValue", "missing_value", "MissingValue"})
-    for (const double value : file.number_attribute(variable, name))
-      values.push_back(type == NC_FLOAT ? static_cast<double>(static_cast<float>(value)) : value);
-  if (values.empty() && (type == NC_FLOAT || type == NC_DOUBLE)) values.push_back(-32767);
-  if (const auto fill = default_fill(type)) values.push_back(*fill);
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
-  return values;
-}
-
-double number_or(const NetcdfFile& file, int variable, const char* attribute, double otherwise) {
+double number_or(const FlightFile& file, int variable, const char* attribute, double otherwise) {
   const std::vector<double> numbers = file.number_attribute(variable, attribute);
   return numbers.empty() ? otherwise : numbers.front();
 }
 
-Variable describe(const NetcdfFile& file, int id, int time_dimension) {
+Variable describe(const FlightFile& file, int id, int time_dimension) {
   Variable variable;
   variable.id = id;
   VariableInfo& info = variable.info;
@@ -93,8 +63,7 @@ Variable describe(const NetcdfFile& file, int id, int time_dimension) {
 
   const std::vector<int> dimensions = file.dimensions_of(id);
   for (const int dimension : dimensions) info.dimensions.push_back(file.dimension_name(dimension));
-  const int type = file.type_of(id);
-  if (!is_numeric(type) || dimensions.empty() || dimensions[0] != time_dimension || dimensions.size() > 2)
+  if (!file.is_numeric(id) || dimensions.empty() || dimensions[0] != time_dimension || dimensions.size() > 2)
     return variable;
   if (dimensions.size() == 1) {
     info.rate = 1;
@@ -105,66 +74,15 @@ Variable describe(const NetcdfFile& file, int id, int time_dimension) {
     variable.rate_dimension = true;
   }
   info.is_series = true;
-  variable.missing_values = missing_values_of(file, id, type);
+  variable.missing_values = file.missing_values(id);
   variable.unpacking = {number_or(file, id, "scale_factor", 1), number_or(file, id, "add_offset", 0)};
   return variable;
-}
-
-bool is_convertible(const std::string& unit, const std::string& wanted) {
-  try {
-    UnitConversion::between(unit, wanted, {});
-    return true;
-  } catch (const Error&) {
-    return false;
-  }
-}
-
-// To UDUNITS an angle is a number like any other, and a count could take its place.
-bool is_angle(const std::string& unit) {
-  const std::string standard = standard_unit(unit);
-  return (standard.rfind("deg", 0) == 0 || standard.rfind("rad", 0) == 0) && is_convertible(unit, "radian");
-}
-
-bool begins_alike(const std::string& a, const std::string& b) {
-  constexpr std::size_t letters = 2;
-  return a.compare(0, letters, b, 0, letters) == 0;
 }
 
 bool is_same(const UnitConversion& a, const UnitConversion& b) {
   constexpr double rounding = 1e-9;
   return std::abs(a.scale() - b.scale()) <= rounding * std::abs(a.scale()) &&
          std::abs(a.offset() - b.offset()) <= rounding * std::abs(a.offset());
-}
-
-// How many words of a role ("recovery_temperature") are in a text, without regard to case.
-int shared_words(const std::string& role, const std::string& text) {
-  const auto is_same_letter = [](char a, char b) {
-    return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
-  };
-  int shared = 0;
-  for (auto word = role.begin(); word != role.end();) {
-    const auto end = std::find(word, role.end(), '_');
-    if (std::search(text.begin(), text.end(), word, end, is_same_letter) != text.end()) ++shared;
-    word = end == role.end() ? end : end + 1;
-  }
-  return shared;
-}
-
-FileKind kind_of(const NetcdfFile& file) {
-  int format = 0;
-  file.check(nc_inq_format(file.id(), &format), "cannot tell its format");
-  switch (format) {
-    case NC_FORMAT_CLASSIC:
-      return FileKind::classic;
-    case NC_FORMAT_64BIT_OFFSET:
-      return FileKind::offset64;
-    case NC_FORMAT_CDF5:
-      return FileKind::cdf5;
-    case NC_FORMAT_NETCDF4_CLASSIC:
-      return FileKind::netcdf4_classic;
-    default:
-      return FileKind::netcdf4;
-  }
 }
 
 // Of an even number of values the lower of the middle two. Changes the order of the values.
@@ -210,8 +128,7 @@ std::vector<RecordBlock> blocks_of(std::size_t records, std::size_t size) {
 }
 
 struct Flight::Implementation {
-  NetcdfFile file;
-  FileKind kind;
+  std::unique_ptr<FlightFile> file;
   TimeStamp time_stamp;
   TimeSource source;
   std::size_t records;
@@ -221,23 +138,20 @@ struct Flight::Implementation {
   std::unordered_map<std::string, std::size_t> index;
   std::vector<double> scratch;
 
-  Implementation(const std::filesystem::path& path, TimeStamp stamp)
-      : file(NetcdfFile::open(path)),
-        kind(kind_of(file)),
+  Implementation(std::unique_ptr<FlightFile> opened, TimeStamp stamp)
+      : file(std::move(opened)),
         time_stamp(stamp),
-        source(find_time(file)),
-        records(file.dimension_length(source.dimension)) {
-    int count = 0;
-    file.check(nc_inq_nvars(file.id(), &count), "cannot count its variables");
-    for (int id = 0; id < count; ++id) {
-      variables.push_back(describe(file, id, source.dimension));
+        source(find_time(*file)),
+        records(file->dimension_length(source.dimension)) {
+    for (int id = 0; id < file->variable_count(); ++id) {
+      variables.push_back(describe(*file, id, source.dimension));
       names.push_back(variables.back().info.name);
       index.emplace(names.back(), variables.size() - 1);
     }
     scan_time();
   }
 
-  std::string path() const { return file.path().string(); }
+  std::string path() const { return file->path().string(); }
 
   Variable& find(const std::string& name) {
     const auto found = index.find(name);
@@ -247,55 +161,6 @@ struct Flight::Implementation {
                 path() + ": " + name + " is not in this file; it has " +
                     (alike.empty() ? fmt::format("{} others, see ncdump -h {}", names.size(), path())
                                    : fmt::format("{}", fmt::join(alike, ", "))));
-  }
-
-  // That a variable of the model is absent, and which ones of the file could take its place.
-  [[noreturn]] void refuse_absent(const std::string& name, const std::string& wanted,
-                                  const std::string& role) const {
-    std::vector<const VariableInfo*> fitting;
-    std::vector<std::string> namesakes;
-    for (const Variable& variable : variables) {
-      if (!variable.info.is_series || !is_convertible(variable.info.units, wanted) ||
-          is_angle(variable.info.units) != is_angle(wanted))
-        continue;
-      fitting.push_back(&variable.info);
-      if (begins_alike(variable.info.name, name)) namesakes.push_back(variable.info.name);
-    }
-    const std::vector<std::string> alike = suggest(name, namesakes);
-    if (!alike.empty())
-      throw Error(
-          Error::Code::variable,
-          fmt::format("{}: {} is not in this file; it has {}; change {} in the [variables] of the model",
-                      path(), name, fmt::join(alike, ", "), role));
-    const std::string absent =
-        fmt::format("{}: {} ({} of the model) is not in this file", path(), name, role);
-    if (fitting.empty())
-      throw Error(
-          Error::Code::variable,
-          fmt::format(
-              "{}; it has no time series in {} or a unit that converts to it, see ncdump -h {}; change "
-              "[variables] of the model",
-              absent, wanted, path()));
-
-    constexpr std::size_t most_named = 6;
-    // What a probe recovers files call total.
-    const std::string words = role == "recovery_temperature" ? role + "_total" : role;
-    std::stable_sort(fitting.begin(), fitting.end(), [&](const VariableInfo* a, const VariableInfo* b) {
-      return shared_words(words, a->long_name) > shared_words(words, b->long_name);
-    });
-    const std::size_t others = fitting.size() - std::min(fitting.size(), most_named);
-    fitting.resize(fitting.size() - others);
-    std::string named;
-    for (std::size_t i = 0; i < fitting.size(); ++i) {
-      named += (i == 0 ? "" : ", ") + fitting[i]->name;
-      const bool unit_changes =
-          i + 1 == fitting.size() || standard_unit(fitting[i]->units) != standard_unit(fitting[i + 1]->units);
-      if (unit_changes) named += " in " + standard_unit(fitting[i]->units);
-    }
-    if (others > 0) named += fmt::format(" and {} more", others);
-    throw Error(
-        Error::Code::variable,
-        fmt::format("{}; it has {} (units that fit); change [variables] of the model", absent, named));
   }
 
   // The names of rates that can be brought to the wanted one, as this file has them: "1, 5 or 25".
@@ -336,12 +201,7 @@ struct Flight::Implementation {
   void read_stored(Variable& variable, RecordBlock block, double* out) {
     check_block(variable.info.name, block);
     if (block.count == 0) return;
-    if (!variable.cache_is_fit) file.fit_chunk_cache(variable.id);
-    variable.cache_is_fit = true;
-    const std::size_t start[] = {block.first, 0};
-    const std::size_t count[] = {block.count, static_cast<std::size_t>(variable.info.rate)};
-    file.check(nc_get_vara_double(file.id(), variable.id, start, count, out),
-               "cannot read " + variable.info.name);
+    file->read(variable.id, block, out);
   }
 
   static void clean(const Variable& variable, std::size_t count, double* values) {
@@ -419,18 +279,20 @@ struct Flight::Implementation {
           "{}: time {} at record {} ({} after {}), {} backward and {} repeated steps in all; cut the file "
           "there with ncks -d {},0,{}",
           path(), bad < bad_before ? "runs backwards" : "repeats", first_bad, utc_text(bad),
-          utc_text(bad_before), backward, repeated, file.dimension_name(source.dimension), first_bad - 1));
+          utc_text(bad_before), backward, repeated, file->dimension_name(source.dimension), first_bad - 1));
   }
 };
 
 Flight::Flight(const std::filesystem::path& path, TimeStamp time_stamp)
-    : implementation_(std::make_unique<Implementation>(path, time_stamp)) {}
+    : Flight(open_flight_file(path), time_stamp) {}
+Flight::Flight(std::unique_ptr<FlightFile> file, TimeStamp time_stamp)
+    : implementation_(std::make_unique<Implementation>(std::move(file), time_stamp)) {}
 Flight::Flight(Flight&&) noexcept = default;
 Flight& Flight::operator=(Flight&&) noexcept = default;
 Flight::~Flight() = default;
 
-const std::filesystem::path& Flight::path() const { return implementation_->file.path(); }
-FileKind Flight::kind() const { return implementation_->kind; }
+const FlightFile& Flight::file() const { return *implementation_->file; }
+const std::filesystem::path& Flight::path() const { return implementation_->file->path(); }
 std::size_t Flight::records() const { return implementation_->records; }
 const TimeAxis& Flight::time() const { return implementation_->axis; }
 TimeStamp Flight::time_stamp() const { return implementation_->time_stamp; }
@@ -440,7 +302,7 @@ const std::string& Flight::time_variable() const {
 }
 
 std::string Flight::attribute(const std::string& name) const {
-  return implementation_->file.text_attribute(NC_GLOBAL, name);
+  return implementation_->file->text_attribute(FlightFile::whole_file, name);
 }
 
 std::string Flight::aircraft() const {
@@ -465,7 +327,13 @@ const VariableInfo& Flight::variable(const std::string& name) const {
 
 UnitConversion Flight::conversion(const std::string& name, const std::string& wanted, const std::string& role,
                                   const std::string& stated) const {
-  if (!has(name) && !role.empty()) implementation_->refuse_absent(name, wanted, role);
+  if (!has(name) && !role.empty()) {
+    std::vector<VariableInfo> series;
+    for (const Variable& variable : implementation_->variables) {
+      if (variable.info.is_series) series.push_back(variable.info);
+    }
+    throw absent_variable(path().string(), series, name, wanted, role);
+  }
   const std::string& own = variable(name).units;
   if (stated.empty()) return UnitConversion::between(own, wanted, {name, path().string(), role});
   if (!is_convertible(stated, wanted))

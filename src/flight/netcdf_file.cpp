@@ -4,6 +4,7 @@
 #include <netcdf.h>
 #include <pcor/words/error.hpp>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -20,6 +21,21 @@ constexpr int closed = -1;
 constexpr std::size_t chunk_cache_bytes = 1 << 18, chunk_cache_slots = 1009;
 
 enum class Content { classic, hdf5, other };
+
+std::optional<double> default_fill(int type) {
+  switch (type) {
+    case NC_SHORT:
+      return NC_FILL_SHORT;
+    case NC_INT:
+      return NC_FILL_INT;
+    case NC_FLOAT:
+      return static_cast<double>(NC_FILL_FLOAT);
+    case NC_DOUBLE:
+      return NC_FILL_DOUBLE;
+    default:
+      return std::nullopt;
+  }
+}
 
 Content content_of(const std::filesystem::path& path) {
   char start[4] = {};
@@ -56,27 +72,11 @@ void check_size_of_classic(const std::filesystem::path& path) {
 
 std::string netcdf_reason(int status) { return status > 0 ? std::strerror(status) : nc_strerror(status); }
 
+bool is_netcdf(const std::filesystem::path& path) { return content_of(path) != Content::other; }
+
 NetcdfFile NetcdfFile::open(const std::filesystem::path& path) {
   const std::string name = path.string();
-  if (path.empty()) throw Error(Error::Code::file, "the input has no name; name a netCDF file");
-  std::error_code code;
-  const auto status = std::filesystem::status(path, code);
-  if (!std::filesystem::exists(status))
-    throw Error(Error::Code::file, name + ": no such file; check the path");
-  if (std::filesystem::is_directory(status))
-    throw Error(Error::Code::file, name + " is a directory; name a netCDF file");
-  if (!std::filesystem::is_regular_file(status))
-    throw Error(Error::Code::file, name + " is not a regular file; name a netCDF file");
-  if (!std::ifstream(path))
-    throw Error(Error::Code::file,
-                name + " cannot be read: " + std::strerror(errno) + "; check its permissions");
-
-  const Content content = content_of(path);
-  if (content == Content::other)
-    throw Error(Error::Code::file, name + " is not a netCDF file; name one that `ncdump -k` knows");
-  if (content == Content::classic) check_size_of_classic(path);
-  // HDF5 keeps what it read of every variable; a file that is open twice shares what the first one asked for.
-  nc_set_chunk_cache(chunk_cache_bytes, chunk_cache_slots, 1);
+  if (content_of(path) == Content::classic) check_size_of_classic(path);
   int id = closed;
   std::size_t buffer = classic_buffer_bytes;
   const int opened = nc__open(name.c_str(), NC_NOWRITE, &buffer, &id);
@@ -97,7 +97,10 @@ NetcdfFile NetcdfFile::create(const std::filesystem::path& path, const std::file
 }
 
 NetcdfFile::NetcdfFile(NetcdfFile&& other) noexcept
-    : id_(std::exchange(other.id_, closed)), path_(std::move(other.path_)), use_(other.use_) {}
+    : id_(std::exchange(other.id_, closed)),
+      path_(std::move(other.path_)),
+      use_(other.use_),
+      fitted_(std::move(other.fitted_)) {}
 
 NetcdfFile::~NetcdfFile() {
   if (id_ != closed) nc_close(id_);
@@ -120,6 +123,7 @@ void NetcdfFile::check(int status, const std::string& doing) const {
 void NetcdfFile::close() { check(nc_close(std::exchange(id_, closed)), "cannot be closed"); }
 
 void NetcdfFile::fit_chunk_cache(int variable) const {
+  if (!fitted_.insert(variable).second) return;
   int storage = NC_CONTIGUOUS;
   std::vector<std::size_t> chunk(dimensions_of(variable).size());
   if (chunk.empty() || nc_inq_var_chunking(id_, variable, &storage, chunk.data()) != NC_NOERR) return;
@@ -127,7 +131,13 @@ void NetcdfFile::fit_chunk_cache(int variable) const {
   std::size_t bytes = 0;
   check(nc_inq_type(id_, type_of(variable), nullptr, &bytes), "cannot read a variable's type");
   for (const std::size_t length : chunk) bytes *= length;
-  if (2 * bytes > chunk_cache_bytes) nc_set_var_chunk_cache(id_, variable, 2 * bytes, chunk_cache_slots, 1);
+  nc_set_var_chunk_cache(id_, variable, std::max(2 * bytes, chunk_cache_bytes), chunk_cache_slots, 1);
+}
+
+int NetcdfFile::variable_count() const {
+  int count = 0;
+  check(nc_inq_nvars(id_, &count), "cannot count its variables");
+  return count;
 }
 
 std::optional<int> NetcdfFile::find_variable(const std::string& name) const {
@@ -231,6 +241,35 @@ std::vector<double> NetcdfFile::number_attribute(int variable, const std::string
     at = *end == 'f' ? end + 1 : end;
   }
   return numbers;
+}
+
+bool NetcdfFile::is_numeric(int variable) const {
+  const int type = type_of(variable);
+  return type != NC_CHAR && type > NC_NAT && type < NC_STRING;
+}
+
+std::vector<double> NetcdfFile::missing_values(int variable) const {
+  const int type = type_of(variable);
+  std::vector<double> values;
+  for (const char* name : {"_FillValue", "missing_value", "MissingValue"})
+    for (const double value : number_attribute(variable, name))
+      values.push_back(type == NC_FLOAT ? static_cast<double>(static_cast<float>(value)) : value);
+  if (values.empty() && (type == NC_FLOAT || type == NC_DOUBLE)) values.push_back(-32767);
+  if (const auto fill = default_fill(type)) values.push_back(*fill);
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  return values;
+}
+
+void NetcdfFile::read(int variable, RecordBlock records, double* out) const {
+  fit_chunk_cache(variable);
+  std::vector<std::size_t> start, count;
+  for (const int dimension : dimensions_of(variable)) {
+    start.push_back(start.empty() ? records.first : 0);
+    count.push_back(count.empty() ? records.count : dimension_length(dimension));
+  }
+  check(nc_get_vara_double(id_, variable, start.data(), count.data(), out),
+        "cannot read " + variable_name(variable));
 }
 
 }  // namespace pcor::internal

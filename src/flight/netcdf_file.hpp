@@ -2,15 +2,21 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "flight/flight_file.hpp"
+
 namespace pcor::internal {
 
-/// An open netCDF file: the netCDF C library behind errors of ours. Private to the reader and the writer.
-class NetcdfFile {
+/// True where the first bytes are those of a netCDF file, classic or HDF5.
+bool is_netcdf(const std::filesystem::path& path);
+
+/// An open netCDF file: the netCDF C library behind errors of ours.
+class NetcdfFile final : public FlightFile {
  public:
-  /// Opens for reading. @throws Error if the file is absent, not netCDF, damaged or truncated.
+  /// Opens for reading. @throws Error if the file is damaged or truncated.
   static NetcdfFile open(const std::filesystem::path& path);
 
   /// Creates a file, over what is there; `mode` is that of nc_create. Messages call it `shown_path`.
@@ -19,10 +25,9 @@ class NetcdfFile {
 
   NetcdfFile(NetcdfFile&& other) noexcept;
   NetcdfFile& operator=(NetcdfFile&&) = delete;
-  ~NetcdfFile();
+  ~NetcdfFile() override;
 
   int id() const { return id_; }
-  const std::filesystem::path& path() const { return path_; }
 
   /// @throws Error "<path>: <doing>: <reason>; <what to do>" unless `status` is NC_NOERR.
   void check(int status, const std::string& doing) const;
@@ -30,25 +35,26 @@ class NetcdfFile {
   /// Closes for good; errors that the library kept until now are thrown.
   void close();
 
-  /// Has HDF5 hold two chunks of a variable in memory where they are larger than usual, so that a compressed
-  /// one is not unpacked for every block of records; to be called before the first value is read.
+  /// Has HDF5 hold two chunks of a variable in memory, so that a compressed one is not unpacked for every
+  /// block of records, and not much more, since it keeps what it read of every variable. To be called before
+  /// the first value is read; a second call does nothing.
   void fit_chunk_cache(int variable) const;
 
-  std::optional<int> find_variable(const std::string& name) const;
-  std::string variable_name(int variable) const;
-  std::vector<int> dimensions_of(int variable) const;
-  std::string dimension_name(int dimension) const;
-  std::size_t dimension_length(int dimension) const;
   int type_of(int variable) const;
 
-  /// The names of a variable's attributes, or with NC_GLOBAL of the file's, in their order.
-  std::vector<std::string> attribute_names(int variable) const;
-
-  /// An attribute as text: trailing NULs and blanks are cut off, numbers are joined by ", ". Empty if absent.
-  std::string text_attribute(int variable, const std::string& name) const;
-
-  /// An attribute as numbers, also if they are stored as text. Empty if absent or not numeric.
-  std::vector<double> number_attribute(int variable, const std::string& name) const;
+  const std::filesystem::path& path() const override { return path_; }
+  int variable_count() const override;
+  std::optional<int> find_variable(const std::string& name) const override;
+  std::string variable_name(int variable) const override;
+  std::vector<int> dimensions_of(int variable) const override;
+  std::string dimension_name(int dimension) const override;
+  std::size_t dimension_length(int dimension) const override;
+  std::vector<std::string> attribute_names(int variable) const override;
+  std::string text_attribute(int variable, const std::string& name) const override;
+  std::vector<double> number_attribute(int variable, const std::string& name) const override;
+  bool is_numeric(int variable) const override;
+  std::vector<double> missing_values(int variable) const override;
+  void read(int variable, RecordBlock records, double* out) const override;
 
  private:
   enum class Use { reading, writing };
@@ -58,6 +64,7 @@ class NetcdfFile {
   int id_;
   std::filesystem::path path_;
   Use use_;
+  mutable std::set<int> fitted_;  // variables whose chunk cache is fit
 };
 
 /// What a netCDF status means in words.

@@ -1,6 +1,5 @@
 #include "flight/time_source.hpp"
 
-#include <netcdf.h>
 #include <pcor/units/units.hpp>
 #include <pcor/words/error.hpp>
 #include <pcor/words/utc.hpp>
@@ -19,13 +18,14 @@ constexpr double day = 86400;
 // Research flights in netCDF files: after 1971, so that seconds since midnight are not taken for 1970.
 bool is_plausible(double time) { return time >= 31536000. && time < 4102444800.; }
 
-std::optional<double> first_value(const NetcdfFile& file, std::optional<int> variable) {
-  if (!variable) return std::nullopt;
-  const std::vector<std::size_t> start(file.dimensions_of(*variable).size(), 0);
-  double value = 0;
-  if (nc_get_var1_double(file.id(), *variable, start.data(), &value) != NC_NOERR || !std::isfinite(value))
+std::optional<double> first_value(const FlightFile& file, std::optional<int> variable) {
+  if (!variable || !file.is_numeric(*variable)) return std::nullopt;
+  const std::vector<int> dimensions = file.dimensions_of(*variable);
+  if (dimensions.size() > 1 || (!dimensions.empty() && file.dimension_length(dimensions[0]) == 0))
     return std::nullopt;
-  return value;
+  double value = 0;
+  file.read(*variable, {0, 1}, &value);
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
 // "seconds since 2004-02-18 00:00:00 +0000" as a conversion to seconds since 1970.
@@ -38,14 +38,14 @@ std::optional<UnitConversion> epoch_conversion(const std::string& units) {
   }
 }
 
-std::optional<double> base_time(const NetcdfFile& file) {
+std::optional<double> base_time(const FlightFile& file) {
   const std::optional<double> base = first_value(file, file.find_variable("base_time"));
   return base && is_plausible(*base) ? base : std::nullopt;
 }
 
 // FlightDate as the midnight it begins with.
-std::optional<double> flight_date(const NetcdfFile& file) {
-  const std::string text = file.text_attribute(NC_GLOBAL, "FlightDate");
+std::optional<double> flight_date(const FlightFile& file) {
+  const std::string text = file.text_attribute(FlightFile::whole_file, "FlightDate");
   int year = 0, month = 0, day_of_month = 0;
   if (std::sscanf(text.c_str(), "%d/%d/%d", &month, &day_of_month, &year) != 3 &&
       std::sscanf(text.c_str(), "%4d-%2d-%2d", &year, &month, &day_of_month) != 3)
@@ -61,8 +61,8 @@ std::optional<double> flight_date(const NetcdfFile& file) {
 }
 
 // The start in TimeInterval ("14:22:00-15:13:00"), seconds since midnight.
-std::optional<double> interval_start(const NetcdfFile& file) {
-  const std::string text = file.text_attribute(NC_GLOBAL, "TimeInterval");
+std::optional<double> interval_start(const FlightFile& file) {
+  const std::string text = file.text_attribute(FlightFile::whole_file, "TimeInterval");
   int hour = 0, minute = 0, second = 0;
   if (std::sscanf(text.c_str(), "%d:%d:%d", &hour, &minute, &second) != 3) return std::nullopt;
   return hour * 3600. + minute * 60. + second;
@@ -76,7 +76,7 @@ std::optional<double> offset_of_seconds(double first_raw, double start) {
   return std::nullopt;
 }
 
-std::optional<int> find_time_variable(const NetcdfFile& file) {
+std::optional<int> find_time_variable(const FlightFile& file) {
   for (const char* name : {"Time", "time", "TIME"})
     if (const auto variable = file.find_variable(name); variable && file.dimensions_of(*variable).size() == 1)
       return variable;
@@ -85,7 +85,7 @@ std::optional<int> find_time_variable(const NetcdfFile& file) {
 
 }  // namespace
 
-TimeSource find_time(const NetcdfFile& file) {
+TimeSource find_time(const FlightFile& file) {
   const std::string path = file.path().string();
   const auto time = find_time_variable(file);
   const auto offset = file.find_variable("time_offset");

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "flight/netcdf_file.hpp"
+#include "flight/flight_file.hpp"
 
 namespace pcor::internal {
 
@@ -17,6 +17,6 @@ struct TimeSource {
 };
 
 /// Finds it, see Flight. @throws Error if the file has no records or does not tell the time.
-TimeSource find_time(const NetcdfFile& file);
+TimeSource find_time(const FlightFile& file);
 
 }  // namespace pcor::internal

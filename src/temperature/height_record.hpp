@@ -69,8 +69,8 @@ struct HeightRecordOptions {
 /// Integrates the hydrostatic equation along a flight (memo eq. 24 in its exact form, geopotential height),
 /// after the take-off, with flaps in, anew after every gap and every step of the GPS height.
 ///
-/// @param steps if not empty, -R_a dp/(g p) of every record as `pcor process --hydrostatic` wrote it, m/K;
-///        else it is found from pressure and humidity
+/// @param steps if not empty, -(R_a/g0) ln(p_i/p_(i-1)) of every record as `pcor process --hydrostatic` wrote
+///        it, m/K; else it is found from pressure and humidity
 /// @throws Error if the height is none that goes with the pressure (`trouble_with_height`), the flight has no
 /// temperature, or it neither climbs nor descends by 300 m.
 HeightRecord height_record(const FlightAir& air, const std::vector<double>& steps,

@@ -172,4 +172,13 @@ UnitConversion UnitConversion::between(const std::string& from, const std::strin
   return {scale, offset};
 }
 
+bool is_convertible(const std::string& from, const std::string& to) {
+  try {
+    UnitConversion::between(from, to, {});
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 }  // namespace pcor

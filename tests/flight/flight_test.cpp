@@ -11,6 +11,7 @@
 #include <limits>
 #include <random>
 #include <sstream>
+#include <tuple>
 
 #include "support/netcdf_file.hpp"
 #include "support/temporary_directory.hpp"
@@ -550,6 +551,21 @@ TEST_F(FlightTest, WhatIsNotATimeSeriesIsListedAndRefused) {
               }),
               HasSubstr("not a time series"));
   EXPECT_EQ(flight.variable("ONE").rate, 1);
+}
+
+// What netCDF keeps of variables is set for those that are read, not for all files of the program that links
+// the library.
+TEST_F(FlightTest, LeavesTheChunkCacheOfTheProgramAlone) {
+  make_with_times({0, 1, 2});
+  const auto cache = [] {
+    std::size_t bytes = 0, slots = 0;
+    float preemption = 0;
+    nc_get_chunk_cache(&bytes, &slots, &preemption);
+    return std::make_tuple(bytes, slots, preemption);
+  };
+  const auto before = cache();
+  times();
+  EXPECT_EQ(cache(), before);
 }
 
 TEST_F(FlightTest, ABlockBeyondTheEndIsRefused) {

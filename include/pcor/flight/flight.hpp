@@ -14,8 +14,9 @@
 
 namespace pcor {
 
-/// How a netCDF file is stored. What is written from a flight keeps the kind of the flight's file.
-enum class FileKind { classic, offset64, cdf5, netcdf4, netcdf4_classic };
+namespace internal {
+class FlightFile;
+}
 
 /// Consecutive records of a flight.
 struct RecordBlock {
@@ -68,8 +69,8 @@ struct TimeAxis {
 /// climb.
 enum class TimeStamp { begin, middle };
 
-/// A flight in a netCDF file of the NCAR-RAF/nimbus conventions, old or new, at 1 Hz, at higher rates, or
-/// both.
+/// A flight in a file of the NCAR-RAF/nimbus conventions, old or new, at 1 Hz, at higher rates, or both. The
+/// file is netCDF; another format is a class of its own beside that of netCDF.
 ///
 /// All reading is by blocks of records. Missing values, however the file marks them (`_FillValue`,
 /// `missing_value`, `MissingValue`, the default fill value, -32767 in a file that marks none, NaN,
@@ -87,12 +88,17 @@ class Flight {
   /// repeated, earlier than the one before, or cannot be told at all. Gaps are no error, see `time()`.
   explicit Flight(const std::filesystem::path& path, TimeStamp time_stamp = TimeStamp::begin);
 
+  /// The same for a file of any format that is open already.
+  Flight(std::unique_ptr<internal::FlightFile> file, TimeStamp time_stamp);
+
   Flight(Flight&&) noexcept;
   Flight& operator=(Flight&&) noexcept;
   ~Flight();
 
+  /// The file, which is open as long as the flight.
+  const internal::FlightFile& file() const;
+
   const std::filesystem::path& path() const;
-  FileKind kind() const;
   std::size_t records() const;
   const TimeAxis& time() const;
   TimeStamp time_stamp() const;

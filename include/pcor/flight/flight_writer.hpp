@@ -43,6 +43,9 @@ struct FileDescription {
       attributes;  ///< further global ones; they replace the input's
 };
 
+/// How a netCDF file is stored.
+enum class FileKind { classic, offset64, cdf5, netcdf4, netcdf4_classic };
+
 /// What a flight that comes from no file needs instead of an input.
 struct NewFlight {
   double first_time =
@@ -51,12 +54,12 @@ struct NewFlight {
   FileKind kind = FileKind::netcdf4;
 };
 
-/// Writes a flight by the NCAR-RAF/nimbus, CF and ACDD conventions, whole or not at all.
+/// Writes a flight to a netCDF file by the NCAR-RAF/nimbus, CF and ACDD conventions, whole or not at all.
 ///
 /// The data go to a hidden file beside the output, which `finish` puts in its place; whatever fails before
 /// that leaves an existing output as it was. First `define` and `copy` every variable, then `write` each of
-/// the defined ones in full, by blocks, then `finish`. The kind of file is that of the input
-/// (`Flight::kind`), or the one that `NewFlight` asks for.
+/// the defined ones in full, by blocks, then `finish`. The kind of file is that of the input, netCDF-4 where
+/// the input has another format, or the one that `NewFlight` asks for.
 ///
 /// The time is an integer `Time`, seconds since the midnight before the first record, or a double where the
 /// times are not whole seconds. Every error names the output and is one line; after one, write nothing more.
@@ -85,7 +88,8 @@ class FlightWriter {
   /// except that units which UDUNITS does not know get its spelling ("M/s" becomes "m/s"), trailing NULs are
   /// cut off, markers of missing values get the variable's type, and one that has no name in words is called
   /// by its own. The input's time variable is not copied: `Time` takes its place.
-  /// Attributes of types that the file makes itself are left out.
+  /// Attributes of types that the file makes itself are left out. Of an input that is not a netCDF file, time
+  /// series are copied, in double precision.
   /// @throws Error if there is no input, no such variable, the name is taken, or it is not one to copy.
   void copy(const std::string& name);
 

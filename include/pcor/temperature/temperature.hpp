@@ -45,7 +45,7 @@ struct TemperatureOptions {
   double least_climb_rate = 0.0;  ///< m/s: slower parts take no part (memo i)
   bool skip_returning = false;    ///< flights that end where they began take no part (memo v)
   /// The flights were written by `pcor process --hydrostatic` with the same model, but for its correction of
-  /// the temperature: take -R_a dp/(g p) and the temperature from there.
+  /// the temperature: take -(R_a/g0) ln(p_i/p_(i-1)) and the temperature from there.
   bool archived = false;
   std::size_t threads = 0;                                              ///< 0: as many as processors
   std::function<void(std::size_t done, std::size_t total)> progress{};  ///< told after every flight

@@ -42,4 +42,7 @@ std::string standard_unit(const std::string& unit);
 /// Whether the unit is known, after `standard_unit`. An empty unit is not.
 bool is_known_unit(const std::string& unit);
 
+/// Whether `UnitConversion::between` has a conversion from the one unit to the other.
+bool is_convertible(const std::string& from, const std::string& to);
+
 }  // namespace pcor

@@ -1,0 +1,52 @@
+#include "flight/flight_file.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include <pcor/words/error.hpp>
+#include "flight/netcdf_file.hpp"
+
+namespace pcor::internal {
+namespace {
+
+/// A format of flight files.
+struct Format {
+  bool (*is_of)(const std::filesystem::path&);
+  std::unique_ptr<FlightFile> (*open)(const std::filesystem::path&);
+};
+
+constexpr Format formats[] = {
+    {is_netcdf,
+     [](const std::filesystem::path& path) -> std::unique_ptr<FlightFile> {
+       return std::make_unique<NetcdfFile>(NetcdfFile::open(path));
+     }},
+};
+
+void require_readable(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  if (path.empty()) throw Error(Error::Code::file, "the input has no name; name a netCDF file");
+  std::error_code code;
+  const auto status = std::filesystem::status(path, code);
+  if (!std::filesystem::exists(status))
+    throw Error(Error::Code::file, name + ": no such file; check the path");
+  if (std::filesystem::is_directory(status))
+    throw Error(Error::Code::file, name + " is a directory; name a netCDF file");
+  if (!std::filesystem::is_regular_file(status))
+    throw Error(Error::Code::file, name + " is not a regular file; name a netCDF file");
+  if (!std::ifstream(path))
+    throw Error(Error::Code::file,
+                name + " cannot be read: " + std::strerror(errno) + "; check its permissions");
+}
+
+}  // namespace
+
+std::unique_ptr<FlightFile> open_flight_file(const std::filesystem::path& path) {
+  require_readable(path);
+  for (const Format& format : formats) {
+    if (format.is_of(path)) return format.open(path);
+  }
+  throw Error(Error::Code::file, path.string() + " is not a netCDF file; name one that `ncdump -k` knows");
+}
+
+}  // namespace pcor::internal

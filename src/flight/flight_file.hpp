@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <pcor/flight/flight.hpp>
+
+namespace pcor::internal {
+
+/// An open file that may hold a flight, whatever its format: variables over dimensions, with attributes. What
+/// a flight is, its time, units and rates, `Flight` finds in it.
+///
+/// Variables and dimensions have the numbers 0, 1, 2 ...
+class FlightFile {
+ public:
+  /// In place of a variable's number: the attributes of the whole file.
+  static constexpr int whole_file = -1;
+
+  FlightFile() = default;
+  FlightFile(const FlightFile&) = delete;
+  FlightFile& operator=(const FlightFile&) = delete;
+  virtual ~FlightFile() = default;
+
+  virtual const std::filesystem::path& path() const = 0;
+
+  virtual int variable_count() const = 0;
+  virtual std::optional<int> find_variable(const std::string& name) const = 0;
+  virtual std::string variable_name(int variable) const = 0;
+  virtual std::vector<int> dimensions_of(int variable) const = 0;
+  virtual std::string dimension_name(int dimension) const = 0;
+  virtual std::size_t dimension_length(int dimension) const = 0;
+
+  /// The names of a variable's attributes, or of the file's, in their order.
+  virtual std::vector<std::string> attribute_names(int variable) const = 0;
+
+  /// An attribute as text: trailing NULs and blanks are cut off, numbers are joined by ", ". Empty if absent.
+  virtual std::string text_attribute(int variable, const std::string& name) const = 0;
+
+  /// An attribute as numbers, also if they are stored as text. Empty if absent or not numeric.
+  virtual std::vector<double> number_attribute(int variable, const std::string& name) const = 0;
+
+  /// True where the values are numbers.
+  virtual bool is_numeric(int variable) const = 0;
+
+  /// The numbers that stand for missing values of a numeric variable, as `read` gives them.
+  virtual std::vector<double> missing_values(int variable) const = 0;
+
+  /// Reads the stored numbers of some records, the first dimension, with all that belongs to them; of a
+  /// variable without dimensions its number. @throws Error if they cannot be read.
+  virtual void read(int variable, RecordBlock records, double* out) const = 0;
+};
+
+/// Opens a file of any format that is known. @throws Error if it is absent, of none of them, damaged or
+/// truncated.
+std::unique_ptr<FlightFile> open_flight_file(const std::filesystem::path& path);
+
+}  // namespace pcor::internal

@@ -1,0 +1,101 @@
+// A format beside netCDF: what a flight is does not depend on how its file is stored.
+#include "flight/flight_file.hpp"
+
+#include <gmock/gmock.h>
+#include <pcor/flight/flight_writer.hpp>
+
+#include <algorithm>
+
+#include "support/temporary_directory.hpp"
+
+using pcor::Flight;
+using pcor::FlightWriter;
+using pcor::RecordBlock;
+using pcor::UnitConversion;
+using pcor::internal::FlightFile;
+using testing::ElementsAre;
+using testing::IsNan;
+
+namespace {
+
+/// Three records over (Time) and (Time, sps2), in memory.
+class MemoryFile final : public FlightFile {
+ public:
+  struct Variable {
+    std::string name;
+    std::string units;
+    std::vector<double> values;
+  };
+
+  const std::filesystem::path& path() const override { return path_; }
+  int variable_count() const override { return static_cast<int>(variables_.size()); }
+  std::optional<int> find_variable(const std::string& name) const override {
+    for (int i = 0; i < variable_count(); ++i)
+      if (at(i).name == name) return i;
+    return std::nullopt;
+  }
+  std::string variable_name(int variable) const override { return at(variable).name; }
+  std::vector<int> dimensions_of(int variable) const override {
+    return at(variable).values.size() == 3 ? std::vector<int>{0} : std::vector<int>{0, 1};
+  }
+  std::string dimension_name(int dimension) const override { return dimension == 0 ? "Time" : "sps2"; }
+  std::size_t dimension_length(int dimension) const override { return dimension == 0 ? 3 : 2; }
+  std::vector<std::string> attribute_names(int variable) const override {
+    return variable == whole_file ? std::vector<std::string>{} : std::vector<std::string>{"units"};
+  }
+  std::string text_attribute(int variable, const std::string& name) const override {
+    return variable != whole_file && name == "units" ? at(variable).units : "";
+  }
+  std::vector<double> number_attribute(int, const std::string&) const override { return {}; }
+  bool is_numeric(int) const override { return true; }
+  std::vector<double> missing_values(int) const override { return {-1.0}; }
+  void read(int variable, RecordBlock records, double* out) const override {
+    const std::size_t rate = at(variable).values.size() / 3;
+    std::copy_n(at(variable).values.begin() + static_cast<std::ptrdiff_t>(records.first * rate),
+                records.count * rate, out);
+  }
+
+ private:
+  const Variable& at(int variable) const { return variables_.at(static_cast<std::size_t>(variable)); }
+
+  std::filesystem::path path_{"in memory"};
+  std::vector<Variable> variables_{
+      {"Time", "seconds since 2004-02-18 00:00:00 +0000", {60.0, 61.0, 62.0}},
+      {"PSFD", "mb", {700.0, 700.1, 700.2, -1.0, 700.4, 700.5}},
+      {"QCF", "hPa", {60.0, 61.0, 62.0}},
+  };
+};
+
+std::vector<double> values_of(const Flight& flight, const std::string& name) {
+  std::vector<double> values(flight.records() * static_cast<std::size_t>(flight.variable(name).rate));
+  flight.read(name, {0, flight.records()}, UnitConversion(), values.data());
+  return values;
+}
+
+TEST(FlightFile, OfAnyFormatIsAFlight) {
+  const Flight flight(std::make_unique<MemoryFile>(), pcor::TimeStamp::begin);
+  EXPECT_EQ(flight.records(), 3U);
+  EXPECT_EQ(flight.time().first, 1077062460.0);
+  EXPECT_EQ(flight.variable("PSFD").rate, 2);
+  EXPECT_THAT(values_of(flight, "PSFD"), ElementsAre(700.0, 700.1, 700.2, IsNan(), 700.4, 700.5));
+}
+
+TEST(FlightFile, OfAnyFormatIsCopiedToNetcdf) {
+  const pcor::test::TemporaryDirectory directory;
+  const std::filesystem::path output = directory.path() / "out.nc";
+  const Flight flight(std::make_unique<MemoryFile>(), pcor::TimeStamp::begin);
+  FlightWriter writer(output, flight, {});
+  for (const std::string& name : flight.variables()) {
+    if (name != flight.time_variable()) writer.copy(name);
+  }
+  writer.finish();
+  const Flight copied(output);
+  EXPECT_EQ(copied.time().first, flight.time().first);
+  EXPECT_EQ(copied.variable("PSFD").units, "mbar");
+  for (const char* name : {"PSFD", "QCF"}) {
+    EXPECT_THAT(values_of(copied, name),
+                testing::Pointwise(testing::NanSensitiveDoubleEq(), values_of(flight, name)));
+  }
+}
+
+}  // namespace
