@@ -1,5 +1,6 @@
 #include "flight/netcdf_copy.hpp"
 
+#include <fmt/format.h>
 #include <netcdf.h>
 
 #include <algorithm>
@@ -72,13 +73,14 @@ void NetcdfCopy::define(const std::string& name) {
   entry.type = source_.type_of(entry.from);
   source_.fit_chunk_cache(entry.from);
   if (entry.type > NC_STRING)
-    throw Error(shown + ": " + name + " has a type of its own making, which cannot be copied; leave it out");
+    throw Error(fmt::format("{}: {} has a type of its own making, which cannot be copied; leave it out",
+                            shown, name));
   std::vector<int> shape;
   for (const int each : source_.dimensions_of(entry.from)) {
     const bool time = each == time_dimension_;
     const std::size_t length = source_.dimension_length(each);
     if (time && !shape.empty())
-      throw Error(shown + ": Time is not the first dimension of " + name + "; leave it out");
+      throw Error(fmt::format("{}: Time is not the first dimension of {}; leave it out", shown, name));
     shape.push_back(time ? output_.time_dimension()
                          : output_.dimension(source_.dimension_name(each), length));
     entry.over_time = entry.over_time || time;

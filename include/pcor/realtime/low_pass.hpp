@@ -78,7 +78,7 @@ class LowPass final : public Functor {
     std::vector<double> weights{1.0};
     double sum = 1.0;
     for (std::size_t i = 1; i <= reach; ++i) {
-      const double from_middle = static_cast<double>(i);
+      const auto from_middle = static_cast<double>(i);
       const double phase = 2.0 * pi * from_middle / (rate * cutoff_period);
       const double window = 0.54 + 0.46 * std::cos(pi * from_middle / static_cast<double>(reach + 1));
       weights.push_back(window * std::sin(phase) / phase);
