@@ -12,6 +12,7 @@
 #include <pcor/physics/hydrostatic.hpp>
 #include <pcor/words/error.hpp>
 #include "checks/statistics.hpp"
+#include "numerics/decompositions.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -143,7 +144,7 @@ Piece look_at_piece(const FlightAir& air, const std::vector<double>& heights,
   piece.gradient = fit(1) / way / metres_per_gradient;
   const double swing = columns.col(3).maxCoeff() - columns.col(3).minCoeff();
   if (swing < least_swing) return piece;
-  const double variance = piece.squares / piece.freedom * (columns.transpose() * columns).inverse()(3, 3);
+  const double variance = piece.squares / piece.freedom * inverse_of(columns.transpose() * columns)(3, 3);
   piece.lag = {fit(3), std::sqrt(variance)};
   return piece;
 }

@@ -9,6 +9,8 @@
 
 #include <pcor/numerics/noise.hpp>
 
+#include "numerics/decompositions.hpp"
+
 namespace pcor::internal {
 namespace {
 
@@ -66,7 +68,7 @@ LeastSquares least_squares(const std::vector<std::vector<double>>& columns, cons
   }
   const std::vector<double> sums = covariance_of_sums(noise, pointers, segments_of(time, step));
   const Eigen::Map<const Eigen::MatrixXd> middle(sums.data(), across, across);
-  const Eigen::MatrixXd inverse = (x.transpose() * x).inverse();
+  const Eigen::MatrixXd inverse = inverse_of(x.transpose() * x);
   const Eigen::MatrixXd covariance = inverse * middle * inverse;
   const double memory = noise.samples_per_independent(fit.rms);
   fit.samples_per_independent = std::isfinite(memory) ? std::max(memory, 1.0) : 1.0;

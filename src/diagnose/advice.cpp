@@ -9,6 +9,7 @@
 
 #include <pcor/effects/catalogue.hpp>
 #include "diagnose/manoeuvres.hpp"
+#include "numerics/decompositions.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
@@ -60,8 +61,7 @@ double distinct(const Eigen::MatrixXd& information, const std::vector<Eigen::Ind
                 const std::vector<Eigen::Index>& own, const Eigen::VectorXd& size) {
   const Eigen::MatrixXd normal = information(rest, rest);
   const Eigen::VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scale.asDiagonal() * normal *
-                                                              scale.asDiagonal());
+  const SymmetricEigen solver = symmetric_eigen(scale.asDiagonal() * normal * scale.asDiagonal());
   const Eigen::VectorXd across = information(rest, own) * size;
   const Eigen::VectorXd turned = solver.eigenvectors().transpose() * (scale.asDiagonal() * across);
   double imitated = 0.0;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "diagnose/outliers.hpp"
+#include "numerics/decompositions.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
@@ -24,8 +25,7 @@ constexpr int parts = 5;
 Eigen::VectorXd solved(const Eigen::MatrixXd& information, const Eigen::VectorXd& right) {
   if (information.rows() == 0) return right;
   const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scale.asDiagonal() * information *
-                                                              scale.asDiagonal());
+  const SymmetricEigen solver = symmetric_eigen(scale.asDiagonal() * information * scale.asDiagonal());
   Eigen::VectorXd inverse = solver.eigenvalues();
   for (double& value : inverse) value = value > 1e-11 ? 1.0 / value : 0.0;
   return scale.asDiagonal() *
@@ -224,7 +224,7 @@ std::vector<double> Analysis::drift(std::size_t flight, const std::vector<std::s
   const Eigen::VectorXd left = whitened(left_by(groups, estimate)[flight], bins, noise_, flight);
   Eigen::MatrixXd normal = white.transpose() * white;
   normal.diagonal().array() += 1.0 / (noise_.drift * noise_.drift);
-  const Eigen::VectorXd series = shapes * normal.ldlt().solve(white.transpose() * left);
+  const Eigen::VectorXd series = shapes * symmetric_solution(normal, white.transpose() * left);
   for (std::size_t k = 0; k < bins.records().size(); ++k) result[bins.records()[k]] = series[bins.bins()[k]];
   return result;
 }

@@ -8,6 +8,7 @@
 #include <set>
 
 #include <pcor/effects/catalogue.hpp>
+#include "numerics/decompositions.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
@@ -297,8 +298,7 @@ std::vector<AbsorbedEffect> absorbed_of(const Analysis& analysis, const std::vec
     const Eigen::Index own = analysis.base() + analysis.groups()[g].first;
     const Eigen::MatrixXd normal = information.topLeftCorner(analysis.base(), analysis.base());
     if (analysis.base() == 0) continue;
-    const Eigen::VectorXd solution =
-        normal.completeOrthogonalDecomposition().solve(information.col(own).head(analysis.base()));
+    const Eigen::VectorXd solution = least_norm_solution(normal, information.col(own).head(analysis.base()));
     for (Eigen::Index b = 0; b < analysis.base(); ++b) {
       const double size = std::abs(solution[b]) * std::sqrt(normal(b, b));
       if (size > notable * std::sqrt(information(own, own)))

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numerics/decompositions.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
@@ -45,7 +46,7 @@ Eigen::VectorXd without_drift(const Binning& bins, const Eigen::VectorXd& residu
   const double ridge = 1e-9 * normal.trace();
   const Eigen::MatrixXd conditioned =
       normal + ridge * Eigen::MatrixXd::Identity(normal.rows(), normal.cols());
-  return residual - shapes * conditioned.ldlt().solve(shapes.transpose() * residual);
+  return residual - shapes * symmetric_solution(conditioned, shapes.transpose() * residual);
 }
 
 }  // namespace

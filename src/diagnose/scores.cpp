@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "numerics/decompositions.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
@@ -22,7 +23,7 @@ struct WhitenedDrift {
       shapes = white;
       return;
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(white.transpose() * white);
+    const SymmetricEigen solver = symmetric_eigen(white.transpose() * white);
     shapes = white * solver.eigenvectors();
     squares = solver.eigenvalues().cwiseMax(0.0);
   }

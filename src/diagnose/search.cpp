@@ -9,7 +9,7 @@
 #include <random>
 
 #include "numerics/chi_squared.hpp"
-#include "numerics/pseudo_inverse.hpp"
+#include "numerics/decompositions.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
@@ -124,7 +124,7 @@ Search::Search(const Scores& scores, Eigen::Index base, const std::vector<Column
     const Eigen::Index kept = as_index(told.size());
     Eigen::MatrixXd turned = Eigen::MatrixXd::Zero(group.count, kept);
     if (kept > 0) {
-      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(own(told, told));
+      const SymmetricEigen solver = symmetric_eigen(own(told, told));
       turned(told, Eigen::all) = solver.eigenvectors() *
                                  solver.eigenvalues().cwiseMax(1e-12).cwiseSqrt().cwiseInverse().asDiagonal();
     }
@@ -176,8 +176,7 @@ GroupScore Search::score_in(const Conditional& conditional, std::size_t group) c
   result.possible = false;
   if (count == 0 || !(conditional.variance > 0.0)) return result;
   const Eigen::MatrixXd own = conditional.information.block(begin, begin, count, count);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(own, Eigen::EigenvaluesOnly);
-  for (const double value : solver.eigenvalues()) result.freedom += value > redundant_below ? 1.0 : 0.0;
+  for (const double value : symmetric_eigenvalues(own)) result.freedom += value > redundant_below ? 1.0 : 0.0;
   if (result.freedom == 0.0) return result;
   const Eigen::MatrixXd inverse = pseudo_inverse(own, redundant_below);
   const Eigen::VectorXd score = conditional.score.segment(begin, count);
@@ -209,8 +208,7 @@ Eigen::MatrixXd Search::normal_turn(const Conditional& conditional, const std::v
   for (const std::size_t group : groups) {
     const Eigen::Index begin = begin_[group];
     const Eigen::Index count = turned_[group].cols();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
-        conditional.information.block(begin, begin, count, count));
+    const SymmetricEigen solver = symmetric_eigen(conditional.information.block(begin, begin, count, count));
     Eigen::Index kept = 0;
     for (Eigen::Index k = 0; k < count; ++k) {
       if (!(solver.eigenvalues()[k] > redundant_below)) continue;
@@ -229,8 +227,7 @@ double Search::threshold_of(const Conditional& conditional, const std::vector<st
   std::vector<Eigen::Index> freedom;
   const Eigen::MatrixXd turn = normal_turn(conditional, groups, freedom);
   if (turn.cols() == 0) return std::numeric_limits<double>::infinity();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(turn.transpose() * conditional.information *
-                                                              turn);
+  const SymmetricEigen solver = symmetric_eigen(turn.transpose() * conditional.information * turn);
   const Eigen::MatrixXd root =
       solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
   std::mt19937_64 engine(options.seed);
@@ -444,7 +441,7 @@ double Search::correlation(std::size_t a, std::size_t b, const std::vector<std::
                           (turned_[b](0, 0) < 0.0 ? -1.0 : 1.0) * (turn(begin_[a], 0) < 0.0 ? -1.0 : 1.0) *
                           (turn(begin_[b], 1) < 0.0 ? -1.0 : 1.0),
                       -1.0, 1.0);
-  return std::clamp(Eigen::JacobiSVD<Eigen::MatrixXd>(across).singularValues()[0], 0.0, 1.0);
+  return std::clamp(singular_values(across)[0], 0.0, 1.0);
 }
 
 void Search::fit(const std::vector<std::size_t>& chosen, Eigen::VectorXd& estimate,

@@ -7,7 +7,7 @@
 
 #include "diagnose/scores.hpp"
 #include "numerics/chi_squared.hpp"
-#include "numerics/pseudo_inverse.hpp"
+#include "numerics/decompositions.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
@@ -121,7 +121,7 @@ bool StructureTest::add(const std::string& name, const std::vector<const double*
     structure.slope_error = std::sqrt(variance_ / own(0, 0)) / smooth.deviation();
   }
   const Eigen::VectorXd scale = before.cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scale.asDiagonal() * own * scale.asDiagonal());
+  const SymmetricEigen solver = symmetric_eigen(scale.asDiagonal() * own * scale.asDiagonal());
   Eigen::MatrixXd turn(count, count);
   Eigen::Index kept = 0;
   for (Eigen::Index k = 0; k < count; ++k) {
@@ -141,7 +141,7 @@ bool StructureTest::add(const std::string& name, const std::vector<const double*
 
 double StructureTest::threshold(double probability) const {
   const double each = probability / std::max<double>(1.0, static_cast<double>(structures_.size()));
-  return boost::math::quantile(boost::math::complement(boost::math::chi_squared(1.0), each));
+  return chi_squared_value(each, 1.0);
 }
 
 std::optional<std::size_t> StructureTest::strongest() const {

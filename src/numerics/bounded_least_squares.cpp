@@ -3,6 +3,8 @@
 #include <cmath>
 #include <vector>
 
+#include "numerics/decompositions.hpp"
+
 namespace pcor::internal {
 
 Eigen::VectorXd bounded_least_squares(const Eigen::MatrixXd& rows, const Eigen::VectorXd& right,
@@ -23,8 +25,7 @@ Eigen::VectorXd bounded_least_squares(const Eigen::MatrixXd& rows, const Eigen::
       if (!held[static_cast<std::size_t>(k)]) free.push_back(k);
     }
     if (!free.empty()) {
-      const Eigen::VectorXd step =
-          scaled(Eigen::all, free).completeOrthogonalDecomposition().solve(right - scaled * x);
+      const Eigen::VectorXd step = least_norm_solution(scaled(Eigen::all, free), right - scaled * x);
       double share = 1.0;
       Eigen::Index stopped = -1;
       for (std::size_t i = 0; i < free.size(); ++i) {

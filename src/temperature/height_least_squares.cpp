@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "numerics/decompositions.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
@@ -72,9 +73,9 @@ TemperatureFit fit_height_by_least_squares(const std::vector<HeightRecord>& reco
   }
   TemperatureFit fit;
   const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd inverse =
-      scale.asDiagonal() * Eigen::MatrixXd(scale.asDiagonal() * information * scale.asDiagonal()).inverse() *
-      scale.asDiagonal();
+  const Eigen::MatrixXd inverse = scale.asDiagonal() *
+                                  inverse_of(scale.asDiagonal() * information * scale.asDiagonal()) *
+                                  scale.asDiagonal();
   const Eigen::VectorXd best = inverse * right;
   fit.sigma = std::sqrt(std::max(0.0, squares - best.dot(right)) / samples);
   for (Eigen::Index k = 0; k < n; ++k) {

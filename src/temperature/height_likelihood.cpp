@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlopt.hpp>
 
+#include "numerics/decompositions.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
@@ -202,7 +203,7 @@ class AroundLikeliest {
         rises(row, column) = rises(column, row) = 0.5 * (at(both).rise - one[i].rise - one[j].rise);
       }
     }
-    const Eigen::SelfAdjointEigenSolver<decltype(rises)> axes(rises);
+    const SymmetricEigen axes = symmetric_eigen(rises);
     std::array<std::array<Point, 2>, searched.size()> result;
     for (std::size_t i = 0; i < searched.size(); ++i) {
       const Eigen::Index k = as_index(i);
@@ -273,7 +274,7 @@ Eigen::MatrixXd HeightEquations::covariance(Eigen::Index terms) const {
                                     .cwiseInverse();
   const Eigen::MatrixXd scaled =
       scale.asDiagonal() * information.topLeftCorner(terms, terms) * scale.asDiagonal();
-  const Eigen::MatrixXd inverse = scale.asDiagonal() * scaled.inverse() * scale.asDiagonal();
+  const Eigen::MatrixXd inverse = scale.asDiagonal() * inverse_of(scaled) * scale.asDiagonal();
   return 0.5 * (inverse + inverse.transpose());
 }
 
@@ -412,7 +413,7 @@ Eigen::MatrixXd covariance_over_noise(const std::vector<HeightRecord>& records, 
   // In standard errors, without what would make any smaller.
   const auto& root = factor.matrixL();
   const Eigen::MatrixXd scaled = root.solve(root.solve(more).transpose());
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(0.5 * (scaled + scaled.transpose()));
+  const SymmetricEigen axes = symmetric_eigen(0.5 * (scaled + scaled.transpose()));
   const Eigen::MatrixXd larger =
       root * (axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal());
   return covariance + larger * larger.transpose();

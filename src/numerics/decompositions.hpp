@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Dense>
+
+// Eigen's decompositions, compiled once: each file that names one itself pays seconds for its templates.
+
+namespace pcor::internal {
+
+using SymmetricEigen = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
+
+/// Eigenvalues, ascending, and orthonormal eigenvectors of a symmetric matrix, of which the lower triangle is
+/// read.
+SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix);
+
+/// Its eigenvalues alone.
+Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix);
+
+/// The singular values, descending.
+Eigen::VectorXd singular_values(const Eigen::MatrixXd& matrix);
+
+/// The inverse of a regular matrix.
+Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix);
+
+/// The inverse of a symmetric matrix over the directions whose eigenvalue is above `least`; zero over the
+/// others.
+Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix, double least);
+
+/// The x with matrix x = right, for a symmetric positive definite matrix.
+Eigen::VectorXd symmetric_solution(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
+
+/// The x with the least |rows x - right|; of several the shortest.
+Eigen::VectorXd least_norm_solution(const Eigen::MatrixXd& rows, const Eigen::VectorXd& right);
+
+}  // namespace pcor::internal

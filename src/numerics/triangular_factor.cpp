@@ -1,0 +1,42 @@
+#include "numerics/triangular_factor.hpp"
+
+#include <algorithm>
+
+namespace pcor::internal {
+
+void TriangularFactor::add(const std::vector<const double*>& by_columns, const double* scale,
+                           std::size_t count) {
+  for (std::size_t from = 0; from < count;) {
+    if (filled_ == block) reduce();
+    const Eigen::Index part = std::min(block - filled_, as_index(count - from));
+    const Eigen::Map<const Eigen::ArrayXd> scales(scale + from, part);
+    for (Eigen::Index c = 0; c < columns(); ++c) {
+      const Eigen::Map<const Eigen::ArrayXd> column(by_columns[static_cast<std::size_t>(c)] + from, part);
+      rows_.col(c).segment(columns() + filled_, part) = (scales * column).matrix();
+    }
+    filled_ += part;
+    from += static_cast<std::size_t>(part);
+  }
+}
+
+void TriangularFactor::add(const Eigen::MatrixXd& factor) {
+  if (block - filled_ < columns()) reduce();
+  rows_.middleRows(columns() + filled_, columns()) = factor;
+  filled_ += columns();
+}
+
+Eigen::MatrixXd TriangularFactor::factor() const {
+  TriangularFactor copy = *this;
+  copy.reduce();
+  return copy.rows_.topRows(columns());
+}
+
+void TriangularFactor::reduce() {
+  if (filled_ == 0) return;
+  const Eigen::Index used = columns() + filled_;
+  const Eigen::HouseholderQR<Eigen::MatrixXd> decomposition(rows_.topRows(used));
+  rows_.topRows(columns()) = decomposition.matrixQR().topRows(columns()).triangularView<Eigen::Upper>();
+  filled_ = 0;
+}
+
+}  // namespace pcor::internal
