@@ -4,6 +4,7 @@
 #include <pcor/model/formula.hpp>
 #include "support/archetype.hpp"
 #include "support/input_range.hpp"
+#include "support/test_name.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -397,10 +398,5 @@ TEST_P(EveryEffect, CompilesForAScalarThatIsNoDouble) {
   EXPECT_EQ(result.value(), value(facts, state, parameters));
 }
 
-INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEffect, testing::ValuesIn(effect_facts), [](const auto& effect) {
-  std::string name;
-  for (const char c : effect.param.id) {
-    if (c != '-') name += c;
-  }
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEffect, testing::ValuesIn(effect_facts),
+                         [](const auto& effect) { return test::test_name(effect.param.id); });

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "support/many_seeds.hpp"
 #include "support/temporary_directory.hpp"
 
 // Simulated flights of two hours with all manoeuvres and the usual noise, refitted, over many seeds: the true
@@ -14,11 +15,7 @@
 
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr std::uint64_t seeds = 5;  // under the sanitizers a flight takes ten times as long
-#else
-constexpr std::uint64_t seeds = 100;
-#endif
+const std::size_t seeds = pcor::test::number_of_seeds();
 constexpr std::uint64_t first_seed = 5000;
 
 const std::filesystem::path scenarios = std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
@@ -79,10 +76,8 @@ Study study(const std::string& scenario_name, const std::string& model_name,
 
 void expect_recovery(const Study& study) {
   for (const auto& [name, record] : study.records) {
-    EXPECT_GE(record.within(3.0), seeds * 95 / 100) << name;
-    if (seeds < 100) continue;
-    // Over 100 seeds the spread itself is known to 7 %.
-    EXPECT_NEAR(record.spread() / record.mean_error(), 1.0, 0.25) << name;
+    EXPECT_GE(record.within(3.0), pcor::test::least_within(seeds, pcor::test::within_three)) << name;
+    EXPECT_NEAR(record.spread() / record.mean_error(), 1.0, pcor::test::tolerance_of_spread(seeds)) << name;
   }
 }
 

@@ -3,6 +3,7 @@
 #include <pcor/realtime/chain.hpp>
 
 #include "support/input_range.hpp"
+#include "support/test_name.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -123,9 +124,7 @@ TEST_P(EveryEffect, HasItsDerivativeByEachInput) {
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEffect, testing::Range<std::size_t>(0, pcor::catalogue_size),
                          [](const auto& effect) {
-                           std::string name(effect_facts[effect.param].id);
-                           name.erase(std::remove(name.begin(), name.end(), '-'), name.end());
-                           return name;
+                           return pcor::test::test_name(effect_facts[effect.param].id);
                          });
 
 namespace {

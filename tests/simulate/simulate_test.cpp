@@ -20,6 +20,7 @@
 #include "simulate/random.hpp"
 #include "simulate/turbulence.hpp"
 #include "support/temporary_directory.hpp"
+#include "support/test_name.hpp"
 
 using namespace pcor::internal;
 
@@ -454,6 +455,8 @@ struct Change {
   std::vector<std::string> variables;
 };
 
+void PrintTo(const Change& change, std::ostream* stream) { *stream << change.effect; }
+
 class EffectOfScenario : public testing::TestWithParam<Change> {};
 
 TEST_P(EffectOfScenario, ChangesWhatItActsOn) {
@@ -511,7 +514,8 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"\"sensor-response\"\non = \"ADIFR\"\ntau = 0.2", {"ADIFR", "ATTACK"}},
         Change{"\"unknown\"\nof = \"hidden\"\nwhere = \"lams\"\nstrength = 0.3", {"VLAMS"}},
         Change{"\"unknown\"\nof = \"TBAY\"\nwhere = \"temperature\"\nshape = \"quadratic\"\nstrength = 0.01",
-               {"TTRR", "RTF1"}}));
+               {"TTRR", "RTF1"}}),
+    [](const auto& change) { return test::test_name(change.param.effect); });
 
 TEST(Simulate, PitotLosesPressureAtAnAngle) {
   const std::string text = head + noiseless + calm + systems + aloft + leg("yaw");
@@ -712,7 +716,8 @@ TEST_P(DataScenario, IsFlown) {
 
 INSTANTIATE_TEST_SUITE_P(All, DataScenario,
                          testing::Values("c130-eq18.toml", "c130-eq19.toml", "gv-eq20.toml",
-                                         "c130-no-manoeuvres.toml", "c130-hidden.toml", "c130-short.toml"));
+                                         "c130-no-manoeuvres.toml", "c130-hidden.toml", "c130-short.toml"),
+                         [](const auto& scenario) { return test::test_name(scenario.param); });
 
 // The reader
 
@@ -721,12 +726,7 @@ struct Refusal {
   std::vector<std::string> said;
 };
 
-/// The last line tells the case.
-void PrintTo(const Refusal& refusal, std::ostream* stream) {
-  std::string text = refusal.text;
-  while (!text.empty() && text.back() == '\n') text.pop_back();
-  *stream << text.substr(text.rfind('\n') + 1);
-}
+void PrintTo(const Refusal& refusal, std::ostream* stream) { *stream << refusal.text; }
 
 class ScenarioRefusal : public testing::TestWithParam<Refusal> {};
 
@@ -777,7 +777,14 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{head + systems + aloft +
                     "[[effect]]\nid = \"unknown\"\nstrength = 1\nof = \"ENGTRK\"\nwhere = \"static\"\n",
                 {"ENGTRK", "ENGTRQ"}},
-        Refusal{head + systems + aloft + "[noise]\nQFC = 0.1\n", {"QFC", "QCF"}}));
+        Refusal{head + systems + aloft + "[noise]\nQFC = 0.1\n", {"QFC", "QCF"}}),
+    // The last lines, which tell the case.
+    [](const auto& refusal) {
+      const std::string& text = refusal.param.text;
+      const std::size_t line = text.rfind('\n', text.size() - 2);
+      const std::size_t before = text.rfind('\n', line - 1);
+      return std::to_string(refusal.index) + "_" + test::test_name(text.substr(before + 1));
+    });
 
 TEST(Scenario, RefusesAFileThatIsNotThere) {
   EXPECT_THAT([] { read_scenario("/nowhere/flight.toml"); },

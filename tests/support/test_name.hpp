@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cctype>
+#include <string>
+#include <string_view>
+
+namespace pcor::test {
+
+/// A text as the name of a test, which has letters and digits only: "static-lag" is StaticLag.
+inline std::string test_name(std::string_view text) {
+  std::string name;
+  bool begins_word = true;
+  for (const char character : text) {
+    const auto c = static_cast<unsigned char>(character);
+    if (std::isalnum(c)) name += static_cast<char>(begins_word ? std::toupper(c) : c);
+    begins_word = !std::isalnum(c);
+  }
+  return name;
+}
+
+}  // namespace pcor::test
