@@ -7,6 +7,7 @@
 
 #include <pcor/numerics/noise.hpp>
 #include "fit/loss_function.hpp"
+#include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
@@ -96,9 +97,7 @@ FitCovariance fit_covariance(FitFlights& flights, const FitTask& task, const Sol
   const Eigen::MatrixXd inner = curvature(varying, varying);
   const Eigen::VectorXd lengths = inner.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd inverse = lengths.asDiagonal() *
-                                  (lengths.asDiagonal() * inner * lengths.asDiagonal())
-                                      .completeOrthogonalDecomposition()
-                                      .pseudoInverse() *
+                                  pseudo_inverse(lengths.asDiagonal() * inner * lengths.asDiagonal()) *
                                   lengths.asDiagonal();
   Eigen::MatrixXd own = inverse * score(varying, varying) * inverse.transpose();
   if (early > 0) {

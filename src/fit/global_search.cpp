@@ -6,6 +6,7 @@
 #include <nlopt.hpp>
 
 #include <pcor/words/error.hpp>
+#include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
@@ -39,7 +40,7 @@ class Trial {
     Eigen::VectorXd found = wanted();
     if (!linear_.empty()) {
       const Eigen::MatrixXd rows = reduction.factor(Eigen::all, linear_);
-      const Eigen::VectorXd step = rows.completeOrthogonalDecomposition().solve(-residual);
+      const Eigen::VectorXd step = least_norm_solution(rows, -residual);
       squares = (residual + rows * step).squaredNorm();
       for (std::size_t i = 0; i < linear_.size(); ++i) found[linear_[i]] += step[as_index(i)];
     }

@@ -22,6 +22,10 @@ Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix, double least) {
   return solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
 }
 
+Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix) {
+  return matrix.completeOrthogonalDecomposition().pseudoInverse();
+}
+
 Eigen::VectorXd symmetric_solution(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right) {
   return matrix.ldlt().solve(right);
 }

@@ -25,6 +25,9 @@ Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix);
 /// others.
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix, double least);
 
+/// The Moore-Penrose inverse, with directions left out that rounding cannot tell from zero.
+Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix);
+
 /// The x with matrix x = right, for a symmetric positive definite matrix.
 Eigen::VectorXd symmetric_solution(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
 
