@@ -396,7 +396,7 @@ class Iterate(TemperatureTest):
 
     def test_text_has_the_rounds(self):
         text = self.text_of("--iterate", model=self.with_laser())
-        self.assertRegex(text, r"round .*delta-p moved, hPa.*temperature moved, K")
+        self.assertRegex(text, r"round .*change of delta-p, hPa.*change of temperature, K")
         self.assertIn("pressure and temperature agree with each other", text)
 
     def test_says_how_the_degree_was_chosen(self):

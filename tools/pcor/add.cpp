@@ -130,8 +130,8 @@ CLI::Validator is_place() {
 
 std::function<void()> add_add(CLI::App& program) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_subcommand(
-      "add", "Add effects to a model, with coefficients that have no effect before a refit");
+  CLI::App* command =
+      program.add_subcommand("add", "Add effects to a model, with neutral coefficients, which a refit finds");
   command
       ->add_option("effects", options->effects,
                    "effects of the catalogue, or with --formula the name of an effect of your own")

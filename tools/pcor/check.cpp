@@ -56,10 +56,10 @@ nlohmann::ordered_json as_json(const Checks& checks) {
   return result;
 }
 
-/// "-0.154 +- 0.024 hPa between the systems; differences from 0.3 on matter".
+/// "-0.154 +- 0.024 hPa between the systems; matters from 0.3 on".
 std::string key_number(const CheckResult& result) {
   const KeyNumber& key = result.key;
-  return fmt::format("{:+.3f} +- {:.3f} {} {}; differences from {:g} on matter", key.value,
+  return fmt::format("{:+.3f} +- {:.3f} {} {}; matters from {:g} on", key.value,
                      key.standard_error, key.unit, key.what, key.matters);
 }
 
