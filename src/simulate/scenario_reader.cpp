@@ -78,8 +78,8 @@ class Reader final : TomlReader {
     }
   }
 
-  template <class Object, std::size_t count>
-  Actions numbers(Object& object, const std::array<NumberKey<Object>, count>& keys) const {
+  template <class Object, std::size_t Count>
+  Actions numbers(Object& object, const std::array<NumberKey<Object>, Count>& keys) const {
     Actions actions;
     for (const NumberKey<Object>& key : keys) {
       actions.emplace_back(std::string(key.key), [this, &object, key](const Entry& entry) {
@@ -121,7 +121,7 @@ class Reader final : TomlReader {
                     {"gap", keep}});
     each(root, "a scenario", actions);
     if (scenario_.name.empty()) fail(Place{1, 1}, "the scenario has no name; add name = \"...\"");
-    if (!has_aircraft_) fail(Place{1, 1}, "the scenario has no aircraft; add aircraft = \"C-130\" or \"GV\"");
+    if (!has_aircraft_) fail(Place{1, 1}, R"(the scenario has no aircraft; add aircraft = "C-130" or "GV")");
     const auto with = [&](const std::string& key, void (Reader::*reader)(const Entry&)) {
       const auto found = later.find(key);
       if (found != later.end()) (this->*reader)(found->second);
@@ -341,7 +341,7 @@ class Reader final : TomlReader {
         fail(place, fmt::format("{} has no variable; add on = \"VLAMS\" or another", effect.id));
       if (facts.id == "unknown" && (effect.of.empty() || effect.where.empty()))
         fail(place,
-             "unknown needs of = \"...\", the variable that causes it, and where = \"static\" or another");
+             R"(unknown needs of = "...", the variable that causes it, and where = "static" or another)");
       check_effect(effect, place);
       scenario_.effects.push_back(effect);
     });

@@ -155,7 +155,7 @@ void print(const RefitResult& result, const Options& options) {
     fmt::print("{:<36} {:>13.6g} {:>13.6g} {:>13}  {}\n", p.name, p.start, p.value, error, p.unit);
   }
   fmt::print(
-      "\nrms {:.3f} hPa ({:.5f} of p), before {:.3f}; without outliers {:.3f}; noise {:.3f} hPa; {} "
+      "\nrms {:.3f} hPa ({:.5f} of p), before {:.3f}; robust standard deviation {:.3f}; noise {:.3f} hPa; {} "
       "outliers\n",
       result.rms, result.rms_over_pressure, result.rms_before, result.bulk_rms, result.noise_rms,
       result.outliers);
