@@ -42,7 +42,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/pcorConfig.cmake.in ${PROJECT_BINARY_DIR}/pcorConfig.cmake
   INSTALL_DESTINATION ${pcor_config_dir}
   PATH_VARS CMAKE_INSTALL_DATADIR)
-# Before 1.0 a minor version may break its users, so 0.2 does not serve who asked for 0.1.
+# Before 1.0 a minor version may break its users, so 0.3 does not serve who asked for 0.2.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/pcorConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/pcorConfig.cmake ${PROJECT_BINARY_DIR}/pcorConfigVersion.cmake
         DESTINATION ${pcor_config_dir})
