@@ -4,27 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include <pcor/physics/constants.hpp>
 #include <pcor/physics/geodesy.hpp>
 #include <pcor/words/utc.hpp>
+#include "numerics/missing.hpp"
 
 namespace pcor::internal {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// The smallest change of the residual over the swing of an angle that matters, hPa.
 constexpr double size_that_matters = 0.3;
 
 /// From one end of a sine to the other, in its standard deviations.
 const double ends_of_sine = 2.0 * std::sqrt(2.0);
-
-bool has_value(const std::vector<double>& values) {
-  return std::any_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
-}
 
 std::vector<double> difference(std::vector<double> a, const std::vector<double>& b) {
   for (std::size_t i = 0; i < a.size(); ++i) a[i] -= b[i];

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "checks/statistics.hpp"
+#include "numerics/least_squares.hpp"
 
 namespace pcor::internal {
 

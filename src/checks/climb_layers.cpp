@@ -4,20 +4,19 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <tuple>
 
 #include <pcor/numerics/noise.hpp>
 #include <pcor/physics/hydrostatic.hpp>
 #include <pcor/words/error.hpp>
-#include "checks/statistics.hpp"
 #include "numerics/decompositions.hpp"
+#include "numerics/least_squares.hpp"
+#include "numerics/missing.hpp"
 
 namespace pcor::internal {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double usual_height_noise = 1.0;    // m: GPS of 2004, without differential corrections
 constexpr double least_height_noise = 0.15;   // m: differential GPS of today
 constexpr double usual_gradient = 5.0;        // m per 100 km

@@ -38,7 +38,7 @@ struct LayerUncertainty {
 };
 
 /// Standard errors of T_p, K, by cause. The sums telescope: noise counts at both ends of a layer, not
-/// in between, and does not fall with the number of samples (R68).
+/// in between, and does not fall with the number of samples (the memo takes it to).
 struct LayerErrors {
   double height_noise = 0.0;    ///< of the GPS height at both ends
   double pressure_noise = 0.0;  ///< of the pressure at both ends
@@ -52,7 +52,8 @@ struct LayerErrors {
   }
 };
 
-/// A layer of air that the aircraft climbed or descended through (memo-requirements R70).
+/// A layer of air that the aircraft climbed or descended through (as in the table of the memo's Determining
+/// the Air Temperature).
 struct Layer {
   std::size_t climb = 0;  ///< the number of its climb or descent in the flight
   std::size_t first = 0;  ///< records at its ends
@@ -101,8 +102,8 @@ FlightLayers find_layers(const FlightAir& air, const LayerOptions& options = {})
 /// least, or a constant where there are too few layers for a line, with the full covariance in the place of
 /// sigma^2: layers of one climb share an end, and layers of one flight the slope of the pressure surfaces.
 /// Four fifths of its variance are taken as that of the flight, the rest as that of each climb, so climbs and
-/// descents on one heading cancel most of it (R79 iii). An error of delta-p that differs between heights is
-/// the same for all flights at one height.
+/// descents on one heading cancel most of it (iii of the memo's steps against the gradient). An error of
+/// delta-p that differs between heights is the same for all flights at one height.
 struct LayerFit {
   std::size_t layers = 0;
   double mean_temperature = 0.0;  ///< of the layers, K

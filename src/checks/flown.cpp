@@ -4,21 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <pcor/words/utc.hpp>
+#include "numerics/missing.hpp"
 
 namespace pcor::internal {
-namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-bool has_value(const std::vector<double>& series) {
-  return std::any_of(series.begin(), series.end(), [](double x) { return std::isfinite(x); });
-}
-
-}  // namespace
-
 std::vector<double> Flown::time() const {
   std::vector<double> times;
   for (const std::size_t place : places) times.push_back(flight->air.time()[place]);

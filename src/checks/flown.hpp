@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "checks/checks.hpp"
-#include "checks/statistics.hpp"
+#include "checks/verdict.hpp"
 
 namespace pcor::internal {
 
@@ -38,7 +38,7 @@ double standard_deviation(const std::vector<double>& values);
 std::vector<double> less_mean(std::vector<double> values);
 
 /// How much the tail winds of the two legs of a reverse heading differ although nothing is wrong, m/s rms:
-/// the wind changes, and legs of minutes cannot show it. The memo's 18 pairs reach +-0.2 m/s (R64): 0.2
+/// the wind changes, and legs of minutes cannot show it. The memo's 18 pairs of the GV reach +-0.2 m/s: 0.2
 /// sqrt(18).
 inline constexpr double change_of_wind = 0.85;
 

@@ -7,11 +7,10 @@
 #include <pcor/numerics/noise.hpp>
 #include <pcor/words/utc.hpp>
 #include "checks/flown.hpp"
+#include "numerics/missing.hpp"
 
 namespace pcor::internal {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// The smallest difference that matters, K: the typical error of the thermometer (memo, after eq. 22).
 constexpr double size_that_matters = 0.3;

@@ -8,11 +8,10 @@
 
 #include <pcor/words/utc.hpp>
 #include "checks/flown.hpp"
+#include "numerics/missing.hpp"
 
 namespace pcor::internal {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// The smallest error of the thermometer that matters, K: the typical one (memo, after eq. 22).
 constexpr double size_that_matters = 0.3;

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "checks/statistics.hpp"
+#include "numerics/least_squares.hpp"
 
 namespace pcor::internal {
 
@@ -21,7 +21,7 @@ struct LegMean {
 
 /// What a pair of legs says. Errors are those of the legs' means, without changes of the wind between them.
 struct LegPair {
-  Estimated sum{};  ///< of the tail winds as they are, m/s: the memo's difference (R62)
+  Estimated sum{};  ///< of the tail winds as they are, m/s: the differences in the memo's table
   /// How far the headings are from opposite, deg, from -180 to 180.
   double heading_error = 0.0;
   /// The part of the sum that the wind puts there because the headings are not opposite, m/s; 0 where the
@@ -45,7 +45,8 @@ double pressure_per_airspeed(double pressure, double mach, double airspeed);
 /// The arithmetic of a reverse heading. Both tail winds are ground speed less airspeed: the wind, opposite in
 /// the two legs, cancels in their sum, and what the airspeed is too high by is in it twice, with the other
 /// sign. Where headings are not quite opposite the wind does not quite cancel; the wind as both legs have it
-/// is then taken out. Source: memo R58-R62.
+/// is then taken out. Source: memo,
+/// Tests Using Flight Maneuvers.
 LegPair pair_of(const LegMean& first, const LegMean& second);
 
 }  // namespace pcor::internal

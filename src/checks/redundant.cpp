@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <pcor/numerics/noise.hpp>
+#include "numerics/missing.hpp"
 
 namespace pcor::internal {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// For how many samples one independent one stands, in the distances from a line.
 double memory_of(const LineFit& line, const Redundant& both) {

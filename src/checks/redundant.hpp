@@ -44,7 +44,8 @@ bool with_avionics(const CheckedFlight& flight);
 inline constexpr double fastest_of_avionics = 0.1;
 
 /// The records in the air at which both systems measure the same air: with avionics those at which neither
-/// static nor total pressure changes faster than `fastest_of_avionics` over five seconds (R7).
+/// static nor total pressure changes faster than `fastest_of_avionics` over five seconds (memo,
+/// Supporting Evidence for Accuracy of p_t).
 std::vector<bool> comparable(const CheckedFlight& flight);
 
 /// What is to be said where the avionics took part.

@@ -13,7 +13,8 @@
 namespace pcor::internal {
 namespace {
 
-/// The smallest error of the airspeed that matters, m/s: that of the memo's GV (R64), some 0.3 hPa.
+/// The smallest error of the airspeed that matters, m/s: that of the GV in the memo's
+/// tests with manoeuvres, some 0.3 hPa.
 constexpr double size_that_matters = 0.3;
 
 /// Pilots aim at headings that are opposite to five degrees.

@@ -3,18 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <unsupported/Eigen/FFT>
 
 #include <pcor/numerics/line_fit.hpp>
 #include <pcor/numerics/noise.hpp>
 #include <pcor/physics/geodesy.hpp>
 #include "checks/flown.hpp"
+#include "numerics/missing.hpp"
 
 namespace pcor::internal {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double pi = 3.14159265358979323846;
 
 /// The largest noise of delta-p that does no harm, hPa: the rms of the memo's fits (eq. 18 and 20).

@@ -9,7 +9,7 @@ namespace pcor::internal {
 namespace {
 
 /// The smallest difference of two corrected static pressures that matters, hPa: the rms with which the memo's
-/// fits meet LAMS (R47).
+/// eq. 18 meets LAMS.
 constexpr double size_that_matters = 0.3;
 
 bool has_second(const CheckedFlight& flight) { return flight.second.has_value(); }

@@ -9,7 +9,7 @@ namespace pcor::internal {
 namespace {
 
 /// The smallest difference of two total pressures that matters, hPa: twice what the transducers of two
-/// pairs are good for together (R5: 0.1 hPa of PSF, 0.05 hPa of QCF).
+/// pairs are good for together (memo, Background: 0.1 hPa of PSF, 0.05 hPa of QCF).
 constexpr double size_that_matters = 0.3;
 
 bool has_two(const CheckedFlight& flight) { return flight.measured.size() > 1; }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numeric>
 
@@ -13,6 +12,7 @@
 #include <pcor/flight/same_aircraft.hpp>
 #include <pcor/words/error.hpp>
 
+#include "numerics/missing.hpp"
 #include "residuals/residual_sums.hpp"
 
 namespace pcor {
@@ -21,7 +21,6 @@ using namespace internal;
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double worst_length = 60.0;  // s
 constexpr std::size_t worst_count = 5;
 // hPa2: a reference delta-p that varies less than the rounding of a file leaves nothing to explain.

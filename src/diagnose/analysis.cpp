@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "diagnose/outliers.hpp"
 #include "numerics/decompositions.hpp"
+#include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr int most_rounds = 4;
 /// For the first noise: whatever might be an effect is taken off, a claim it is not.
 constexpr double generous_threshold = 9.0;
@@ -19,19 +18,8 @@ constexpr std::size_t generous_effects = 6;
 /// Twice the gain in log-likelihood that makes drift worth its parameter.
 constexpr double least_drift_gain = 2.0;
 constexpr double stretch_time = 300.0;  // s
+constexpr double least_eigenvalue = 1e-11;
 constexpr int parts = 5;
-
-/// Least squares with a pseudo-inverse, columns scaled alike.
-Eigen::VectorXd solved(const Eigen::MatrixXd& information, const Eigen::VectorXd& right) {
-  if (information.rows() == 0) return right;
-  const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const SymmetricEigen solver = symmetric_eigen(scale.asDiagonal() * information * scale.asDiagonal());
-  Eigen::VectorXd inverse = solver.eigenvalues();
-  for (double& value : inverse) value = value > 1e-11 ? 1.0 / value : 0.0;
-  return scale.asDiagonal() *
-         (solver.eigenvectors() *
-          (inverse.asDiagonal() * (solver.eigenvectors().transpose() * (scale.asDiagonal() * right))));
-}
 
 }  // namespace
 
@@ -52,7 +40,7 @@ Analysis::Analysis(std::vector<FlightColumns> flights, std::vector<ColumnGroup> 
   }
   // Slow effects and slow drift contend for the same part of the residuals, so noise is found from both ends:
   // with whatever might be an effect taken off first, and with none. The likelier end counts.
-  const Eigen::VectorXd start = solved(information, right);
+  const Eigen::VectorXd start = pseudo_solution(information, right, least_eigenvalue);
   const double by_effects = search_from(start, true, explained);
   if (result_.chosen.empty() || noise_.drift > 0.0) {
     const SearchResult result = result_;
@@ -191,8 +179,8 @@ double Analysis::held_out_rms(const std::vector<std::size_t>& groups) const {
   std::vector<Eigen::VectorXd> estimates;
   for (const Eigen::MatrixXd& part : information) {
     const Eigen::MatrixXd rest = whole - part;
-    estimates.push_back(
-        solved(rest.topLeftCorner(width - 1, width - 1), rest.col(width - 1).head(width - 1)));
+    estimates.push_back(pseudo_solution(rest.topLeftCorner(width - 1, width - 1),
+                                        rest.col(width - 1).head(width - 1), least_eigenvalue));
   }
   double squares = 0.0;
   double count = 0.0;

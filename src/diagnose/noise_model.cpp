@@ -4,14 +4,13 @@
 #include <cmath>
 
 #include "numerics/decompositions.hpp"
+#include "numerics/local_noise.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double local_time = 300.0;  // s
-constexpr double local_share = 0.85;  // of the logarithm of the level, the rest is that of the whole
 constexpr std::size_t most_shapes = 48;
 constexpr double shortest_period = 300.0;  // s
 constexpr std::size_t fewest_innovations = 20;
@@ -101,13 +100,12 @@ NoiseModel estimate_noise(const std::vector<Binning>& bins, const std::vector<Ei
       const std::vector<double>& time = bins[f].time();
       for (std::size_t first = 0; first < time.size();) {
         std::size_t last = first;
-        while (last < time.size() && time[last] < time[first] + local_time) ++last;
+        while (last < time.size() && time[last] < time[first] + local_noise_time) ++last;
         const double* const begin = innovations[f].data() + first;
         const double* const end = innovations[f].data() + last;
         double here = common;
         if (last - first >= fewest_innovations) here = robust_deviation({begin, end});
-        if (!(here > 0.0)) here = common;
-        const double level = std::exp(local_share * std::log(here) + (1.0 - local_share) * std::log(common));
+        const double level = local_noise_level(here, common);
         noise.level[f]
             .segment(as_index(first), as_index(last - first))
             .setConstant(level > 0.0 ? level : 1.0);

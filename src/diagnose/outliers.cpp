@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include <pcor/numerics/noise.hpp>
+#include "numerics/local_noise.hpp"
 
 namespace pcor::internal {
 namespace {
 
 constexpr double limit = 4.5;
-constexpr double local_time = 300.0;  // s
 constexpr std::size_t fewest = 60;
 constexpr std::size_t most_in_a_row = 3;
 
@@ -39,7 +39,7 @@ std::vector<double> without_outliers(const std::vector<double>& residual,
   }
   const double common = robust_deviation(innovation);
   std::vector<double> level(left.size(), common);
-  const std::size_t block = std::max<std::size_t>(1, static_cast<std::size_t>(local_time / step));
+  const std::size_t block = local_noise_samples(step);
   for (std::size_t first = 0; first < left.size(); first += block) {
     const auto begin = innovation.begin() + static_cast<std::ptrdiff_t>(first);
     const auto end = innovation.begin() + static_cast<std::ptrdiff_t>(std::min(first + block, left.size()));

@@ -8,6 +8,7 @@
 #include "diagnose/scores.hpp"
 #include "numerics/chi_squared.hpp"
 #include "numerics/decompositions.hpp"
+#include "numerics/median.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
@@ -206,9 +207,7 @@ bool shares_noise(const std::vector<std::vector<double>>& residuals,
     }
   }
   if (correlations.empty()) return false;
-  const auto middle = correlations.begin() + static_cast<std::ptrdiff_t>(correlations.size() / 2);
-  std::nth_element(correlations.begin(), middle, correlations.end());
-  return std::abs(*middle) > level;
+  return std::abs(median(std::move(correlations))) > level;
 }
 
 }  // namespace pcor::internal

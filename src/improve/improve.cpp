@@ -6,21 +6,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 
 #include <pcor/flight/flight.hpp>
 #include <pcor/words/error.hpp>
 #include "improve/improve_loop.hpp"
+#include "numerics/missing.hpp"
 
 namespace pcor {
 
 using namespace internal;
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // An effect that is named stays unless the held-out rms gets worse than by the scatter of a good fit. One
 // that is not the cause, or not known to be, must earn its place.

@@ -1,6 +1,15 @@
 #include "numerics/decompositions.hpp"
 
 namespace pcor::internal {
+namespace {
+
+/// One over the eigenvalues above `least`; zero for the others.
+Eigen::VectorXd inverse_above(double least, Eigen::VectorXd eigenvalues) {
+  for (double& value : eigenvalues) value = value > least ? 1.0 / value : 0.0;
+  return eigenvalues;
+}
+
+}  // namespace
 
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix) { return SymmetricEigen(matrix); }
 
@@ -17,9 +26,18 @@ Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& matrix) { return matrix.invers
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix, double least) {
   if (matrix.rows() == 0) return matrix;
   const SymmetricEigen solver(matrix);
-  Eigen::VectorXd inverse = solver.eigenvalues();
-  for (double& value : inverse) value = value > least ? 1.0 / value : 0.0;
-  return solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose();
+  return solver.eigenvectors() * inverse_above(least, solver.eigenvalues()).asDiagonal() *
+         solver.eigenvectors().transpose();
+}
+
+Eigen::VectorXd pseudo_solution(const Eigen::MatrixXd& information, const Eigen::VectorXd& right,
+                                double least) {
+  if (information.rows() == 0) return right;
+  const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const SymmetricEigen solver(scale.asDiagonal() * information * scale.asDiagonal());
+  return scale.asDiagonal() *
+         (solver.eigenvectors() * (inverse_above(least, solver.eigenvalues()).asDiagonal() *
+                                   (solver.eigenvectors().transpose() * (scale.asDiagonal() * right))));
 }
 
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix) {

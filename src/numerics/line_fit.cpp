@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include "numerics/missing.hpp"
 
 namespace pcor {
-namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+using namespace internal;
+
+namespace {
 
 /// Means and central sums of the pairs that are complete.
 struct Moments {

@@ -1,11 +1,19 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <vector>
 
 namespace pcor::internal {
 
 /// What stands where a series has no value.
 inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Whether a series has a value anywhere.
+inline bool has_value(const std::vector<double>& series) {
+  return std::any_of(series.begin(), series.end(), [](double x) { return std::isfinite(x); });
+}
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 

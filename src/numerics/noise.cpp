@@ -3,19 +3,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
+#include "numerics/local_noise.hpp"
+#include "numerics/median.hpp"
+#include "numerics/missing.hpp"
 
 namespace pcor {
+
+using namespace internal;
+
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double deviation_of_median =
     1.482602218505602;  // 1 / (the 0.75 quantile of the normal distribution)
 constexpr std::array<std::size_t, 7> lags{1, 2, 4, 8, 16, 32, 64};
 constexpr double plateau_growth = 1.15;
-constexpr double local_time = 300.0;  // s
-constexpr double local_share = 0.85;
 constexpr std::size_t fewest_differences = 30;
 constexpr std::size_t highest_order = 20;
 constexpr std::size_t orders_in_vain = 5;
@@ -62,8 +64,8 @@ std::vector<Stretch> stretches_of(const std::vector<double>& values, const std::
   std::vector<Stretch> result;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (std::isnan(values[i])) continue;
-    const double since = i > 0 ? time[i] - time[i - 1] : 0.0;
-    const bool goes_on = since > 0.0 && since <= 1.5 * step && !std::isnan(values[i - 1]);
+    const double since = i > 0 && !std::isnan(values[i - 1]) ? time[i] - time[i - 1] : 0.0;
+    const bool goes_on = since > 0.0 && since <= 1.5 * step;
     if (!goes_on) result.push_back({i, 0});
     ++result.back().count;
   }
@@ -73,11 +75,8 @@ std::vector<Stretch> stretches_of(const std::vector<double>& values, const std::
 double robust_deviation(std::vector<double> values) {
   values.erase(std::remove_if(values.begin(), values.end(), [](double x) { return std::isnan(x); }),
                values.end());
-  if (values.empty()) return nan;
   for (double& value : values) value = std::abs(value);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return deviation_of_median * *middle;
+  return deviation_of_median * median(std::move(values));
 }
 
 NoiseFloor noise_floor(const std::vector<double>& values, const std::vector<Stretch>& stretches,
@@ -93,7 +92,7 @@ NoiseFloor noise_floor(const std::vector<double>& values, const std::vector<Stre
       std::fill_n(floor.local_rms.begin() + static_cast<std::ptrdiff_t>(stretch.first), stretch.count, whole);
     return floor;
   }
-  const std::size_t block = std::max<std::size_t>(1, static_cast<std::size_t>(local_time / step));
+  const std::size_t block = local_noise_samples(step);
   std::vector<double> normal(values.size(), nan);
   double square_sum = 0.0;
   std::size_t count = 0;
@@ -103,7 +102,7 @@ NoiseFloor noise_floor(const std::vector<double>& values, const std::vector<Stre
     double here = whole;
     if (change.size() >= fewest_differences) here = std::sqrt(0.5) * robust_deviation(std::move(change));
     if (!(here > 0.0)) here = whole;
-    const double level = std::exp(local_share * std::log(here) + (1.0 - local_share) * std::log(whole));
+    const double level = local_noise_level(here, whole);
     for (std::size_t i = first; i < last; ++i) {
       if (std::isnan(values[i])) continue;
       floor.local_rms[i] = level;

@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include <pcor/physics/geodesy.hpp>
+#include <pcor/physics/constants.hpp>
 #include <pcor/words/error.hpp>
 
 #include "regimes/series.hpp"
@@ -19,7 +18,6 @@ constexpr std::size_t longest_interpolation = 5;  // cells
 constexpr double greatest_vertical_speed = 40.0;  // m/s; more is a jump of a height, not a climb
 constexpr double rounding = 1e-6;                 // s, of a time since 1970 in double precision
 constexpr double radians = 3.14159265358979323846 / 180.0;
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 // Which cell each sample is in.
 struct Division {
@@ -79,14 +77,14 @@ std::vector<double> means(const std::vector<double>& samples, const Division& di
     sum[division.cell[i]] += samples[i];
     known[division.cell[i]] += 1.0;
   }
-  for (std::size_t i = 0; i < count; ++i) sum[i] = known[i] > 0.0 ? sum[i] / known[i] : missing;
+  for (std::size_t i = 0; i < count; ++i) sum[i] = known[i] > 0.0 ? sum[i] / known[i] : nan;
   interpolate_short_gaps(sum);
   return sum;
 }
 
 // Angles that go on beyond a full turn instead of wrapping.
 std::vector<double> unwrapped(std::vector<double> angles) {
-  double last = missing;
+  double last = nan;
   for (double& angle : angles) {
     if (!std::isfinite(angle)) continue;
     if (!std::isnan(last)) angle = last + std::remainder(angle - last, 360.0);
@@ -97,7 +95,7 @@ std::vector<double> unwrapped(std::vector<double> angles) {
 
 // The change per second from each known value to the next one, over any gap between them.
 std::vector<double> rate_of_change(const std::vector<double>& values, const std::vector<double>& begin) {
-  std::vector<double> rate(values.size(), missing);
+  std::vector<double> rate(values.size(), nan);
   std::size_t last = values.size();
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (std::isnan(values[i])) continue;
@@ -122,7 +120,7 @@ std::vector<double> coordinated_roll(const Cells& cells) {
 
 const std::vector<double>& first_known(const std::vector<double>& preferred,
                                        const std::vector<double>& substitute) {
-  return is_known(preferred) ? preferred : substitute;
+  return has_value(preferred) ? preferred : substitute;
 }
 
 }  // namespace
@@ -139,10 +137,10 @@ Cells cells_of(const FlightMotion& motion) {
   cells.heading = means(unwrapped(first_known(motion.heading, motion.ground_track)), division, "the heading");
   cells.sideslip = means(motion.sideslip, division, "the sideslip");
   cells.liquid_water = means(motion.liquid_water, division, "the liquid water");
-  if (!is_known(cells.vertical_speed)) cells.vertical_speed = rate_of_change(cells.altitude, cells.begin);
-  if (!is_known(cells.roll)) cells.roll = coordinated_roll(cells);
+  if (!has_value(cells.vertical_speed)) cells.vertical_speed = rate_of_change(cells.altitude, cells.begin);
+  if (!has_value(cells.roll)) cells.roll = coordinated_roll(cells);
   for (double& speed : cells.vertical_speed) {
-    if (std::abs(speed) > greatest_vertical_speed) speed = missing;
+    if (std::abs(speed) > greatest_vertical_speed) speed = nan;
   }
   return cells;
 }

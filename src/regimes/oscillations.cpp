@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "regimes/search.hpp"
 
 namespace pcor::internal {
 namespace {
-
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 struct Band {
   double variance;  // deg2
@@ -25,7 +22,7 @@ struct Oscillation {
 };
 
 std::vector<double> product(const std::vector<double>& a, const std::vector<double>& b, std::size_t lag = 0) {
-  std::vector<double> result(a.size(), missing);
+  std::vector<double> result(a.size(), nan);
   for (std::size_t i = 0; i + lag < a.size(); ++i) result[i] = a[i] * b[i + lag];
   return result;
 }
@@ -34,7 +31,7 @@ std::vector<double> product(const std::vector<double>& a, const std::vector<doub
 std::vector<double> in_band(const std::vector<double>& values, const Band& band) {
   const std::vector<double> trend = smoothed_twice(values, band.longest_period);
   const std::vector<double> smooth = running_mean(values, band.shortest_period / 3);
-  std::vector<double> result(values.size(), missing);
+  std::vector<double> result(values.size(), nan);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!std::isnan(values[i])) result[i] = smooth[i] - trend[i];
   }
@@ -160,7 +157,7 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b, R
 std::vector<Found> find_pitch_manoeuvres(const Cells& cells, const std::vector<bool>& flying,
                                          const RegimeCriteria& criteria) {
   std::vector<Found> found;
-  if (!is_known(cells.pitch)) return found;
+  if (!has_value(cells.pitch)) return found;
   const Band band{criteria.pitch_variance, criteria.pitch_time, cells_in(criteria.pitch_shortest_period),
                   cells_in(criteria.pitch_longest_period), criteria.periodicity};
   const std::vector<double> pitch = in_band(cells.pitch, band);
@@ -177,7 +174,7 @@ std::vector<Found> find_pitch_manoeuvres(const Cells& cells, const std::vector<b
 std::vector<Found> find_yaw_manoeuvres(const Cells& cells, const std::vector<bool>& flying,
                                        const RegimeCriteria& criteria) {
   std::vector<Found> found;
-  if (!is_known(cells.sideslip)) return found;
+  if (!has_value(cells.sideslip)) return found;
   const Band band{criteria.yaw_variance, criteria.yaw_time, cells_in(criteria.yaw_shortest_period),
                   cells_in(criteria.yaw_longest_period), criteria.periodicity};
   const std::vector<double> sideslip = in_band(cells.sideslip, band);

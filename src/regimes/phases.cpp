@@ -8,8 +8,6 @@
 namespace pcor::internal {
 namespace {
 
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
-
 // A shorter time above or below the flying speed is noise, s.
 constexpr std::size_t shortest_flight = 30;
 
@@ -129,7 +127,7 @@ void sharpen(std::vector<PhaseRun>& runs, const std::vector<double>& vertical_sp
 
 std::vector<Regime> phases_of(const Cells& cells, const RegimeCriteria& criteria) {
   std::vector<Regime> phases(cells.count(), Regime::count);
-  if (!is_known(cells.airspeed)) return phases;
+  if (!has_value(cells.airspeed)) return phases;
   const std::vector<bool> flying = airborne(cells, criteria);
   std::fill(phases.begin(), phases.end(), Regime::ground);
   const auto put = [&](Run run, Regime phase) {
@@ -142,12 +140,12 @@ std::vector<Regime> phases_of(const Cells& cells, const RegimeCriteria& criteria
       rest.first = end_of_take_off(cells, flight, roll, criteria);
       put({roll, rest.first}, Regime::take_off);
     }
-    std::vector<double> vertical_speed(cells.count(), missing);
+    std::vector<double> vertical_speed(cells.count(), nan);
     std::copy(cells.vertical_speed.begin() + static_cast<std::ptrdiff_t>(flight.first),
               cells.vertical_speed.begin() + static_cast<std::ptrdiff_t>(flight.end),
               vertical_speed.begin() + static_cast<std::ptrdiff_t>(flight.first));
     put(rest, Regime::count);
-    if (!is_known(cells.vertical_speed)) continue;
+    if (!has_value(cells.vertical_speed)) continue;
     const std::vector<double> climb = smoothed_twice(vertical_speed, cells_in(criteria.climb_smoothing));
     std::vector<PhaseRun> runs = runs_of_phase(climb, rest, criteria);
     join_short(runs, climb, cells_in(criteria.phase_time));

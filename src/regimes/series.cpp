@@ -1,12 +1,9 @@
 #include "regimes/series.hpp"
 
 #include <cmath>
-#include <limits>
 
 namespace pcor::internal {
 namespace {
-
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 struct Sum {
   double value = 0.0;
@@ -17,15 +14,11 @@ struct Sum {
     value += x;
     known += 1.0;
   }
-  double mean() const { return known > 0.0 ? value / known : missing; }
+  double mean() const { return known > 0.0 ? value / known : nan; }
   double squared_over_count() const { return value * value / known; }
 };
 
 }  // namespace
-
-bool is_known(const std::vector<double>& values) {
-  return std::any_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
-}
 
 std::vector<double> running_mean(const std::vector<double>& values, std::size_t window) {
   const std::size_t half = window / 2;
@@ -55,7 +48,7 @@ double mean(const std::vector<double>& values, Run run) {
 }
 
 Extent extent(const std::vector<double>& values, Run run) {
-  Extent extent{missing, missing};
+  Extent extent{nan, nan};
   for (std::size_t i = run.first; i < run.end; ++i) {
     extent.least = std::fmin(extent.least, values[i]);
     extent.greatest = std::fmax(extent.greatest, values[i]);

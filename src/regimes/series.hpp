@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "numerics/missing.hpp"
+
 namespace pcor::internal {
 
 /// Arithmetic on series with one value each second, NaN where there is none.
@@ -15,9 +17,6 @@ struct Run {
 
   std::size_t length() const { return end - first; }
 };
-
-/// Whether a series has a value anywhere.
-bool is_known(const std::vector<double>& values);
 
 /// At each cell the mean of the known values at most `window` / 2 cells away; NaN where there are none.
 std::vector<double> running_mean(const std::vector<double>& values, std::size_t window);

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <pcor/physics/constants.hpp>
 
+#include "numerics/missing.hpp"
 #include "simulate/air.hpp"
 #include "simulate/random.hpp"
 
@@ -12,7 +12,6 @@ namespace pcor::internal::simulate {
 namespace {
 
 constexpr double radians = constants::radians_per_degree;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 double at(const Series& series, std::size_t i) { return series.empty() ? 0.0 : series[i]; }
 

@@ -9,12 +9,11 @@
 #include <nlopt.hpp>
 
 #include "numerics/decompositions.hpp"
+#include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // The states, in their order.
 enum State : Eigen::Index { drift, wander, slope_east, slope_north, pressure_error, state_count };

@@ -10,11 +10,12 @@
 #include <pcor/physics/geodesy.hpp>
 #include <pcor/physics/hydrostatic.hpp>
 #include <pcor/words/error.hpp>
+#include "numerics/median.hpp"
+#include "numerics/missing.hpp"
 
 namespace pcor::internal {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double least_height_range = 300.0;  // m
 
 using Powers = std::array<double, calibration_terms>;
@@ -28,13 +29,6 @@ struct Point {
   double pressure_error = 0.0;  // m/hPa
 };
 
-double median(std::vector<double> values) {
-  if (values.empty()) return nan;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// The integral along a flight, sample by sample.
 class Integration {
  public:
@@ -47,7 +41,7 @@ class Integration {
     for (std::size_t i = 0; i < air_.size(); ++i) {
       // Without pressure it is not known to fly either: that is a gap, which `advance` may cross.
       const bool takes_part = air_.flying[i] && !regimes[i][static_cast<std::size_t>(Regime::take_off)];
-      if (!takes_part && is_known(i)) {
+      if (!takes_part && has_value(i)) {
         going_ = false;
         continue;
       }
@@ -64,13 +58,13 @@ class Integration {
   }
 
  private:
-  bool is_known(std::size_t i) const {
+  bool has_value(std::size_t i) const {
     return !std::isnan(air_.pressure[i]) && !std::isnan(air_.temperature[i]);
   }
 
   /// Takes the integral to sample `i`; starts anew after a gap.
   void advance(std::size_t i) {
-    if (!is_known(i)) {
+    if (!has_value(i)) {
       if (going_ && air_.time()[i] - air_.time()[last_] > options_.longest_bridge) going_ = false;
       return;
     }

@@ -14,7 +14,7 @@ namespace {
 constexpr double level_climb = 1.0;     // m/s: slower is level
 constexpr double climbing = 1.5;        // m/s: faster is a climb or a descent
 constexpr double bin_hpa = 10.0;        // of isobaric surfaces that are met more than once
-constexpr double usual_slope = 1e-4;    // 10 m in 100 km (R78)
+constexpr double usual_slope = 1e-4;    // 10 m in 100 km; memo after eq. 24
 constexpr double height_scatter = 2.0;  // m, of surfaces about a plane
 
 // Estimates draw on surfaces that are met again some tens of km away, with a scatter of metres: an error of

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <pcor/model/effect.hpp>
+#include <pcor/physics/constants.hpp>
 
 namespace pcor::effects {
 
@@ -28,7 +29,7 @@ struct LamsPodFlex {
   template <class State, class P>
   static auto value(const State& state, const P* parameter) {
     using S = typename State::Scalar;
-    return parameter[0] * (state[Quantity::normal_acceleration] * S(1.0 / 9.80665));
+    return parameter[0] * (state[Quantity::normal_acceleration] * S(1.0 / constants::standard_gravity));
   }
 };
 

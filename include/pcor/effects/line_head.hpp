@@ -1,6 +1,7 @@
 #pragma once
 
 #include <pcor/model/effect.hpp>
+#include <pcor/physics/constants.hpp>
 
 namespace pcor::effects {
 
@@ -12,7 +13,7 @@ struct LineHead {
     facts.where = Where::static_line;
     facts.formula =
         "-(aft * longitudinal_acceleration + below * (9.80665 + normal_acceleration)) * static_pressure / "
-        "(287.06 * 290)";
+        "(8314.462618 / 28.9637 * 290)";
     facts.parameters[0] = {"aft", "m", 0.0, -30.0, 30.0, 5.0};
     facts.parameters[1] = {"below", "m", 0.0, -6.0, 6.0, 1.0};
     facts.needs = {Quantity::longitudinal_acceleration, Quantity::normal_acceleration,
@@ -25,7 +26,7 @@ struct LineHead {
     facts.source = "hydrostatics of the line, dp = rho a h; estimate";
     facts.example.inputs[0] = {Quantity::longitudinal_acceleration, 2.0};
     facts.example.inputs[1] = {Quantity::normal_acceleration, 1.19335};
-    facts.example.inputs[2] = {Quantity::static_pressure, 832.474};
+    facts.example.inputs[2] = {Quantity::static_pressure, 2.9 * constants::gas_constant_dry_air};
     facts.example.parameters = {5.0, 1.0};
     facts.example.value = -0.21;
     return facts;
@@ -34,10 +35,10 @@ struct LineHead {
   template <class State, class P>
   static auto value(const State& state, const P* parameter) {
     using S = typename State::Scalar;
-    constexpr double gravity = 9.80665;              // m/s2
-    constexpr double line = 1.0 / (287.06 * 290.0);  // 1/(R T) of the air in the line, s2/m2
+    // 1/(R T) of the air in the line, s2/m2
+    constexpr double line = 1.0 / (constants::gas_constant_dry_air * 290.0);
     return -((parameter[0] * state[Quantity::longitudinal_acceleration] +
-              parameter[1] * (state[Quantity::normal_acceleration] + S(gravity))) *
+              parameter[1] * (state[Quantity::normal_acceleration] + S(constants::standard_gravity))) *
              (state[Quantity::static_pressure] * S(line)));
   }
 };

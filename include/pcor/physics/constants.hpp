@@ -28,6 +28,9 @@ inline constexpr double specific_heat_volume_dry_air = 2.5 * gas_constant_dry_ai
 /// Specific heat of dry air at constant pressure, J/(kg K): 7/2 R_d. Memo eq. 16.
 inline constexpr double specific_heat_pressure_dry_air = 3.5 * gas_constant_dry_air;
 
+/// Standard gravity, m/s2: what turns a geopotential into a height. 3rd CGPM (1901), WMO-No. 8.
+inline constexpr double standard_gravity = 9.80665;
+
 /// The ice point, K. Definition of the Celsius scale.
 inline constexpr double ice_point = 273.15;
 

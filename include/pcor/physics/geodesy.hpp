@@ -22,9 +22,6 @@ inline constexpr double ellipsoid_rotation = 3.449786506841e-3;
 /// Rate of rotation of the earth, rad/s. WGS 84.
 inline constexpr double earth_rotation_rate = 7.292115e-5;
 
-/// Standard gravity, m/s2: what turns a geopotential into a height. 3rd CGPM (1901), WMO-No. 8.
-inline constexpr double standard_gravity = 9.80665;
-
 }  // namespace constants
 
 /// Normal gravity on the ellipsoid, m/s2, at `latitude` in degrees:

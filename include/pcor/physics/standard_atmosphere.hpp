@@ -29,7 +29,7 @@ inline constexpr std::array<StandardLayer, 7> standard_layers{{
 }};
 
 /// g0 M0/R*, K/m: 0.034163195, with the constants of the US Standard Atmosphere 1976, which are its own.
-inline constexpr double standard_hydrostatic_constant = 9.80665 * 28.9644 / 8314.32;
+inline constexpr double standard_hydrostatic_constant = constants::standard_gravity * 28.9644 / 8314.32;
 
 /// Top of the standard atmosphere as it is here, geopotential m; below it down to -5000 m.
 inline constexpr double standard_top = 84852.0;

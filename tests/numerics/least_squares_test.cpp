@@ -1,5 +1,5 @@
-// Least squares whose errors know the memory of the noise, and verdicts.
-#include "checks/statistics.hpp"
+// Least squares whose errors know the memory of the noise.
+#include "numerics/least_squares.hpp"
 
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ Series made(unsigned seed) {
   return series;
 }
 
-TEST(Statistics, ErrorsKnowTheMemoryOfTheNoise) {
+TEST(LeastSquares, ErrorsKnowTheMemoryOfTheNoise) {
   constexpr unsigned count = 300;
   unsigned slopes = 0;
   unsigned offsets = 0;
@@ -55,7 +55,7 @@ TEST(Statistics, ErrorsKnowTheMemoryOfTheNoise) {
   EXPECT_LT(independent, 210U);  // three times too small: it would hold for half of them
 }
 
-TEST(Statistics, LeavesOutWhatIsMissing) {
+TEST(LeastSquares, LeavesOutWhatIsMissing) {
   Series s = made(5);
   const LeastSquares all = mean_of(s.y, s.time, 1.0);
   s.y[7] = s.y[100] = nan_value;
@@ -65,14 +65,14 @@ TEST(Statistics, LeavesOutWhatIsMissing) {
   EXPECT_NEAR(less.coefficients[0].value, all.coefficients[0].value, 0.02);  // two of 600 of at most 4
 }
 
-TEST(Statistics, OfTooLittleIsNoNumber) {
+TEST(LeastSquares, OfTooLittleIsNoNumber) {
   const Series s = made(1);
   EXPECT_TRUE(std::isnan(least_squares({s.x, s.x}, s.y, s.time, 1.0).coefficients[0].value));
   EXPECT_TRUE(std::isnan(mean_of({1.0, 2.0}, {0.0, 1.0}, 1.0).coefficients[0].value));
   EXPECT_TRUE(std::isnan(mean_of({}, {}, 1.0).coefficients[0].value));
 }
 
-TEST(Statistics, CombinesByErrors) {
+TEST(LeastSquares, IsCombinedByErrors) {
   const Estimated two = combined({{1.0, 0.1}, {1.1, 0.1}});
   EXPECT_NEAR(two.value, 1.05, 1e-12);
   EXPECT_NEAR(two.error, 0.1 / std::sqrt(2.0), 1e-12);
@@ -81,23 +81,6 @@ TEST(Statistics, CombinesByErrors) {
   EXPECT_NEAR(combined({{nan_value, 0.1}, {2.0, 0.1}}).value, 2.0, 1e-12);
   EXPECT_EQ(combined({{0.0, 0.0}, {0.0, 0.0}}).value, 0.0);  // without any noise
   EXPECT_TRUE(std::isnan(combined({}).value));
-}
-
-TEST(Statistics, Judge) {
-  EXPECT_EQ(judge({0.05, 0.1}, 0.3), CheckVerdict::consistent);
-  EXPECT_EQ(judge({0.2, 0.1}, 0.3), CheckVerdict::cannot_tell);     // what matters is one error away
-  EXPECT_EQ(judge({-0.29, 0.001}, 0.3), CheckVerdict::consistent);  // certain, but too small to matter
-  EXPECT_EQ(judge({-0.5, 0.1}, 0.3), CheckVerdict::inconsistent);
-  EXPECT_EQ(judge({0.5, 0.2}, 0.3), CheckVerdict::cannot_tell);  // large, but not three errors
-  EXPECT_EQ(judge({0.0, 0.4}, 0.3), CheckVerdict::cannot_tell);  // the noise hides what would matter
-  EXPECT_EQ(judge({nan_value, 0.1}, 0.3), CheckVerdict::cannot_tell);
-}
-
-TEST(Statistics, OneThatIsInconsistentIsEnough) {
-  EXPECT_EQ(together(CheckVerdict::consistent, CheckVerdict::inconsistent), CheckVerdict::inconsistent);
-  EXPECT_EQ(together(CheckVerdict::cannot_tell, CheckVerdict::inconsistent), CheckVerdict::inconsistent);
-  EXPECT_EQ(together(CheckVerdict::consistent, CheckVerdict::cannot_tell), CheckVerdict::cannot_tell);
-  EXPECT_EQ(together(CheckVerdict::consistent, CheckVerdict::consistent), CheckVerdict::consistent);
 }
 
 }  // namespace

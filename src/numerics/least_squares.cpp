@@ -1,20 +1,16 @@
-#include "checks/statistics.hpp"
-
-#include <fmt/format.h>
+#include "numerics/least_squares.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <pcor/numerics/noise.hpp>
+#include "numerics/missing.hpp"
 
 #include "numerics/decompositions.hpp"
 
 namespace pcor::internal {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 bool takes_part(const std::vector<std::vector<double>>& columns, const std::vector<double>& y,
                 std::size_t i) {
@@ -108,27 +104,6 @@ Estimated combined(const std::vector<Estimated>& estimates) {
     chi2 += std::pow((each.value - mean) / std::max(each.error, smallest), 2);
   const double excess = known.size() > 1 ? chi2 / static_cast<double>(known.size() - 1) : 1.0;
   return {mean, std::sqrt(std::max(excess, 1.0) / weights)};
-}
-
-CheckVerdict judge(const Estimated& number, double size) {
-  constexpr double significant = 3.0;  // standard errors
-  constexpr double likely = 2.0;
-  const double magnitude = std::abs(number.value);
-  if (magnitude > size && magnitude > significant * number.error) return CheckVerdict::inconsistent;
-  if (magnitude + likely * number.error <= size) return CheckVerdict::consistent;
-  return CheckVerdict::cannot_tell;
-}
-
-CheckVerdict together(CheckVerdict a, CheckVerdict b) {
-  for (const CheckVerdict worst : {CheckVerdict::inconsistent, CheckVerdict::cannot_tell}) {
-    if (a == worst || b == worst) return worst;
-  }
-  return CheckVerdict::consistent;
-}
-
-std::string with_error(const Estimated& number, const std::string& unit, int digits) {
-  return fmt::format("{:+.{}f} +- {:.{}f}{}{}", number.value, digits, number.error, digits,
-                     unit.empty() ? "" : " ", unit);
 }
 
 }  // namespace pcor::internal

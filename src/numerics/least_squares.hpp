@@ -1,10 +1,7 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
 #include <vector>
-
-#include <pcor/checks/check.hpp>
 
 namespace pcor::internal {
 
@@ -37,17 +34,5 @@ LeastSquares mean_of(const std::vector<double>& values, const std::vector<double
 /// The mean of independent estimates, weighted by their errors. Where they scatter more than their errors
 /// allow, the error is that of the scatter. Estimates that are no numbers are left out; NaN for none.
 Estimated combined(const std::vector<Estimated>& estimates);
-
-/// The verdict on a number that would be zero if all were well. `size` is the smallest one that matters.
-///
-/// Inconsistent: beyond `size` and beyond three standard errors. Consistent: not beyond `size`, nor within
-/// two standard errors of being so. In between, and for what is no number, it cannot be told.
-CheckVerdict judge(const Estimated& number, double size);
-
-/// The verdict on two together: inconsistent if one is, else what cannot be told if one cannot.
-CheckVerdict together(CheckVerdict a, CheckVerdict b);
-
-/// "+0.31 +- 0.04 hPa".
-std::string with_error(const Estimated& number, const std::string& unit, int digits = 2);
 
 }  // namespace pcor::internal

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "numerics/missing.hpp"
+
+namespace pcor::internal {
+
+/// Of an even number of values the upper of the middle two; NaN where there is none.
+inline double median(std::vector<double> values) {
+  if (values.empty()) return nan;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace pcor::internal
