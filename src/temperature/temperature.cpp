@@ -16,9 +16,12 @@
 #include <pcor/words/error.hpp>
 #include "laws/archived_model.hpp"
 #include "laws/calibration.hpp"
+#include "numerics/median.hpp"
+#include "numerics/missing.hpp"
 #include "residuals/flight_air.hpp"
 #include "roles/recorded_model.hpp"
 #include "temperature/archived_steps.hpp"
+#include "temperature/degrees.hpp"
 #include "temperature/height_least_squares.hpp"
 #include "temperature/height_likelihood.hpp"
 #include "temperature/isobar_slope.hpp"
@@ -29,14 +32,6 @@ using namespace internal;
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t fewest_for_choice = 3;  // flights, for errors from their scatter
-// How much -2 ln L falls for a coefficient that is worth having where no flight can be held out: 3
-// deviations.
-constexpr double worthwhile = 9.0;
-// Of flights held out: standard errors of the gain in -2 ln L, and the gain itself. 4 are two deviations.
-constexpr double sure = 2.0;
-constexpr double worthwhile_held_out = 4.0;
 constexpr double much_noise = 3.0;  // m, of the GPS height
 constexpr double much_drift = 1.0;  // m in a minute; a usual slope of isobars, 10 m in 100 km, makes 0.7
 
@@ -63,8 +58,12 @@ class TemperatureCalibration {
     read(paths);
     const std::size_t most = static_cast<std::size_t>(options_.degree.value_or(2)) + 1;
     likeliest_ = maximise_likelihood(records_, static_cast<Eigen::Index>(most), prior_, start(), threads_);
-    compare_degrees(most);
-    choose_degree();
+    std::vector<HeightEquations> equations;
+    for (const HeightRecord& record : records_)
+      equations.push_back(height_equations(record, likeliest_.noise, prior_));
+    const Degrees degrees(equations, most);
+    result_.degrees = degrees.choices();
+    terms_ = options_.degree ? most : degrees.worthwhile_terms();
     fit();
     describe_flights();
     write_notes();
@@ -146,82 +145,11 @@ class TemperatureCalibration {
     }
     HeightNoise noise;
     if (changes.empty()) return noise;
-    const auto middle = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() / 2);
-    std::nth_element(changes.begin(), middle, changes.end());
-    const double size = std::max(0.02, *middle);
+    const double size = std::max(0.02, median(std::move(changes)));
     noise.white = size;
     noise.wander = size;
     noise.walk = 0.05 * size;
     return noise;
-  }
-
-  HeightEquations equations_of(const HeightRecord& record) const {
-    return height_equations(record, likeliest_.noise, prior_);
-  }
-
-  void compare_degrees(std::size_t most) {
-    std::vector<HeightEquations> each;
-    HeightEquations all;
-    for (const HeightRecord& record : records_) {
-      each.push_back(equations_of(record));
-      all += each.back();
-    }
-    const double none = all.deviance(0);
-    for (std::size_t terms = 0; terms <= most; ++terms) {
-      const auto n = static_cast<Eigen::Index>(terms);
-      DegreeChoice choice;
-      choice.degree = static_cast<int>(terms) - 1;
-      choice.deviance = all.deviance(n) - none;
-      choice.held_out = choice.held_out_error = nan;
-      std::vector<double>& gains = gains_.emplace_back();
-      if (records_.size() >= fewest_for_choice) {
-        double sum = 0.0;
-        double squares = 0.0;
-        for (const HeightEquations& one : each) {
-          HeightEquations others = all;
-          others.information -= one.information;
-          others.right -= one.right;
-          gains.push_back(one.deviance_at(others.best(n)) - one.deviance(0));
-          sum += gains.back();
-          squares += gains.back() * gains.back();
-        }
-        const auto count = static_cast<double>(each.size());
-        choice.held_out = sum;
-        choice.held_out_error =
-            std::sqrt(std::max(0.0, (squares - sum * sum / count) * count / (count - 1.0)));
-      }
-      result_.degrees.push_back(choice);
-    }
-  }
-
-  /// Whether flights without it are foretold better with one more coefficient, by more than chance.
-  bool is_worthwhile(std::size_t terms) const {
-    if (records_.size() < fewest_for_choice) {
-      return result_.degrees[terms - 1].deviance - result_.degrees[terms].deviance > worthwhile;
-    }
-    double sum = 0.0;
-    double squares = 0.0;
-    for (std::size_t f = 0; f < records_.size(); ++f) {
-      const double gain = gains_[terms - 1][f] - gains_[terms][f];
-      sum += gain;
-      squares += gain * gain;
-    }
-    const auto count = static_cast<double>(records_.size());
-    const double error = std::sqrt(std::max(0.0, (squares - sum * sum / count) * count / (count - 1.0)));
-    return sum > sure * error && sum > worthwhile_held_out;
-  }
-
-  void choose_degree() {
-    terms_ = 1;
-    if (options_.degree) {
-      terms_ = static_cast<std::size_t>(*options_.degree) + 1;
-      return;
-    }
-    while (terms_ < calibration_terms && is_worthwhile(terms_ + 1)) ++terms_;
-    // A curved error may show no slope at the mean temperature.
-    if (terms_ == 1 && is_worthwhile(3) &&
-        result_.degrees[1].deviance - result_.degrees[3].deviance > 2.0 * worthwhile)
-      terms_ = 3;
   }
 
   void maximise() {
@@ -248,7 +176,7 @@ class TemperatureCalibration {
     maximise();
     while (!options_.degree && terms_ > 1 && !impossible().empty()) {
       result_.notes_on_degree.push_back(
-          fmt::format("a correction of degree {} is given up, as it comes out as no thermometer needs ({}); "
+          fmt::format("a correction of degree {} is given up, as it is physically implausible ({}); "
                       "more climbs and descents through other temperatures would tell it",
                       terms_ - 1, impossible()));
       --terms_;
@@ -256,7 +184,7 @@ class TemperatureCalibration {
     }
     if (const std::string trouble = impossible(); !trouble.empty()) {
       throw Error(fmt::format(
-          "the correction of the temperature comes out as no thermometer needs: {}; {}", trouble,
+          "the correction of the temperature is physically implausible: {}; {}", trouble,
           terms_ > 1 ? "these flights do not tell so many coefficients: lower --degree"
                      : "look whether recovery_temperature and the altitude are what the model says"));
     }
@@ -389,7 +317,7 @@ class TemperatureCalibration {
       after += count * flight.rms_after * flight.rms_after;
     }
     const TemperatureCorrection& middle = result_.corrections[result_.corrections.size() / 2];
-    if (gain < worthwhile) {
+    if (gain < worthwhile_gain) {
       result_.no_better =
           fmt::format("these flights do not tell the correction from none: at {:.0f} C it is {} K",
                       middle.temperature, with_error(middle.correction, middle.standard_error));
@@ -412,7 +340,7 @@ class TemperatureCalibration {
       result_.notes_on_degree.push_back(
           fmt::format("with {} flight{} none can be held out: the degree is chosen by what these flights "
                       "gain (more than {:.0f} in -2 ln L for a coefficient); --degree sets it",
-                      records_.size(), records_.size() == 1 ? "" : "s", worthwhile));
+                      records_.size(), records_.size() == 1 ? "" : "s", worthwhile_gain));
     }
     notes.insert(notes.end(), result_.notes_on_degree.begin(), result_.notes_on_degree.end());
     if (std::max(result_.gps_noise, result_.gps_wander) > much_noise || result_.drift > much_drift) {
@@ -500,7 +428,6 @@ class TemperatureCalibration {
   std::vector<HeightRecord> records_;
   std::vector<HeightRecord> levelled_;  // with an estimate of the slope of isobars taken off
   MostLikely likeliest_;
-  std::vector<std::vector<double>> gains_;  // of each number of terms, -2 ln L of each flight held out
   std::size_t terms_ = 1;
   TemperatureResult result_;
 };
