@@ -11,8 +11,13 @@
 
 #include <pcor/checks/check.hpp>
 #include <pcor/words/utc.hpp>
+#include "report/columns.hpp"
+#include "words/phrasing.hpp"
 
 namespace pcor {
+
+using namespace internal;
+
 namespace {
 
 /// "+-", which a terminal can show, as a page does: "±".
@@ -20,16 +25,6 @@ std::string typeset(std::string text) {
   for (std::size_t at = text.find("+-"); at != std::string::npos; at = text.find("+-", at))
     text.replace(at, 2, "±");
   return text;
-}
-
-/// With a full stop, and a capital letter unless it begins with the name of a file.
-std::string sentence(std::string text) {
-  if (text.empty()) return text;
-  const std::string first_word = text.substr(0, text.find(' '));
-  if (first_word.find('.') == std::string::npos)
-    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
-  if (text.back() != '.') text += '.';
-  return typeset(std::move(text));
 }
 
 ReportTable typeset(ReportTable table) {
@@ -74,22 +69,7 @@ class Shows {
   bool operator()(const ReportText&) const { return true; }
 
  private:
-  /// Whether some sample has a value in all of these columns.
-  bool meet(const std::vector<std::string>& names) const {
-    std::vector<const std::vector<double>*> all;
-    for (const std::string& name : names) {
-      const auto found = std::find_if(columns_.begin(), columns_.end(),
-                                      [&](const ReportColumn& column) { return column.name == name; });
-      if (found == columns_.end()) return false;
-      all.push_back(&found->values);
-    }
-    for (std::size_t i = 0; i < all.front()->size(); ++i) {
-      if (std::all_of(all.begin(), all.end(),
-                      [i](const auto* values) { return std::isfinite((*values)[i]); }))
-        return true;
-    }
-    return false;
-  }
+  bool meet(const std::vector<std::string>& names) const { return internal::meet(columns_, names); }
 
   const std::vector<ReportColumn>& columns_;
 };
@@ -103,14 +83,14 @@ ReportTable verdicts(const Checks& checks) {
   table.headers = {"check", "verdict", "number", "matters", "what was found"};
   for (const CheckResult& result : checks.results) {
     if (!result.ran) {
-      table.rows.push_back({heading(result.name), "not run", "", "", sentence(result.reason)});
+      table.rows.push_back({heading(result.name), "not run", "", "", typeset(sentence(result.reason))});
       continue;
     }
     const KeyNumber& key = result.key;
     table.rows.push_back(
         {heading(result.name), std::string(name_of(result.verdict)),
          fmt::format("{:+.3f} ± {:.3f} {} {}", key.value, key.standard_error, key.unit, key.what),
-         fmt::format("{:g} {}", key.matters, key.unit), sentence(result.finding)});
+         fmt::format("{:g} {}", key.matters, key.unit), typeset(sentence(result.finding))});
   }
   return table;
 }
@@ -148,7 +128,7 @@ std::vector<std::string> summary_of(const Checks& checks) {
                   count(CheckVerdict::inconsistent), count(CheckVerdict::cannot_tell))};
   for (const CheckResult& result : checks.results) {
     if (result.ran && result.verdict == CheckVerdict::inconsistent)
-      summary.push_back(heading(result.name) + ": " + sentence(result.finding));
+      summary.push_back(heading(result.name) + ": " + typeset(sentence(result.finding)));
   }
   return summary;
 }
@@ -175,8 +155,8 @@ Report check_report(const Checks& checks) {
     if (!result.ran) continue;
     ReportText text;
     text.title = fmt::format("{}: {}", heading(result.name), name_of(result.verdict));
-    text.paragraphs = {sentence(result.finding), "What it cannot see: " + result.cannot_see};
-    for (const std::string& note : result.notes) text.paragraphs.push_back(sentence(note));
+    text.paragraphs = {typeset(sentence(result.finding)), "What it cannot see: " + result.cannot_see};
+    for (const std::string& note : result.notes) text.paragraphs.push_back(typeset(sentence(note)));
     report.items.emplace_back(std::move(text));
     const Shows shows(result.columns);
     for (const ReportItem& picture : result.pictures) {

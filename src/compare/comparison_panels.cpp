@@ -3,16 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <limits>
 
 #include <pcor/words/utc.hpp>
+#include "numerics/missing.hpp"
+#include "words/phrasing.hpp"
 
 namespace pcor::internal {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // A regime with fewer samples is not called the one where a model fails most.
 constexpr std::size_t fewest_in_regime = 60;
@@ -39,16 +37,6 @@ std::vector<double> joined(const Comparison& comparison, const Series& series) {
     for (const std::size_t i : used(flight)) values.push_back(part.empty() ? nan : part[i]);
   }
   return values;
-}
-
-/// With a capital letter and a full stop.
-std::string sentence(std::string text) {
-  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
-  return text + ".";
-}
-
-bool has_value(const std::vector<double>& values) {
-  return std::any_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
 }
 
 }  // namespace

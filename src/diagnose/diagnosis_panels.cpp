@@ -113,18 +113,7 @@ DiagnosisPanels::DiagnosisPanels(const Flights& flights) {
 }
 
 bool DiagnosisPanels::meet(const std::vector<std::string>& names) const {
-  std::vector<const Series*> all;
-  for (const std::string& name : names) {
-    const ReportColumn* one = column(name);
-    if (one == nullptr) return false;
-    all.push_back(&one->values);
-  }
-  for (std::size_t i = 0; i < report_.time.size(); ++i) {
-    if (std::all_of(all.begin(), all.end(),
-                    [i](const Series* values) { return std::isfinite((*values)[i]); }))
-      return true;
-  }
-  return false;
+  return internal::meet(report_.columns, names);
 }
 
 void DiagnosisPanels::add_time(std::string title, std::string caption, std::vector<std::string> columns,
@@ -171,12 +160,6 @@ void DiagnosisPanels::add_flight_facts() {
         "Flight", fmt::format("{}, {} to {} UTC", used.samples->name, utc_text(used.samples->time.front()),
                               utc_text(used.samples->time.back(), "%H:%M:%S")));
   }
-}
-
-const ReportColumn* DiagnosisPanels::column(const std::string& name) const {
-  const auto found = std::find_if(report_.columns.begin(), report_.columns.end(),
-                                  [&](const ReportColumn& one) { return one.name == name; });
-  return found == report_.columns.end() ? nullptr : &*found;
 }
 
 void DiagnosisPanels::add_variables(const Flights& flights) {

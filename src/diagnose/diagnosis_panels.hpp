@@ -11,6 +11,7 @@
 #include <pcor/diagnose/diagnose.hpp>
 #include <pcor/numerics/noise.hpp>
 #include <pcor/report/report.hpp>
+#include "report/columns.hpp"
 
 /// What reports of a diagnosis and of an improvement share: their columns, panels and tables.
 namespace pcor::internal::report {
@@ -72,7 +73,8 @@ class DiagnosisPanels {
   template <class Of>
   void add_variable(const std::string& name, const std::string& title, const std::string& unit,
                     const Flights& flights, const Of& series) {
-    if (column(name) == nullptr && add_column(name, title, unit, flights, series)) variables_.push_back(name);
+    if (column_named(report_.columns, name) == nullptr && add_column(name, title, unit, flights, series))
+      variables_.push_back(name);
   }
 
   /// Whether some sample has a value in all of these columns.
@@ -117,8 +119,6 @@ class DiagnosisPanels {
     const FlightSamples* samples;
     std::vector<std::size_t> places;
   };
-
-  const ReportColumn* column(const std::string& name) const;
 
   void add_variables(const Flights& flights);
 

@@ -122,18 +122,6 @@ std::string rivals(const Finding& finding, const Law& law) {
 
 }  // namespace
 
-std::string sentence(std::string text) {
-  if (text.empty()) return text;
-  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
-  if (std::string_view(".!?").find(text.back()) == std::string_view::npos) text += ".";
-  return text;
-}
-
-std::string list_text(const std::vector<std::string>& all) {
-  if (all.size() < 2) return all.empty() ? "" : all.front();
-  return fmt::format("{} and {}", fmt::join(all.begin(), all.end() - 1, ", "), all.back());
-}
-
 std::string with_unit(const std::string& number, const std::string& unit) {
   return unit.empty() || unit == "1" ? number : number + " " + unit;
 }
@@ -142,7 +130,7 @@ std::string with_error(double value, double error) {
   constexpr int most_decimals = 7;
   if (!std::isfinite(value)) return "unknown";
   if (!(error > 0.0) || !std::isfinite(error)) return fmt::format("{:.4g}", value);
-  const int decimals = std::max(0, 1 - static_cast<int>(std::floor(std::log10(error))));
+  const int decimals = decimals_of_error(error);
   return decimals > most_decimals ? fmt::format("{:.3g} ± {:.2g}", value, error)
                                   : fmt::format("{0:.{2}f} ± {1:.{2}f}", value, error, decimals);
 }

@@ -5,16 +5,11 @@
 
 #include <pcor/diagnose/diagnose.hpp>
 #include <pcor/report/report.hpp>
+#include "words/phrasing.hpp"
 
 namespace pcor::internal::report {
 
 /// Words that reports of a diagnosis share. Numbers that are not known are left out or called unknown.
-
-/// With a capital letter, and a full stop unless it has one. Empty for an empty text.
-std::string sentence(std::string text);
-
-/// "a", "a and b", "a, b and c".
-std::string list_text(const std::vector<std::string>& all);
 
 std::string with_unit(const std::string& number, const std::string& unit);
 

@@ -3,22 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "compare/comparison_panels.hpp"
+#include "words/phrasing.hpp"
 
 namespace pcor {
 
 using namespace internal;
 
 namespace {
-
-/// With a capital letter and a full stop.
-std::string sentence(std::string text) {
-  text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
-  return text + ".";
-}
 
 ReportTable coefficient_table(const RefitResult& fit) {
   ReportTable table;

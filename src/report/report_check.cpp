@@ -5,11 +5,12 @@
 #include <cmath>
 #include <cstddef>
 #include <initializer_list>
-#include <map>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "report/columns.hpp"
 #include "report/report_data.hpp"
 
 namespace pcor::internal::report {
@@ -24,30 +25,24 @@ namespace {
 
 class Columns {
  public:
-  explicit Columns(const Report& report) : samples_(report.time.size()) {
+  explicit Columns(const Report& report) : columns_(report.columns) {
+    std::set<std::string> names;
     for (const ReportColumn& column : report.columns) {
-      if (!by_name_.emplace(column.name, &column).second)
+      if (!names.insert(column.name).second)
         fail("two columns are named '" + column.name + "'; give each its own name");
-      if (column.values.size() != samples_)
+      if (column.values.size() != report.time.size())
         fail("column '" + column.name + "' has " + std::to_string(column.values.size()) + " values for " +
-             std::to_string(samples_) + " samples; give one per sample, NaN where missing");
+             std::to_string(report.time.size()) + " samples; give one per sample, NaN where missing");
     }
   }
 
   // Whether some sample has a value in every one of the columns that the panel names.
   bool meet(const std::string& panel, std::initializer_list<std::string> names) const {
-    std::vector<const std::vector<double>*> all;
     for (const std::string& name : names) {
-      const auto found = by_name_.find(name);
-      if (found == by_name_.end())
+      if (column_named(columns_, name) == nullptr)
         fail(fmt::format("panel '{}' shows column '{}', which is not in the report; add it", panel, name));
-      all.push_back(&found->second->values);
     }
-    for (std::size_t i = 0; i < samples_; ++i)
-      if (std::all_of(all.begin(), all.end(),
-                      [i](const auto* values) { return std::isfinite((*values)[i]); }))
-        return true;
-    return false;
+    return internal::meet(columns_, names);
   }
 
   // Whether some sample has a value in one of the columns. All names are looked up.
@@ -58,8 +53,7 @@ class Columns {
   }
 
  private:
-  std::size_t samples_;
-  std::map<std::string, const ReportColumn*> by_name_;
+  const std::vector<ReportColumn>& columns_;
 };
 
 struct CheckItem {

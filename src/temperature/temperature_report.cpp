@@ -5,8 +5,11 @@
 
 #include <pcor/temperature/temperature.hpp>
 #include <pcor/words/utc.hpp>
+#include "words/phrasing.hpp"
 
 namespace pcor {
+
+using namespace internal;
 namespace {
 
 std::vector<double> joined(const TemperatureResult& result, std::vector<double> FlightHeights::*series) {
@@ -107,9 +110,7 @@ std::string coefficient_unit(std::size_t power) {
 std::string with_error(double value, double error, std::string_view plus_minus) {
   if (!(error > 0.0) || !std::isfinite(error))
     return fmt::format("{:+.3g} {} {:g}", value, plus_minus, error);
-  // The first digit is that after rounding to two, so that 0.0996 is 0.10.
-  const double rounded = std::stod(fmt::format("{:.1e}", error));
-  const int decimals = std::max(0, 1 - static_cast<int>(std::floor(std::log10(rounded) + 1e-9)));
+  const int decimals = decimals_of_error(error);
   return fmt::format("{:+.{}f} {} {:.{}f}", value, decimals, plus_minus, error, decimals);
 }
 
@@ -118,7 +119,7 @@ std::string pressure_error_text(const TemperatureResult& result) {
     return fmt::format("Errors have in them one of the static pressure of {:g} hPa that lasts for a flight",
                        result.pressure_error);
   }
-  constexpr double usual = 0.3;  // hPa, the rms of the memo's fits (R47)
+  constexpr double usual = 0.3;  // hPa, the rms of the memo's eq. 18
   std::string moved;
   for (std::size_t k = 0; k < result.per_hpa.size(); ++k) {
     moved += fmt::format("{}a{} by {:.2g}{}", k == 0 ? "" : ", ", k, std::abs(usual * result.per_hpa[k]),

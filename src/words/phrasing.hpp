@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace pcor::internal {
+
+/// How texts put sentences, lists and errors.
+
+/// With a capital letter, unless it begins with the name of a file or a parameter, and a full stop unless it
+/// has one. Empty for an empty text.
+std::string sentence(std::string text);
+
+/// "a", "a and b", "a, b and c".
+std::string list_text(const std::vector<std::string>& all);
+
+/// The decimals with which an error has two digits, the first of them that after rounding: 0.0996 is 0.10.
+int decimals_of_error(double error);
+
+}  // namespace pcor::internal
