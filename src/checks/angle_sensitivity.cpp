@@ -210,7 +210,7 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
   if (!has_angle)
     return not_run(check.name, fmt::format("no flight has the {} ({})", check.angle, check.variables));
   const std::vector<Flown> flown = all_flown(flights, check.regime);
-  if (flown.empty()) return not_run(check.name, not_flown(check.regime));
+  if (flown.empty()) return not_run(check.name, not_flown(flights, check.regime));
   CheckResult result;
   std::vector<AngleSensitivity> manoeuvres;
   bool has_witness = false;

@@ -122,7 +122,7 @@ CheckResult check_circles(const CheckedFlights& flights) {
     }
   }
   if (circles.empty()) {
-    return not_run(name, result.notes.empty() ? not_flown(Regime::circle)
+    return not_run(name, result.notes.empty() ? not_flown(flights, Regime::circle)
                                               : "no circle can be used: " + result.notes.front());
   }
   result.name = name;

@@ -98,9 +98,11 @@ std::string missing_for_tail_wind(const CheckedFlights& flights) {
   return "has heading, ground velocity and true airspeed together";
 }
 
-std::string not_flown(Regime regime) {
+std::string not_flown(const CheckedFlights& flights, Regime regime) {
+  const std::string& aircraft = flights.front().air.samples->aircraft;
+  const RegimeCriteria criteria = RegimeCriteria::of(aircraft).value_or(RegimeCriteria::c130());
   return fmt::format("no {} was found in the flights ({}); --intervals adds one", facts_of(regime).name,
-                     facts_of(regime).criterion);
+                     criterion_of(regime, criteria));
 }
 
 ReportColumn column_of(const CheckedFlights& flights, std::string name, std::string title, std::string unit,

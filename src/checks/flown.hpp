@@ -47,7 +47,7 @@ inline constexpr double change_of_wind = 0.85;
 std::string missing_for_tail_wind(const CheckedFlights& flights);
 
 /// "no speed run (airspeed changes by ...) was found in the flights; --intervals adds one".
-std::string not_flown(Regime regime);
+std::string not_flown(const CheckedFlights& flights, Regime regime);
 
 /// A column of a report's pictures over all records of all flights. `series` gives that of a flight, of its
 /// length or empty.

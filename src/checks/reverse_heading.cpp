@@ -243,7 +243,7 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
     }
   }
   if (pairs.empty()) {
-    return not_run(name, result.notes.empty() ? not_flown(Regime::reverse_heading)
+    return not_run(name, result.notes.empty() ? not_flown(flights, Regime::reverse_heading)
                                               : "no pair of legs can be used: " + result.notes.front());
   }
   result.name = name;

@@ -180,7 +180,7 @@ CheckResult check_speed_run(const CheckedFlights& flights) {
                    [](const CheckedFlight& flight) { return !flight.air.airspeed.empty(); }))
     return not_run(name, "no flight " + missing_for_tail_wind(flights));
   std::vector<Flown> flown = all_flown(flights, Regime::speed_run);
-  if (flown.empty()) return not_run(name, not_flown(Regime::speed_run));
+  if (flown.empty()) return not_run(name, not_flown(flights, Regime::speed_run));
   std::vector<Run> runs;
   for (const Flown& each : flown) {
     Run run = run_of(each);

@@ -11,15 +11,6 @@ using namespace internal;
 
 namespace {
 
-struct KnownAircraft {
-  std::string_view registration;
-  RegimeCriteria (*criteria)();
-};
-
-/// The aircraft whose criteria are known.
-constexpr std::array<KnownAircraft, 2> known_aircraft{
-    {{"N130AR", RegimeCriteria::c130}, {"N677F", RegimeCriteria::gv}}};
-
 std::vector<Found> runs_of(const std::vector<Regime>& phases) {
   std::vector<Found> found;
   for (std::size_t i = 0; i < phases.size(); ++i) {
@@ -43,21 +34,6 @@ Regime regime_named(std::string_view name) {
   const auto found = std::find_if(regime_facts.begin(), regime_facts.end(),
                                   [&](const RegimeFacts& facts) { return facts.name == name; });
   return static_cast<Regime>(found - regime_facts.begin());
-}
-
-RegimeCriteria RegimeCriteria::c130() { return {}; }
-
-RegimeCriteria RegimeCriteria::gv() {
-  RegimeCriteria criteria;
-  criteria.acceleration = 0.3;
-  return criteria;
-}
-
-std::optional<RegimeCriteria> RegimeCriteria::of(std::string_view registration) {
-  const auto found =
-      std::find_if(known_aircraft.begin(), known_aircraft.end(),
-                   [&](const KnownAircraft& each) { return each.registration == registration; });
-  return found == known_aircraft.end() ? std::nullopt : std::optional(found->criteria());
 }
 
 std::vector<Interval> find_regimes(const FlightMotion& motion, const RegimeCriteria& criteria) {

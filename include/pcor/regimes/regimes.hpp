@@ -34,35 +34,22 @@ inline constexpr std::size_t regime_count = static_cast<std::size_t>(Regime::cou
 
 /// What is known of a regime without a flight.
 struct RegimeFacts {
-  std::string_view name;       ///< as files and reports spell it, for example "pitch manoeuvre"
-  std::string_view criterion;  ///< how it is found, in words, with the numbers of the C-130
+  std::string_view name;  ///< as files and reports spell it, for example "pitch manoeuvre"
 };
 
 /// All regimes in the order of `Regime`.
-inline constexpr std::array<RegimeFacts, regime_count> regime_facts{{
-    {"ground",
-     "airspeed below 60 m/s, until the take-off roll (15 m/s, at most 60 s earlier) and from landing on"},
-    {"take-off", "from the roll until 300 m above the field, at most 60 s after 60 m/s were reached"},
-    {"climb", "vertical speed above 1.5 m/s, smoothed twice over 60 s, for 60 s or longer"},
-    {"descent", "vertical speed below -1.5 m/s, smoothed twice over 60 s, for 60 s or longer"},
-    {"level", "in the air, and neither take-off nor climb nor descent"},
-    {"turn", "roll beyond 10 deg to one side for 10 s or longer"},
-    {"pitch manoeuvre",
-     "pitch oscillates with a period of 15 to 40 s and a variance above 2 deg2 for 90 s or longer, and the "
-     "vertical speed with it (2 m/s rms), without net climb (5 m/s) or roll (10 deg)"},
-    {"yaw manoeuvre",
-     "sideslip oscillates with a period of 4 to 18 s and a variance above 0.2 deg2 for 120 s or longer, and "
-     "the "
-     "heading with it (correlation 0.5), without net climb (5 m/s) or roll (10 deg)"},
-    {"speed run",
-     "airspeed changes by 0.2 m/s2 (GV: 0.3) over 75 s, by 40 m/s or more in all, within 40 m of one height; "
-     "further branches (over 20 s) up to 90 s apart belong to it"},
-    {"reverse heading",
-     "two straight legs (roll below 5 deg) of 2 to 5 min within 40 m of height, with headings 180 deg apart "
-     "(to 10 deg), at most 6 min after one another"},
-    {"circle", "roll beyond 15 deg to one side and steady to 6 deg through 300 deg of heading or more"},
-    {"cloud", "liquid water 0.1 g/m3 or more"},
-}};
+inline constexpr std::array<RegimeFacts, regime_count> regime_facts{{{"ground"},
+                                                                     {"take-off"},
+                                                                     {"climb"},
+                                                                     {"descent"},
+                                                                     {"level"},
+                                                                     {"turn"},
+                                                                     {"pitch manoeuvre"},
+                                                                     {"yaw manoeuvre"},
+                                                                     {"speed run"},
+                                                                     {"reverse heading"},
+                                                                     {"circle"},
+                                                                     {"cloud"}}};
 
 constexpr const RegimeFacts& facts_of(Regime regime) {
   return regime_facts[static_cast<std::size_t>(regime)];
@@ -171,6 +158,9 @@ struct RegimeCriteria {
   /// Those of the aircraft with that registration, e.g. N677F; nothing where the aircraft is not known.
   static std::optional<RegimeCriteria> of(std::string_view registration);
 };
+
+/// How a regime is found, in words with the numbers of the criteria.
+std::string criterion_of(Regime regime, const RegimeCriteria& criteria = {});
 
 /// The regimes of a flight, by begin and then in the order of `Regime`.
 ///
