@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <pcor/flight/same_aircraft.hpp>
@@ -18,24 +17,6 @@ namespace pcor {
 using namespace internal;
 
 namespace {
-
-struct NamedCheck {
-  const char* name;
-  CheckResult (*run)(const CheckedFlights& flights);
-};
-
-constexpr std::array<NamedCheck, 10> all_checks{{
-    {"total-pressure", check_total_pressure},
-    {"static-pressure", check_static_pressure},
-    {"reverse-heading", check_reverse_heading},
-    {"circles", check_circles},
-    {"speed-run", check_speed_run},
-    {"pitch", check_pitch},
-    {"yaw", check_yaw},
-    {"layers", check_layers},
-    {"lams-temperature", check_lams_temperature},
-    {"spectrum", check_spectrum},
-}};
 
 PressurePair pair_of(const ModelFile& model) {
   return {model.variables.at(Quantity::static_pressure), model.variables.at(Quantity::dynamic_pressure)};

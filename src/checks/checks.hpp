@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,7 +30,7 @@ struct CheckedFlight {
 
 using CheckedFlights = std::vector<CheckedFlight>;
 
-/// The checks. Each gets all flights, and returns a result with its name whether it could run or not.
+/// Each check gets all flights, and returns a result with its name whether it could run or not.
 CheckResult check_total_pressure(const CheckedFlights& flights);
 CheckResult check_static_pressure(const CheckedFlights& flights);
 CheckResult check_reverse_heading(const CheckedFlights& flights);
@@ -40,5 +41,24 @@ CheckResult check_yaw(const CheckedFlights& flights);
 CheckResult check_layers(const CheckedFlights& flights);
 CheckResult check_lams_temperature(const CheckedFlights& flights);
 CheckResult check_spectrum(const CheckedFlights& flights);
+
+struct NamedCheck {
+  const char* name;
+  CheckResult (*run)(const CheckedFlights& flights);
+};
+
+/// All checks, in the order of the memo. A new one is declared and listed here.
+inline constexpr std::array all_checks{
+    NamedCheck{"total-pressure", check_total_pressure},
+    NamedCheck{"static-pressure", check_static_pressure},
+    NamedCheck{"reverse-heading", check_reverse_heading},
+    NamedCheck{"circles", check_circles},
+    NamedCheck{"speed-run", check_speed_run},
+    NamedCheck{"pitch", check_pitch},
+    NamedCheck{"yaw", check_yaw},
+    NamedCheck{"layers", check_layers},
+    NamedCheck{"lams-temperature", check_lams_temperature},
+    NamedCheck{"spectrum", check_spectrum},
+};
 
 }  // namespace pcor::internal
