@@ -7,5 +7,6 @@ find_package(nlohmann_json REQUIRED)
 find_package(Boost REQUIRED) # headers: the distributions of Boost.Math, the random numbers of Boost.Random
 find_package(Eigen3 REQUIRED)
 find_package(Ceres REQUIRED)
+find_package(glog REQUIRED) # in which Ceres writes
 pkg_check_modules(nlopt REQUIRED IMPORTED_TARGET nlopt)
 find_package(Threads REQUIRED)

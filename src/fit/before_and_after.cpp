@@ -50,7 +50,8 @@ double BeforeAndAfter::noise_rms(std::size_t samples) const {
   return std::sqrt(squares / static_cast<double>(samples));
 }
 
-BeforeAndAfter before_and_after(FitFlights& flights, const FitTask& task, const Eigen::VectorXd& values) {
+BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& values) {
+  const FitTask& task = flights.task();
   std::vector<BeforeAndAfter> each(flights.count());
   flights.visit([&](std::size_t number, std::size_t, FitFlight& fit) {
     const FlightSamples& samples = fit.residuals().samples();

@@ -5,7 +5,6 @@
 
 #include <pcor/regimes/regimes.hpp>
 #include "fit/fit_flights.hpp"
-#include "fit/fit_task.hpp"
 
 namespace pcor::internal {
 
@@ -19,6 +18,6 @@ struct BeforeAndAfter {
   double noise_rms(std::size_t samples) const;
 };
 
-BeforeAndAfter before_and_after(FitFlights& flights, const FitTask& task, const Eigen::VectorXd& values);
+BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& values);
 
 }  // namespace pcor::internal

@@ -12,8 +12,8 @@
 
 namespace pcor::internal {
 
-FitCovariance fit_covariance(FitFlights& flights, const FitTask& task, const Solution& solution,
-                             const Eigen::MatrixXd& earlier) {
+FitCovariance fit_covariance(FitFlights& flights, const Solution& solution, const Eigen::MatrixXd& earlier) {
+  const FitTask& task = flights.task();
   const std::unique_ptr<ceres::LossFunction> loss = loss_function(task.options.loss, solution.deviation);
   const FitSetup& setup = flights.setup();
   const auto earlier_count = static_cast<std::size_t>(earlier.rows());

@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 
 #include "fit/fit_flights.hpp"
-#include "fit/fit_task.hpp"
 
 namespace pcor::internal {
 
@@ -18,7 +17,6 @@ struct FitCovariance {
 ///
 /// @param earlier of the first of the wanted parameters, which were found in stages before; what these err by
 ///        goes on to the others. Empty without stages.
-FitCovariance fit_covariance(FitFlights& flights, const FitTask& task, const Solution& solution,
-                             const Eigen::MatrixXd& earlier);
+FitCovariance fit_covariance(FitFlights& flights, const Solution& solution, const Eigen::MatrixXd& earlier);
 
 }  // namespace pcor::internal

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <deque>
 #include <future>
+#include <thread>
 
 #include <pcor/words/error.hpp>
 #include "numerics/missing.hpp"
@@ -21,9 +22,10 @@ std::size_t bytes_of(const FlightSamples& samples) {
 
 }  // namespace
 
-FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitSetup& setup)
-    : setup_(&setup),
-      residuals_(std::move(samples), *setup.model, *setup.reference, setup.mask),
+FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask& task, const FitSetup& setup)
+    : task_(&task),
+      setup_(&setup),
+      residuals_(std::move(samples), task.model, task.reference, task.options.mask),
       static_pressure_(residuals_.samples().model.find(Quantity::static_pressure)) {
   const FlightSamples& flight = residuals_.samples();
   const std::vector<Mask>& mask = residuals_.mask();
@@ -31,7 +33,7 @@ FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitSetu
     if (mask[i] == Mask::none) kept_.push_back(i);
   }
   const auto training =
-      static_cast<std::size_t>(std::llround(setup.training_share * static_cast<double>(kept_.size())));
+      static_cast<std::size_t>(std::llround(task.options.training_share * static_cast<double>(kept_.size())));
   kept_.resize(training);
   if (!setup.regimes.empty()) {
     std::vector<std::size_t> inside;
@@ -75,7 +77,7 @@ void FitFlight::evaluate_now(std::size_t first, std::size_t count, const Eigen::
                              const std::vector<std::size_t>& wanted, double* residual,
                              double* derivatives) const {
   const std::size_t* const samples = kept_.data() + first;
-  if (!linear_ && setup_->reference->kind == Reference::Kind::lams) {
+  if (!linear_ && task_->reference.kind == Reference::Kind::lams) {
     residuals_.evaluate_speed(samples, count, parameters.data(), wanted, residual, derivatives);
   } else {
     residuals_.evaluate(samples, count, parameters.data(), wanted, residual, derivatives);
@@ -152,8 +154,9 @@ void FitFlight::measure_noise(const Eigen::VectorXd& parameters, const double* o
   for (std::size_t i = 0; i < kept_.size(); ++i) noise_[i] = static_cast<float>(floor.local_rms[kept_[i]]);
 }
 
-FitFlights::FitFlights(std::vector<FlightSource> sources, FitSetup setup)
+FitFlights::FitFlights(std::vector<FlightSource> sources, const FitTask& task, FitSetup setup)
     : sources_(std::move(sources)),
+      task_(task),
       setup_(std::move(setup)),
       cache_(sources_.size()),
       first_offset_(sources_.size(), 0) {
@@ -179,22 +182,22 @@ FitFlights::FitFlights(std::vector<FlightSource> sources, FitSetup setup)
 std::shared_ptr<const FlightSamples> FitFlights::samples_of(std::size_t number) const {
   if (cache_[number]) return nullptr;
   if (sources_[number].samples) return sources_[number].samples;
-  const Flight file(sources_[number].path, setup_.time_stamp);
+  const Flight file(sources_[number].path, task_.options.time_stamp);
   return std::make_shared<const FlightSamples>(
-      read_samples(file, *setup_.model, *setup_.reference, setup_.mask));
+      read_samples(file, task_.model, task_.reference, task_.options.mask));
 }
 
 std::shared_ptr<FitFlight> FitFlights::made(std::size_t number,
                                             std::shared_ptr<const FlightSamples> samples) {
   if (cache_[number]) return cache_[number];
   const std::size_t own_bytes = sources_[number].samples ? 0 : bytes_of(*samples);
-  auto fit = std::make_shared<FitFlight>(std::move(samples), setup_);
+  auto fit = std::make_shared<FitFlight>(std::move(samples), task_, setup_);
   if (noise_parameters_.size() > 0)
     fit->measure_noise(noise_parameters_, noise_offsets_.data() + first_offset_[number]);
   const std::size_t bytes = own_bytes + fit->kept().size() * (setup_.wanted.size() + 1) * sizeof(double);
   fit->keep_derivatives();
   const std::lock_guard lock(counting_);
-  if (cached_bytes_ + bytes <= setup_.memory) {
+  if (cached_bytes_ + bytes <= task_.options.memory) {
     cached_bytes_ += bytes;
     cache_[number] = fit;
   }
@@ -202,7 +205,9 @@ std::shared_ptr<FitFlight> FitFlights::made(std::size_t number,
 }
 
 void FitFlights::visit(const std::function<void(std::size_t, std::size_t, FitFlight&)>& visit) {
-  const std::size_t threads = std::min(setup_.threads, count());
+  const std::size_t wanted = task_.options.threads;
+  const std::size_t threads =
+      std::min<std::size_t>(wanted > 0 ? wanted : std::max(1U, std::thread::hardware_concurrency()), count());
   const auto work_on = [&](std::size_t number, std::shared_ptr<const FlightSamples> samples) {
     visit(number, first_offset_[number], *made(number, std::move(samples)));
   };

@@ -12,6 +12,7 @@
 
 #include <pcor/numerics/noise.hpp>
 #include <pcor/residuals/residuals.hpp>
+#include "fit/fit_task.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace ceres {
@@ -29,25 +30,18 @@ struct FlightSource {
   std::shared_ptr<const FlightSamples> samples{};
 };
 
-/// What a fit is made of, beside the flights.
+/// What a stage of a fit takes from the flights.
 struct FitSetup {
-  const ModelFile* model = nullptr;
-  const Reference* reference = nullptr;
-  MaskOptions mask;
-  TimeStamp time_stamp = TimeStamp::begin;
-  double training_share = 1.0;
+  Eigen::VectorXd values{};           ///< of all parameters, from which it goes on
+  std::vector<std::size_t> wanted{};  ///< the parameters that are fitted
   std::vector<Regime> regimes{};      ///< only samples of these take part, where there are any
   bool with_offsets = false;          ///< every interval of these regimes has its own offset of delta-p/p
-  std::vector<std::size_t> wanted{};  ///< the parameters that are fitted
-  Eigen::VectorXd values{};           ///< of all parameters
-  std::size_t threads = 1;
-  std::size_t memory = 0;
 };
 
 /// One flight of a fit: the samples that take part, their weights, and their residuals and derivatives.
 class FitFlight {
  public:
-  FitFlight(std::shared_ptr<const FlightSamples> samples, const FitSetup& setup);
+  FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask& task, const FitSetup& setup);
 
   const Residuals& residuals() const { return residuals_; }
   const std::vector<std::size_t>& kept() const { return kept_; }
@@ -85,6 +79,7 @@ class FitFlight {
   void find_residuals(std::size_t first, std::size_t count, const Eigen::VectorXd& parameters,
                       const double* offsets, double* residual) const;
 
+  const FitTask* task_;
   const FitSetup* setup_;
   Residuals residuals_;
   const std::vector<double>* static_pressure_;  // of the samples
@@ -113,10 +108,11 @@ struct Reduction {
 /// of the flights, so they do not depend on the number of threads.
 class FitFlights {
  public:
-  FitFlights(std::vector<FlightSource> sources, FitSetup setup);
+  FitFlights(std::vector<FlightSource> sources, const FitTask& task, FitSetup setup);
   FitFlights(const FitFlights&) = delete;
   FitFlights& operator=(const FitFlights&) = delete;
 
+  const FitTask& task() const { return task_; }
   const FitSetup& setup() const { return setup_; }
 
   std::size_t count() const { return sources_.size(); }
@@ -154,6 +150,7 @@ class FitFlights {
   std::shared_ptr<FitFlight> made(std::size_t number, std::shared_ptr<const FlightSamples> samples);
 
   std::vector<FlightSource> sources_;
+  const FitTask& task_;
   const FitSetup setup_;  // the flights in the cache point to it
   std::vector<std::shared_ptr<FitFlight>> cache_;
   std::vector<std::size_t> first_offset_;

@@ -14,11 +14,11 @@ void FitSums::add(const FitSums& other) {
   outliers += other.outliers;
 }
 
-FitSums sums_at(FitFlights& flights, const FitTask& task, const Eigen::VectorXd& values, double deviation) {
+FitSums sums_at(FitFlights& flights, const Eigen::VectorXd& values, double deviation) {
   std::vector<FitSums> parts(flights.count());
   flights.visit([&](std::size_t number, std::size_t, FitFlight& fit) {
     // The reference's delta-p by its own file, so that R2 does not grow with a reference that is fitted too.
-    const std::vector<double> wanted = fit.residuals().wanted_defect(task.start.data());
+    const std::vector<double> wanted = fit.residuals().wanted_defect(flights.task().start.data());
     const std::vector<double> all = fit.residuals().values(values.data());
     std::vector<double> residual;
     for (const std::size_t i : fit.kept()) residual.push_back(all[i]);
@@ -38,7 +38,7 @@ FitSums sums_at(FitFlights& flights, const FitTask& task, const Eigen::VectorXd&
   });
   FitSums whole;
   for (const FitSums& part : parts) whole.add(part);
-  task.tell();
+  flights.task().tell();
   return whole;
 }
 

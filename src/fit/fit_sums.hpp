@@ -4,7 +4,6 @@
 #include <cstddef>
 
 #include "fit/fit_flights.hpp"
-#include "fit/fit_task.hpp"
 
 namespace pcor::internal {
 
@@ -29,6 +28,6 @@ struct FitSums {
 
 /// @param values of all parameters @param deviation of the residuals over their noise, beyond 4.685 of which
 /// a sample is an outlier
-FitSums sums_at(FitFlights& flights, const FitTask& task, const Eigen::VectorXd& values, double deviation);
+FitSums sums_at(FitFlights& flights, const Eigen::VectorXd& values, double deviation);
 
 }  // namespace pcor::internal

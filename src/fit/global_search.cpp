@@ -18,8 +18,8 @@ constexpr int trials_per_dimension = 500;
 /// The least squares of a trial: searched parameters as given, the linear ones solved for.
 class Trial {
  public:
-  Trial(FitFlights& flights, const Eigen::VectorXd& values, const std::function<void()>& tell)
-      : flights_(flights), setup_(flights.setup()), parameters_(values), tell_(tell) {
+  Trial(FitFlights& flights, const Eigen::VectorXd& values)
+      : flights_(flights), setup_(flights.setup()), parameters_(values) {
     for (std::size_t k = 0; k < setup_.wanted.size(); ++k) {
       (flights.is_linear()[setup_.wanted[k]] ? linear_ : searched_).push_back(as_index(k));
     }
@@ -33,7 +33,7 @@ class Trial {
     for (std::size_t i = 0; i < searched.size(); ++i) parameters_[parameter(searched_[i])] = searched[i];
     const Eigen::VectorXd offsets = Eigen::VectorXd::Zero(as_index(flights_.offsets()));
     const Reduction reduction = flights_.reduce(parameters_, offsets, nullptr);
-    tell_();
+    flights_.task().tell();
     if (!reduction.valid) return infinity;
     const Eigen::VectorXd residual = reduction.factor.rightCols(1);
     double squares = residual.squaredNorm();
@@ -65,7 +65,6 @@ class Trial {
   FitFlights& flights_;
   const FitSetup& setup_;
   Eigen::VectorXd parameters_;
-  const std::function<void()>& tell_;
   std::vector<Eigen::Index> linear_;
   std::vector<Eigen::Index> searched_;
   double least_ = infinity;
@@ -78,8 +77,9 @@ double squares_of(const std::vector<double>& x, std::vector<double>&, void* tria
 
 }  // namespace
 
-Eigen::VectorXd global_search(FitFlights& flights, const FitTask& task, const Eigen::VectorXd& values) {
-  Trial trial(flights, values, task.tell);
+Eigen::VectorXd global_search(FitFlights& flights, const Eigen::VectorXd& values) {
+  const FitTask& task = flights.task();
+  Trial trial(flights, values);
   if (trial.searched().empty()) {
     throw Error(
         "--search: the residual is linear in every free coefficient, so there is one minimum and nothing to "

@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 
 #include "fit/fit_flights.hpp"
-#include "fit/fit_task.hpp"
 
 namespace pcor::internal {
 
@@ -13,6 +12,6 @@ namespace pcor::internal {
 ///
 /// @param values of all parameters @return those of the wanted ones, and zeros for the offsets
 /// @throws Error if a parameter to be searched has no bounds, or none is to be searched.
-Eigen::VectorXd global_search(FitFlights& flights, const FitTask& task, const Eigen::VectorXd& values);
+Eigen::VectorXd global_search(FitFlights& flights, const Eigen::VectorXd& values);
 
 }  // namespace pcor::internal

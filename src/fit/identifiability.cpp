@@ -69,10 +69,10 @@ double condition_number(const Reduction& reduction, const FitTask& task,
                   fmt::join(names, ", "), condition, names.back()));
 }
 
-std::vector<std::string> what_is_not_told(const FitTask& task, const Solution& solution,
-                                          const Eigen::MatrixXd& covariance,
-                                          const std::vector<std::size_t>& fitted, double condition,
-                                          const RegimeSet& flown) {
+std::vector<std::string> identifiability_notes(const FitTask& task, const Solution& solution,
+                                               const Eigen::MatrixXd& covariance,
+                                               const std::vector<std::size_t>& fitted, double condition,
+                                               const RegimeSet& flown) {
   const Eigen::Index size = covariance.rows();
   std::vector<std::string> words;
   // With priors, large standard errors are expected.
@@ -113,7 +113,7 @@ std::vector<std::string> what_is_not_told(const FitTask& task, const Solution& s
   return words;
 }
 
-std::vector<std::string> what_is_at_bound(const FitTask& task, const Solution& solution, double condition) {
+std::vector<std::string> bound_notes(const FitTask& task, const Solution& solution, double condition) {
   std::vector<std::string> words;
   for (std::size_t p = 0; p < solution.at_bound.size(); ++p) {
     if (!solution.at_bound[p]) continue;

@@ -18,12 +18,12 @@ double condition_number(const Reduction& reduction, const FitTask& task,
 
 /// In words: which coefficients the flights do not determine, and what would.
 /// @param covariance of the fitted parameters; @param flown the regimes in the flights
-std::vector<std::string> what_is_not_told(const FitTask& task, const Solution& solution,
-                                          const Eigen::MatrixXd& covariance,
-                                          const std::vector<std::size_t>& fitted, double condition,
-                                          const RegimeSet& flown);
+std::vector<std::string> identifiability_notes(const FitTask& task, const Solution& solution,
+                                               const Eigen::MatrixXd& covariance,
+                                               const std::vector<std::size_t>& fitted, double condition,
+                                               const RegimeSet& flown);
 
 /// In words, for each parameter at a bound.
-std::vector<std::string> what_is_at_bound(const FitTask& task, const Solution& solution, double condition);
+std::vector<std::string> bound_notes(const FitTask& task, const Solution& solution, double condition);
 
 }  // namespace pcor::internal

@@ -32,9 +32,8 @@ class QuietLog {
 /// cost to that of the loss.
 class ReducedCost final : public ceres::CostFunction {
  public:
-  ReducedCost(FitFlights& flights, const Eigen::VectorXd& parameters, const ceres::LossFunction* loss,
-              const std::function<void()>& tell)
-      : flights_(flights), setup_(flights.setup()), parameters_(parameters), loss_(loss), tell_(tell) {
+  ReducedCost(FitFlights& flights, const Eigen::VectorXd& parameters, const ceres::LossFunction* loss)
+      : flights_(flights), setup_(flights.setup()), parameters_(parameters), loss_(loss) {
     size_ = as_index(setup_.wanted.size() + flights.offsets());
     set_num_residuals(static_cast<int>(size_) + 1);
     mutable_parameter_block_sizes()->push_back(static_cast<int>(size_));
@@ -47,7 +46,7 @@ class ReducedCost final : public ceres::CostFunction {
         parameters_[as_index(setup_.wanted[k])] = x[as_index(k)];
       reduction_ = flights_.reduce(parameters_, x.tail(as_index(flights_.offsets())), loss_);
       last_ = x;
-      tell_();
+      flights_.task().tell();
     }
     if (!reduction_.valid) return false;
     Eigen::Map<Eigen::VectorXd> all(residuals, size_ + 1);
@@ -72,7 +71,6 @@ class ReducedCost final : public ceres::CostFunction {
   const FitSetup& setup_;
   mutable Eigen::VectorXd parameters_;
   const ceres::LossFunction* loss_;
-  const std::function<void()>& tell_;
   Eigen::Index size_ = 0;
   mutable Eigen::VectorXd last_;
   mutable Reduction reduction_;
@@ -102,16 +100,17 @@ class PriorCost final : public ceres::CostFunction {
 }  // namespace
 
 void minimise(FitFlights& flights, const Eigen::VectorXd& parameters, const ceres::LossFunction* loss,
-              const Prior& prior, const std::vector<Bounds>& bounds, const std::function<void()>& tell,
-              Eigen::VectorXd& x) {
+              const Prior& prior, Eigen::VectorXd& x) {
   ceres::Problem problem;
   problem.AddParameterBlock(x.data(), static_cast<int>(x.size()));
-  problem.AddResidualBlock(new ReducedCost(flights, parameters, loss, tell), nullptr, x.data());
+  problem.AddResidualBlock(new ReducedCost(flights, parameters, loss), nullptr, x.data());
   if (prior.weight.size() > 0) problem.AddResidualBlock(new PriorCost(prior), nullptr, x.data());
-  for (std::size_t k = 0; k < bounds.size(); ++k) {
-    const auto place = static_cast<int>(k);
-    if (std::isfinite(bounds[k].lower)) problem.SetParameterLowerBound(x.data(), place, bounds[k].lower);
-    if (std::isfinite(bounds[k].upper)) problem.SetParameterUpperBound(x.data(), place, bounds[k].upper);
+  int place = 0;
+  for (const std::size_t p : flights.setup().wanted) {
+    const Bounds& bounds = flights.task().parameters[p].bounds;
+    if (std::isfinite(bounds.lower)) problem.SetParameterLowerBound(x.data(), place, bounds.lower);
+    if (std::isfinite(bounds.upper)) problem.SetParameterUpperBound(x.data(), place, bounds.upper);
+    ++place;
   }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;

@@ -1,10 +1,7 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <functional>
-#include <vector>
 
-#include <pcor/laws/model_file.hpp>
 #include "fit/fit_flights.hpp"
 
 namespace pcor::internal {
@@ -20,11 +17,8 @@ struct Prior {
 ///
 /// @param parameters all parameters; those that are not wanted stay as they are there
 /// @param loss of weighted residuals; null for least squares
-/// @param bounds of the wanted parameters
-/// @param tell called after every pass
 /// @throws Error if residuals are not numbers
 void minimise(FitFlights& flights, const Eigen::VectorXd& parameters, const ceres::LossFunction* loss,
-              const Prior& prior, const std::vector<Bounds>& bounds, const std::function<void()>& tell,
-              Eigen::VectorXd& x);
+              const Prior& prior, Eigen::VectorXd& x);
 
 }  // namespace pcor::internal

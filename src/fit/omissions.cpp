@@ -12,8 +12,8 @@ constexpr int most_steps = 8;
 
 }  // namespace
 
-SquaredResiduals::SquaredResiduals(FitFlights& flights, const FitTask& task, const Solution& solution)
-    : flights_(flights), task_(task), solution_(solution) {
+SquaredResiduals::SquaredResiduals(FitFlights& flights, const Solution& solution)
+    : flights_(flights), solution_(solution) {
   const std::vector<std::size_t>& wanted = flights.setup().wanted;
   is_linear_ = std::all_of(wanted.begin(), wanted.end(),
                            [&flights](std::size_t parameter) { return flights.is_linear()[parameter]; });
@@ -21,16 +21,17 @@ SquaredResiduals::SquaredResiduals(FitFlights& flights, const FitTask& task, con
 }
 
 double SquaredResiduals::at(const Eigen::VectorXd& values) const {
-  if (!is_linear_) return sums_at(flights_, task_, values, solution_.deviation).squares;
+  if (!is_linear_) return sums_at(flights_, values, solution_.deviation).squares;
   const std::vector<std::size_t>& wanted = flights_.setup().wanted;
   Eigen::VectorXd step = Eigen::VectorXd::Ones(as_index(wanted.size()) + 1);
   step.head(as_index(wanted.size())) = values(wanted) - solution_.values(wanted);
   return (factor_ * step).squaredNorm();
 }
 
-std::vector<Omission> omissions(FitFlights& flights, const FitTask& task, const Solution& solution,
-                                const FitSums& sums, const SquaredResiduals& squares) {
+std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, const FitSums& sums,
+                                const SquaredResiduals& squares) {
   const std::vector<std::size_t>& wanted = flights.setup().wanted;
+  const FitTask& task = flights.task();
   const std::unique_ptr<ceres::LossFunction> loss = loss_function(task.options.loss, solution.deviation);
   const Eigen::Index size = as_index(wanted.size());
   const Eigen::VectorXd weight = prior_weights(task, solution, wanted);

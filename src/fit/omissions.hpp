@@ -8,14 +8,13 @@ namespace pcor::internal {
 /// that is fitted, from one triangular factor.
 class SquaredResiduals {
  public:
-  SquaredResiduals(FitFlights& flights, const FitTask& task, const Solution& solution);
+  SquaredResiduals(FitFlights& flights, const Solution& solution);
 
   bool is_linear() const { return is_linear_; }
   double at(const Eigen::VectorXd& values) const;
 
  private:
   FitFlights& flights_;
-  const FitTask& task_;
   const Solution& solution_;
   bool is_linear_;
   Eigen::MatrixXd factor_;
@@ -23,7 +22,7 @@ class SquaredResiduals {
 
 /// What the fit becomes without each effect: its parameters go to their neutral values and the others follow,
 /// with the weights that the samples have.
-std::vector<Omission> omissions(FitFlights& flights, const FitTask& task, const Solution& solution,
-                                const FitSums& sums, const SquaredResiduals& squares);
+std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, const FitSums& sums,
+                                const SquaredResiduals& squares);
 
 }  // namespace pcor::internal

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <thread>
 #include <utility>
 
 #include <pcor/flight/same_aircraft.hpp>
@@ -72,38 +71,65 @@ FitTask task_of(const ModelFile& model, const Reference& reference, const RefitO
   return task;
 }
 
-FitSetup setup_for(const FitTask& task, const Eigen::VectorXd& values, std::vector<std::size_t> wanted) {
-  FitSetup setup;
-  setup.model = &task.model;
-  setup.reference = &task.reference;
-  setup.mask = task.options.mask;
-  setup.time_stamp = task.options.time_stamp;
-  setup.training_share = task.options.training_share;
-  setup.wanted = std::move(wanted);
-  setup.values = values;
-  setup.threads =
-      task.options.threads != 0 ? task.options.threads : std::max(1U, std::thread::hardware_concurrency());
-  setup.memory = task.options.memory;
-  return setup;
+/// What the stages of a fit found, one after another.
+struct Fitted {
+  Solution solution{};
+  std::vector<std::size_t> parameters{};  // in the order of the stages
+  std::vector<int> stage_of{};            // of all parameters
+  Eigen::MatrixXd earlier{};              // covariance of what stages before the last found
+  std::unique_ptr<FitFlights> flights{};  // with all samples and all parameters that were fitted
+};
+
+Fitted fit_in_stages(const Sources& sources, const FitTask& task) {
+  const std::vector<std::vector<std::size_t>> stages =
+      fit_stages(task.parameters, task.options.stages, task.model.model.name);
+  Fitted fitted;
+  fitted.stage_of.resize(task.parameters.size(), 0);
+  Solution& solution = fitted.solution;
+  solution.values = task.start;
+  for (std::size_t s = 0; s < stages.size(); ++s) {
+    if (stages[s].empty()) continue;
+    const bool last = s + 1 == stages.size();
+    FitSetup setup{solution.values, stages[s]};
+    if (!last) setup.regimes = task.options.stages[s].regimes;
+    setup.with_offsets = !last;
+    fitted.flights = std::make_unique<FitFlights>(sources, task, std::move(setup));
+    solution = solve(*fitted.flights, std::move(solution));
+    for (const std::size_t p : stages[s]) fitted.stage_of[p] = static_cast<int>(s) + 1;
+    fitted.parameters.insert(fitted.parameters.end(), stages[s].begin(), stages[s].end());
+    if (last) break;
+    condition_number(fitted.flights->reduce(solution.values, solution.offsets, nullptr), task, stages[s]);
+    const Eigen::MatrixXd own = fit_covariance(*fitted.flights, solution, Eigen::MatrixXd(0, 0)).matrix;
+    const Eigen::Index size = fitted.earlier.rows() + own.rows();
+    fitted.earlier.conservativeResizeLike(Eigen::MatrixXd::Zero(size, size));
+    fitted.earlier.bottomRightCorner(own.rows(), own.rows()) = own;
+  }
+  // What comes now, errors, what can be told apart, and what each effect does, is of all samples.
+  if (stages.size() > 1)
+    fitted.flights =
+        std::make_unique<FitFlights>(sources, task, FitSetup{solution.values, fitted.parameters});
+  solution.offsets = Eigen::VectorXd();
+  fitted.flights->measure_noise(solution.values, solution.offsets);
+  solution.deviation = fitted.flights->deviation(solution.values, solution.offsets);
+  return fitted;
 }
 
 /// The coefficients after the fit, and their covariance.
-void list_coefficients(RefitResult& result, const FitTask& task, const Solution& solution,
-                       const Eigen::MatrixXd& covariance, const std::vector<std::size_t>& fitted,
-                       const std::vector<int>& stage_of) {
+void list_coefficients(RefitResult& result, const FitTask& task, const Fitted& fitted,
+                       const Eigen::MatrixXd& covariance) {
   for (std::size_t p = 0; p < task.parameters.size(); ++p) {
     FittedParameter& parameter = result.parameters.emplace_back();
     parameter.name = task.parameters[p].name;
     parameter.unit = task.parameters[p].unit;
     parameter.start = task.start[as_index(p)];
-    parameter.value = solution.values[as_index(p)];
+    parameter.value = fitted.solution.values[as_index(p)];
     parameter.standard_error = nan;
-    parameter.stage = stage_of[p];
+    parameter.stage = fitted.stage_of[p];
     parameter.fitted = parameter.stage > 0;
-    parameter.at_bound = solution.at_bound[p];
+    parameter.at_bound = fitted.solution.at_bound[p];
   }
-  for (std::size_t a = 0; a < fitted.size(); ++a) {
-    FittedParameter& parameter = result.parameters[fitted[a]];
+  for (std::size_t a = 0; a < fitted.parameters.size(); ++a) {
+    FittedParameter& parameter = result.parameters[fitted.parameters[a]];
     const auto row = covariance.row(as_index(a));
     if (!parameter.at_bound) parameter.standard_error = std::sqrt(row[as_index(a)]);
     result.covariance_names.push_back(parameter.name);
@@ -111,87 +137,63 @@ void list_coefficients(RefitResult& result, const FitTask& task, const Solution&
   }
 }
 
-RefitResult fit(Sources sources, const ModelFile& model, const Reference& reference,
+/// What a user should know, the gravest first.
+std::vector<std::string> notes_of(const RefitResult& result, const FitTask& task, const Fitted& fitted,
+                                  const Eigen::MatrixXd& covariance, const BeforeAndAfter& compared) {
+  std::vector<std::string> notes;
+  const auto add = [&notes](const std::vector<std::string>& more) {
+    notes.insert(notes.end(), more.begin(), more.end());
+  };
+  if (result.rms > 1.02 * result.rms_before) {
+    notes.push_back(
+        fmt::format("the fit left a larger rms, {:.3f} hPa, than the coefficients of the file, {:.3f}: "
+                    "what a stage held does not suit the rest, or outliers rule the rms",
+                    result.rms, result.rms_before));
+  }
+  add(identifiability_notes(task, fitted.solution, covariance, fitted.parameters, result.condition_number,
+                            compared.flown));
+  add(compared.notes);
+  add(bound_notes(task, fitted.solution, result.condition_number));
+  if (task.uses_prior()) {
+    notes.emplace_back(
+        "every coefficient of an effect of the catalogue was drawn to its starting value by the typical size "
+        "of its effect; two static systems alone tell only their difference, so how it is shared between "
+        "them is what the starting values say");
+  }
+  return notes;
+}
+
+RefitResult fit(const Sources& sources, const ModelFile& model, const Reference& reference,
                 const RefitOptions& options) {
   require_sense(sources, reference, options);
   require_one_kind(sources, options);
   const FitTask task = task_of(model, reference, options);
-  const std::vector<std::vector<std::size_t>> stages =
-      fit_stages(task.parameters, options.stages, model.model.name);
-
-  std::vector<std::size_t> fitted;
-  std::vector<int> stage_of(task.parameters.size(), 0);
-  Eigen::MatrixXd earlier(0, 0);  // covariance of what stages before the last found
-  Solution solution;
-  solution.values = task.start;
-  std::unique_ptr<FitFlights> all;
-  for (std::size_t s = 0; s < stages.size() && !stages[s].empty(); ++s) {
-    const bool last = s + 1 == stages.size();
-    FitSetup setup = setup_for(task, solution.values, stages[s]);
-    if (!last) {
-      setup.regimes = options.stages[s].regimes;
-      setup.with_offsets = true;
-    }
-    all = std::make_unique<FitFlights>(sources, std::move(setup));
-    solution = solve(*all, task, std::move(solution));
-    for (const std::size_t p : stages[s]) stage_of[p] = static_cast<int>(s) + 1;
-    fitted.insert(fitted.end(), stages[s].begin(), stages[s].end());
-    if (last) break;
-    condition_number(all->reduce(solution.values, solution.offsets, nullptr), task, stages[s]);
-    const Eigen::MatrixXd own = fit_covariance(*all, task, solution, Eigen::MatrixXd(0, 0)).matrix;
-    const Eigen::Index before = earlier.rows();
-    earlier.conservativeResizeLike(Eigen::MatrixXd::Zero(before + own.rows(), before + own.rows()));
-    earlier.bottomRightCorner(own.rows(), own.rows()) = own;
-  }
-  // Everything that was fitted, over all samples: errors, what can be told apart, and what each effect does.
-  if (stages.size() > 1)
-    all = std::make_unique<FitFlights>(std::move(sources), setup_for(task, solution.values, fitted));
-  FitFlights& flights = *all;
-  solution.offsets = Eigen::VectorXd();
-  flights.measure_noise(solution.values, solution.offsets);
-  solution.deviation = flights.deviation(solution.values, solution.offsets);
+  const Fitted fitted = fit_in_stages(sources, task);
+  const Solution& solution = fitted.solution;
+  FitFlights& flights = *fitted.flights;
 
   RefitResult result;
   result.reference_text = reference.description();
   result.masks = flights.masks();
   result.condition_number =
-      condition_number(flights.reduce(solution.values, solution.offsets, nullptr), task, fitted);
-  const FitCovariance covariance = fit_covariance(flights, task, solution, earlier);
+      condition_number(flights.reduce(solution.values, solution.offsets, nullptr), task, fitted.parameters);
+  const FitCovariance covariance = fit_covariance(flights, solution, fitted.earlier);
   result.samples_per_independent = covariance.samples_per_independent;
-  const FitSums sums = sums_at(flights, task, solution.values, solution.deviation);
+  const FitSums sums = sums_at(flights, solution.values, solution.deviation);
   result.samples = sums.samples;
   result.rms = sums.rms_of(sums.squares);
   result.rms_over_pressure = sums.rms_of(sums.relative_squares);
   result.bulk_rms = sums.rms_of(sums.bulk_squares);
   result.r_squared = sums.r_squared(sums.squares);
   result.outliers = sums.outliers;
-  const SquaredResiduals squares(flights, task, solution);
+  const SquaredResiduals squares(flights, solution);
   result.rms_before = sums.rms_of(squares.at(task.start));
-  result.omissions = omissions(flights, task, solution, sums, squares);
-  BeforeAndAfter compared = before_and_after(flights, task, solution.values);
+  result.omissions = omissions(flights, solution, sums, squares);
+  BeforeAndAfter compared = before_and_after(flights, solution.values);
   result.noise_rms = compared.noise_rms(result.samples);
   result.flights = std::move(compared.flights);
-  list_coefficients(result, task, solution, covariance.matrix, fitted, stage_of);
-
-  const auto note = [&result](const std::vector<std::string>& words) {
-    result.notes.insert(result.notes.end(), words.begin(), words.end());
-  };
-  if (result.rms > 1.02 * result.rms_before) {
-    note(
-        {fmt::format("the fit left a larger rms, {:.3f} hPa, than the coefficients of the file, {:.3f}: "
-                     "what a stage held does not suit the rest, or outliers rule the rms",
-                     result.rms, result.rms_before)});
-  }
-  note(what_is_not_told(task, solution, covariance.matrix, fitted, result.condition_number, compared.flown));
-  note(compared.notes);
-  note(what_is_at_bound(task, solution, result.condition_number));
-  if (task.uses_prior()) {
-    note(
-        {"every coefficient of an effect of the catalogue was drawn to its starting value by the typical "
-         "size "
-         "of its effect; two static systems alone tell only their difference, so how it is shared between "
-         "them is what the starting values say"});
-  }
+  list_coefficients(result, task, fitted, covariance.matrix);
+  result.notes = notes_of(result, task, fitted, covariance.matrix, compared);
   result.model = fitted_model(model, 0, result, options.loss);
   if (options.fit_reference) {
     const auto own = std::accumulate(
@@ -208,14 +210,14 @@ RefitResult refit(const std::vector<std::filesystem::path>& flights, const Model
                   const Reference& reference, const RefitOptions& options) {
   Sources sources;
   for (const std::filesystem::path& path : flights) sources.push_back({path, nullptr});
-  return fit(std::move(sources), model, reference, options);
+  return fit(sources, model, reference, options);
 }
 
 RefitResult refit(const std::vector<std::shared_ptr<const FlightSamples>>& flights, const ModelFile& model,
                   const Reference& reference, const RefitOptions& options) {
   Sources sources;
   for (const std::shared_ptr<const FlightSamples>& samples : flights) sources.push_back({{}, samples});
-  return fit(std::move(sources), model, reference, options);
+  return fit(sources, model, reference, options);
 }
 
 }  // namespace pcor

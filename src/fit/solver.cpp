@@ -68,28 +68,29 @@ double memory_of(FitFlights& flights, const Solution& solution) {
 /// The unknowns are the wanted parameters and after them the offsets.
 class Solver {
  public:
-  Solver(FitFlights& flights, const FitTask& task, Solution from)
+  Solver(FitFlights& flights, Solution from)
       : flights_(flights),
-        task_(task),
+        task_(flights.task()),
         wanted_(flights.setup().wanted),
         fitted_(as_index(wanted_.size())),
         solution_(std::move(from)),
         unknowns_(Eigen::VectorXd::Zero(fitted_ + as_index(flights.offsets()))),
         lower_(Eigen::VectorXd::Constant(unknowns_.size(), -infinity)),
         upper_(Eigen::VectorXd::Constant(unknowns_.size(), infinity)) {
-    for (const std::size_t p : wanted_) bounds_.push_back(task.parameters[p].bounds);
     for (Eigen::Index k = 0; k < fitted_; ++k) {
-      lower_[k] = bounds_[static_cast<std::size_t>(k)].lower;
-      upper_[k] = bounds_[static_cast<std::size_t>(k)].upper;
+      const Bounds& bounds = task_.parameters[wanted_[static_cast<std::size_t>(k)]].bounds;
+      lower_[k] = bounds.lower;
+      upper_[k] = bounds.upper;
     }
     unknowns_.head(fitted_) =
         solution_.values(wanted_).cwiseMax(lower_.head(fitted_)).cwiseMin(upper_.head(fitted_));
+    solution_.at_bound.resize(task_.parameters.size(), false);
     spread();
   }
 
   Solution solve() {
     if (task_.options.search) {
-      unknowns_ = global_search(flights_, task_, solution_.values);
+      unknowns_ = global_search(flights_, solution_.values);
       spread();
     }
     if (!task_.uses_prior()) linear_step(nullptr);
@@ -101,9 +102,7 @@ class Solver {
     const int rounds = loss == Loss::none ? 1 : 5;
     for (int round = 0; round < rounds && !settles_with(loss); ++round) {
     }
-    solution_.at_bound.resize(task_.parameters.size(), false);
-    for (Eigen::Index k = 0; k < fitted_; ++k)
-      solution_.at_bound[wanted_[static_cast<std::size_t>(k)]] = touches(k);
+    find_bounds();
     return std::move(solution_);
   }
 
@@ -158,28 +157,28 @@ class Solver {
     return prior;
   }
 
-  bool touches(Eigen::Index k) const {
-    const double near = 1e-9 * std::max(std::abs(unknowns_[k]), 1e-12);
-    return unknowns_[k] <= lower_[k] + near || unknowns_[k] >= upper_[k] - near;
-  }
-
-  bool is_at_bound() const {
+  /// Notes which parameters are at a bound. True where some are.
+  bool find_bounds() {
+    bool any = false;
     for (Eigen::Index k = 0; k < fitted_; ++k) {
-      if (touches(k)) return true;
+      const double near = 1e-9 * std::max(std::abs(unknowns_[k]), 1e-12);
+      const bool touches = unknowns_[k] <= lower_[k] + near || unknowns_[k] >= upper_[k] - near;
+      solution_.at_bound[wanted_[static_cast<std::size_t>(k)]] = touches;
+      any = any || touches;
     }
-    return false;
+    return any;
   }
 
   /// Minimises that loss; true where the deviation, which scales it, stays after that.
   bool settles_with(Loss loss) {
     const std::unique_ptr<ceres::LossFunction> function = loss_function(loss, solution_.deviation);
-    minimise(flights_, solution_.values, function.get(), prior(), bounds_, task_.tell, unknowns_);
+    minimise(flights_, solution_.values, function.get(), prior(), unknowns_);
     spread();
     // Along a bound, where coefficients are nearly collinear, steps cut off at the bounds stall before the
     // minimum; steps that know the bounds go on.
     double cost = infinity;
     Eigen::VectorXd best = unknowns_;
-    for (int step = 0; step < 20 && is_at_bound(); ++step) {
+    for (int step = 0; step < 20 && find_bounds(); ++step) {
       const Eigen::VectorXd now = unknowns_;
       const double cost_now = linear_step(function.get());
       if (!(cost_now < (1.0 - 1e-10) * cost)) break;
@@ -202,14 +201,13 @@ class Solver {
   Eigen::VectorXd unknowns_;
   Eigen::VectorXd lower_;
   Eigen::VectorXd upper_;
-  std::vector<Bounds> bounds_;
 };
 
 }  // namespace
 
-Solution solve(FitFlights& flights, const FitTask& task, Solution from) {
+Solution solve(FitFlights& flights, Solution from) {
   require_samples(flights);
-  return Solver(flights, task, std::move(from)).solve();
+  return Solver(flights, std::move(from)).solve();
 }
 
 }  // namespace pcor::internal

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "fit/fit_flights.hpp"
-#include "fit/fit_task.hpp"
 
 namespace pcor::internal {
 
@@ -11,6 +10,6 @@ namespace pcor::internal {
 /// samples count from then on, and the deviation, which scales the loss; then Ceres minimises the loss, from
 /// Huber's solution where the loss asks for it, until the deviation stays.
 /// @throws Error if samples are too few, or residuals are not numbers.
-Solution solve(FitFlights& flights, const FitTask& task, Solution from);
+Solution solve(FitFlights& flights, Solution from);
 
 }  // namespace pcor::internal

@@ -1,0 +1,49 @@
+#include <gtest/gtest.h>
+#include <pcor/fit/loss.hpp>
+
+#include <array>
+
+#include "fit/loss_function.hpp"
+
+using namespace pcor;
+
+namespace {
+
+constexpr std::array<Loss, 5> losses{Loss::tukey, Loss::huber, Loss::soft_l1, Loss::cauchy, Loss::none};
+
+/// The weight of a sample that is that many deviations off, next to one of least squares.
+double weight(Loss loss, double deviations) {
+  constexpr double deviation = 0.4;
+  const auto function = internal::loss_function(loss, deviation);
+  std::array<double, 3> rho{0.0, 1.0, 0.0};
+  const double residual = deviations * deviation;
+  if (function) function->Evaluate(residual * residual, rho.data());
+  return rho[1];
+}
+
+TEST(Loss, IsFoundByItsName) {
+  for (const Loss loss : losses) EXPECT_EQ(loss_named(name_of(loss)), loss) << name_of(loss);
+  EXPECT_FALSE(loss_named("tuckey"));
+}
+
+TEST(Loss, LetsOutliersCountLess) {
+  for (const Loss loss : losses) {
+    SCOPED_TRACE(name_of(loss));
+    EXPECT_NEAR(weight(loss, 0.0), 1.0, 1e-12);
+    if (loss == Loss::none) {
+      EXPECT_EQ(weight(loss, 10.0), 1.0);
+    } else {
+      EXPECT_LT(weight(loss, 10.0), 0.2);
+    }
+  }
+  EXPECT_EQ(weight(Loss::tukey, 4.7), 0.0);
+  EXPECT_GT(weight(Loss::tukey, 4.6), 0.0);
+  EXPECT_EQ(weight(Loss::huber, 1.3), 1.0);
+  EXPECT_LT(weight(Loss::huber, 1.4), 1.0);
+}
+
+TEST(Loss, IsLeastSquaresWhereThereIsNoDeviation) {
+  for (const Loss loss : losses) EXPECT_EQ(internal::loss_function(loss, 0.0), nullptr);
+}
+
+}  // namespace
