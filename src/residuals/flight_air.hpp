@@ -49,7 +49,7 @@ struct FlightAir {
   std::vector<double> east_speed;   ///< over the ground, m/s
   std::vector<double> north_speed;  ///< over the ground, m/s
   /// Wind along the aircraft's axis, m/s, from behind positive: ground speed times cos(track - heading), less
-  /// the true airspeed (UXW, R58).
+  /// the true airspeed (the memo's UXW).
   std::vector<double> tail_wind;
 
   std::vector<std::string> notes;  ///< what a user should know, a sentence each

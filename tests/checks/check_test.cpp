@@ -266,7 +266,8 @@ TEST_F(CheckTest, LayersSeeALagOfTheStaticLine) {
 }
 
 TEST_F(CheckTest, EighteenPairsReachTheErrorOfTheMemo) {
-  // "18 pairs: +0.6 +- 0.2 m/s" (R64). Four flights with 18 pairs each tell the scatter of a pair to 8 %.
+  // "18 pairs: +0.6 +- 0.2 m/s" (the memo's GV). Four flights with 18 pairs each tell the scatter of a pair
+  // to 8 %.
   const std::string text = head + aloft + repeated(leg("reverse-heading", "speed = 118"), 18);
   double squares = 0.0;
   constexpr int flights = 4;

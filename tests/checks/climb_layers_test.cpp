@@ -278,7 +278,8 @@ TEST(Layers, RejectWhatCannotBe) {
 // Errors
 
 TEST(LayerErrors, AreThoseOfTheMemo) {
-  // R69: 12 to 16 kft is 644 to 549 hPa; 0.1 hPa makes 0.3 K. It says so of one end: both have sqrt(2) of it.
+  // The memo: 12 to 16 kft is 644 to 549 hPa; 0.1 hPa makes 0.3 K. It says so of one end: both have sqrt(2)
+  // of it.
   LayerOptions options;
   options.pressure_noise = 0.1;
   options.thickness = 1e4;
@@ -287,7 +288,7 @@ TEST(LayerErrors, AreThoseOfTheMemo) {
   EXPECT_NEAR(found.layers[0].pressure_begin, 644.0, 1.0);
   EXPECT_NEAR(found.layers[0].pressure_end, 549.0, 1.0);
   EXPECT_NEAR(found.layers[0].errors.pressure_noise / std::sqrt(2.0), 0.3, 0.05);
-  // R78: 10 m in 100 km at 200 m/s while climbing 5 m/s is 0.004 of the temperature, about 1 K.
+  // The memo: 10 m in 100 km at 200 m/s while climbing 5 m/s is 0.004 of the temperature, about 1 K.
   FlightAir fast = made(climb(9000.0, 11000.0, 5.0));
   fast.east_speed.assign(fast.size(), 200.0);
   options.gradient = 10.0;

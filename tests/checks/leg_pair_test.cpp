@@ -19,7 +19,7 @@ namespace {
 
 constexpr double radians = 3.14159265358979323846 / 180.0;
 
-/// A row of the memo's table of reverse headings on flight 5 of IDEAS-4 (R62).
+/// A row of the memo's table of reverse headings on flight 5 of IDEAS-4.
 struct Row {
   std::string begin, end;
   double tail_wind, scatter;  // UXW, m/s

@@ -155,11 +155,11 @@ TEST(Compare, PointsToTheWorstMinutes) {
 TEST(Compare, OfTwoSystemsGivesTheFiguresOfTheMemo) {
   const Comparison result = pcor::compare({flight_file()}, {pair_contender()});
   ASSERT_TRUE(result.total_pressure);
-  // Figure 1 of the memo, R6: slope 1.0000, offset 0.10 hPa, rms 0.04. The simulated systems have no offset.
+  // Figure 1 of the memo: slope 1.0000, offset 0.10 hPa, rms 0.04. The simulated systems have no offset.
   EXPECT_NEAR(result.total_pressure->slope, 1.0, 1e-4);
   EXPECT_NEAR(result.total_pressure->rms, 0.04, 0.01);
   EXPECT_LT(std::abs(result.total_pressure->mean_difference), 0.01);
-  // Figure 2, R54: slope 0.99985, rms 0.15 hPa; here the law is true, so only the sensors' noise is left.
+  // Figure 2: slope 0.99985, rms 0.15 hPa; here the law is true, so only the sensors' noise is left.
   EXPECT_NEAR(result.static_pressure.slope, 1.0, 1e-4);
   EXPECT_LT(result.static_pressure.rms, 0.05);
 }

@@ -216,8 +216,8 @@ TEST(Catalogue, SaysWhyAnEffectLeavesNoTrace) {
 }
 
 TEST(Catalogue, SumsToEquation18) {
-  // The C-130 of the memo at 700 hPa, 120 m/s: q 67.6 hPa, ratio -0.318. Worked by hand; 0.01 hPa, as the
-  // requirements print it (with p and q before the correction it is 0.24 there).
+  // The C-130 of the memo at 700 hPa, 120 m/s: q 67.6 hPa, ratio -0.318. Worked by hand; to 0.01 hPa
+  // (with p and q before the correction it is 0.24).
   State<double> state;
   state[Quantity::static_pressure] = 700;
   state[Quantity::dynamic_ratio] = 67.6 / 700;

@@ -6,7 +6,7 @@
 
 using pcor::RadomeCalibration;
 
-// The angles of attack in the tables of the requirements, to their digit of 0.1 deg.
+// The angles of attack of tables worked from the memo, to their digit of 0.1 deg.
 
 TEST(RadomeCalibration, OfTheC130) {
   const RadomeCalibration radome{5.776, 15.031, 0.0};

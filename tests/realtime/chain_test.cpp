@@ -173,7 +173,7 @@ TEST(Chain, LeavesTheTotalPressure) {
 }
 
 TEST(Chain, Equation18OfTheMemo) {
-  // 700 hPa, q 67.6 hPa, ADIFR/QCR -0.318: 0.24 hPa in the requirements' table.
+  // 700 hPa, q 67.6 hPa, ADIFR/QCR -0.318: 0.24 hPa, worked by hand.
   Model model;
   model.effects = {catalogued("static-constant", {.004127875}), catalogued("static-alpha", {.021279816}),
                    catalogued("static-qp", {.030849643})};

@@ -144,7 +144,7 @@ TEST(HeightRecord, SlopeOfTheGeostrophicWindHasItsSign) {
   ASSERT_TRUE(record.has_wind);
   for (const HeightBlock& block : record.blocks) {
     EXPECT_NEAR(block.slope_east, 0.0, 1e-9);
-    // f v/g at 40 degrees is 9.56e-5 for 10 m/s (R79: just its 10 m in 100 km).
+    // f v/g at 40 degrees is 9.56e-5 for 10 m/s (just the memo's 10 m in 100 km).
     EXPECT_NEAR(block.slope_north, -9.56e-5, 1e-7);
   }
 }

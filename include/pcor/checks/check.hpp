@@ -65,12 +65,13 @@ struct CheckOptions {
 struct Checks {
   std::string model;  ///< in words: the model, or "as recorded"
   std::vector<std::string> flights;
-  std::vector<CheckResult> results;  ///< all ten, in the order of the memo
+  std::vector<CheckResult> results;  ///< of all checks, in the order of the memo
   std::vector<std::string> notes;
   Report pictures;  ///< time, flights, intervals and columns for the report's pictures
 };
 
-/// Holds what `model` makes of the flights against what does not depend on it (memo-requirements B, M, N):
+/// Holds what `model` makes of the flights against what does not depend on it (the memo's Supporting Evidence
+/// for Accuracy of p_t, Tests Using Flight Maneuvers and Determining the Air Temperature):
 /// the total pressure and the corrected static pressure of redundant systems, the wind on reverse headings,
 /// in circles and in speed runs, the residual in pitch and yaw manoeuvres, the temperature of layers, the
 /// temperature of the laser, and the spectrum of delta-p. A check that the flights do not allow says why.

@@ -64,10 +64,10 @@ struct Comparison {
   std::vector<ModelComparison> models;
   std::vector<FlightResiduals> flights;
   /// The total pressures of two systems, of the reference against that of the model: static defects cancel in
-  /// it (R6). Where the reference is a static system.
+  /// it (memo, figure 1). Where the reference is a static system.
   std::optional<LineFit> total_pressure{};
   /// The corrected static pressures, of the reference against that of the first model, as distances from the
-  /// line (R54).
+  /// line (memo, figure 2).
   LineFit static_pressure;
   std::array<std::size_t, mask_count> masks{};  ///< samples with each reason, over all flights
   std::vector<std::string> notes;               ///< what a user should know, a sentence each

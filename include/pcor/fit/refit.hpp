@@ -15,8 +15,8 @@
 namespace pcor {
 
 /// A first stage of a fit: some parameters from the samples of some regimes, each interval of which has an
-/// offset of its own, of delta-p/p; then they are held. So the memo found its sensitivities from manoeuvres
-/// (R49).
+/// offset of its own, of delta-p/p; then they are held. So the memo found the sensitivities of its eq. 19
+/// from manoeuvres.
 struct FitStage {
   std::vector<Regime> regimes;
   std::vector<std::string> parameters;  ///< like "static-alpha.a1"; or an effect: all of its parameters

@@ -14,8 +14,8 @@
 
 namespace pcor {
 
-/// What is done about isobaric surfaces that are not level (R77-R79). In a climb a slope along the way looks
-/// like an error of the temperature: 10 m in 100 km like 1 K at 5 m/s.
+/// What is done about isobaric surfaces that are not level (memo, after eq. 24). In a climb a slope along the
+/// way looks like an error of the temperature: 10 m in 100 km like 1 K at 5 m/s.
 enum class IsobarSlope {
   fitted,         ///< two slopes of each flight are unknowns of the likelihood, and may change slowly
   none,           ///< surfaces are taken for level
@@ -35,8 +35,8 @@ struct TemperatureOptions {
   /// The highest power of the temperature, 0 to 2. Absent: chosen by flights that take no part.
   std::optional<int> degree{};
   IsobarSlope slope = IsobarSlope::fitted;
-  /// Usual slope of isobars, 1: 10 m in 100 km (R78). The likelihood of `fitted` starts from it; what the
-  /// other options but `none` take off leaves a third of it.
+  /// Usual slope of isobars, 1: 10 m in 100 km (memo, after eq. 24). The likelihood of `fitted` starts from
+  /// it; what the other options but `none` take off leaves a third of it.
   double slope_size = 1e-4;
   /// Usual error of the static pressure that lasts for a flight, hPa: an unknown of each flight. It makes the
   /// coefficients less sure. At 0 errors are those of the noise only, and `pressure_error_text` says how much
@@ -125,7 +125,7 @@ struct TemperatureResult {
 };
 
 /// Calibrates the temperature by the height: the hydrostatic equation is integrated along each flight with
-/// the corrected temperature, and held against the height by GPS (R73-R79, R90-R96).
+/// the corrected temperature, and held against the height by GPS (memo, eqs. 23 and 24 and GV addition).
 ///
 /// A correction that the model has already is taken off first, so the result takes its place. The flights
 /// need climbs or descents, GPS height, latitude, a thermometer and corrected pressures; where the height
