@@ -98,9 +98,9 @@ void expect_true_words(const Correction& correction) {
 }
 
 void expect_true_words(const Model& model, const Quantities& roles, CorrectWith with) {
-  std::string error;
+  BindingError error;
   const std::optional<Chain> chain = Chain::build(model, roles, &error);
-  ASSERT_TRUE(chain) << error;
+  ASSERT_TRUE(chain) << error.message();
   expect_true_words({*chain, with});
 }
 
@@ -124,13 +124,13 @@ TEST(Stages, KnowTheSourcesOfWhatIsDerived) {
                    {"static-mach2", {0.01}}, {"clock-skew", {0.1}}, {"humidity-error", {0.1}}};
   model.attack_radome = {4.9, 13.4, 6.1};
   model.sideslip_radome = {0.1, 11.8, 0.0};
-  std::string error;
+  BindingError error;
   const std::optional<Chain> chain =
       Chain::build(model,
                    roles_without({Quantity::mach, Quantity::attack, Quantity::sideslip,
                                   Quantity::vapor_pressure, Quantity::ambient_temperature}),
                    &error);
-  ASSERT_TRUE(chain) << error;
+  ASSERT_TRUE(chain) << error.message();
   State<double> state;
   for (const Quantity input : chain->inputs()) state[input] = sample_of(input);
   for (const Rate& each : rates) state[each.rate] = 0.01;
