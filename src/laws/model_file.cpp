@@ -10,7 +10,6 @@
 #include <pcor/words/replacement_file.hpp>
 
 #include "laws/model_names.hpp"
-#include "laws/model_reader.hpp"
 #include "laws/model_writer.hpp"
 #include "words/text_file.hpp"
 
@@ -66,8 +65,6 @@ ModelEffect neutral_effect(std::string_view id) {
   }
   return effect;
 }
-
-ModelFile parse_model(std::string_view text, std::string_view name) { return read_model_text(text, name); }
 
 ModelFile read_model(const fs::path& path) {
   return parse_model(text_of_file(path, "a model file"), path.string());

@@ -1,4 +1,4 @@
-#include "laws/model_reader.hpp"
+#include <pcor/laws/model_file.hpp>
 
 #include <fmt/format.h>
 
@@ -17,7 +17,10 @@
 #include "laws/output_table.hpp"
 #include "words/toml_reader.hpp"
 
-namespace pcor::internal {
+namespace pcor {
+
+using namespace internal;
+
 namespace {
 
 constexpr double largest_recovery_factor = 1.2;
@@ -453,6 +456,6 @@ class Reader final : TomlReader {
 
 }  // namespace
 
-ModelFile read_model_text(std::string_view text, std::string_view name) { return Reader(name).read(text); }
+ModelFile parse_model(std::string_view text, std::string_view name) { return Reader(name).read(text); }
 
-}  // namespace pcor::internal
+}  // namespace pcor
