@@ -1,0 +1,1 @@
+// What CMake asks for beside the headers themselves.
