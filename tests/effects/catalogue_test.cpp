@@ -399,4 +399,4 @@ TEST_P(EveryEffect, CompilesForAScalarThatIsNoDouble) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, EveryEffect, testing::ValuesIn(effect_facts),
-                         [](const auto& effect) { return test::test_name(effect.param.id); });
+                         [](const auto& effect) { return pcor::test::test_name(effect.param.id); });
