@@ -153,9 +153,7 @@ void run(const Arguments& arguments) {
   if (!arguments.folder.empty()) write(flights, arguments.folder);
   const double memory_before = peak_memory();
   const pcor::ModelFile model = neutral_model();
-  pcor::Reference reference;
-  reference.kind = pcor::Reference::Kind::pressure;
-  reference.variable = "REFERENCE";
+  const auto reference = pcor::pressure_reference("REFERENCE");
   pcor::RefitOptions options;
   options.loss = pcor::Loss::soft_l1;
   options.threads = arguments.threads;
@@ -164,7 +162,7 @@ void run(const Arguments& arguments) {
   options.progress = [&passes](std::size_t, std::size_t) { ++passes; };
 
   const auto begin = std::chrono::steady_clock::now();
-  const pcor::RefitResult result = pcor::refit(flights, model, reference, options);
+  const pcor::RefitResult result = pcor::refit(flights, model, *reference, options);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
 
   std::printf("{\"samples\": %zu, \"flights\": %zu, \"seconds\": %.6f, \"passes\": %zu, ", result.samples,

@@ -114,7 +114,7 @@ CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffe
   set.extended = model;
   name_usual_variables(set.extended, flights);
   std::vector<Quantity> roles = set.extended.roles();
-  if (reference.kind != Reference::Kind::lams)
+  if (!reference.reads_laser())
     roles.erase(std::remove(roles.begin(), roles.end(), Quantity::lams_airspeed), roles.end());
   BindingError error;
   std::optional<Chain> chain = Chain::build(model.model, roles, &error);

@@ -82,22 +82,23 @@ Linearised linearised(const Residuals& residuals, const std::shared_ptr<const Fl
   Linearised result{std::vector<double>(used.size()), std::vector<double>(wanted.size() * used.size()),
                     samples};
   const double* const start = residuals.parameters().data();
-  if (reference.kind != Reference::Kind::lams) {
+  auto predicted = residuals.predicted_sensor(start);
+  if (!predicted) {
     residuals.evaluate(used.data(), used.size(), start, wanted, result.residual.data(),
                        result.derivatives.data());
     return result;
   }
-  // The noise of the laser is added to the speed along its beam, so that is the measure of its residual. No
-  // column holds that noise: derivatives are taken where the laser shows what the model says.
-  residuals.evaluate_speed(used.data(), used.size(), start, {}, result.residual.data(), nullptr);
+  // No column holds the noise of the reference's sensor: derivatives are taken where it shows what the model
+  // says.
+  residuals.evaluate_at_sensor(used.data(), used.size(), start, {}, result.residual.data(), nullptr);
   auto noiseless = std::make_shared<FlightSamples>(*samples);
   for (auto& [quantity, values] : noiseless->model.columns) {
-    if (quantity == Quantity::lams_airspeed) values = residuals.predicted_beam_speed(start);
+    if (quantity == predicted->first) values = std::move(predicted->second);
   }
   result.at = std::move(noiseless);
   std::vector<double> nothing(used.size());
   Residuals(result.at, model, reference, mask)
-      .evaluate_speed(used.data(), used.size(), start, wanted, nothing.data(), result.derivatives.data());
+      .evaluate_at_sensor(used.data(), used.size(), start, wanted, nothing.data(), result.derivatives.data());
   return result;
 }
 
@@ -155,7 +156,7 @@ Eigen::MatrixXd binned_columns(const FlightColumns& flight, const Binning& bins)
 }
 
 std::vector<std::string> base_names(const ModelFile& model) {
-  const std::vector<std::string> all = residual_parameter_names(model, Reference{});
+  const std::vector<std::string> all = residual_parameter_names(model, *lams_reference());
   std::vector<std::string> names;
   for (const std::size_t parameter : free_parameters(model)) names.push_back(all[parameter]);
   return names;

@@ -72,12 +72,12 @@ std::set<std::string> left_out(const std::vector<Flight>& files, const ModelFile
   std::set<std::string> names(options.not_variables.begin(), options.not_variables.end());
   for (const Flight& file : files) names.insert(file.time_variable());
   names.insert({"Time", "time", "time_offset", "base_time"});
-  if (!reference.variable.empty()) names.insert(reference.variable);
-  if (reference.system) {
-    for (const auto& [role, variable] : reference.system->variables) {
-      const auto own = model.variables.find(role);
-      if (own == model.variables.end() || own->second != variable) names.insert(variable);
-    }
+  const auto is_read_by_model = [&model](const std::string& variable) {
+    return std::any_of(model.variables.begin(), model.variables.end(),
+                       [&variable](const auto& role) { return role.second == variable; });
+  };
+  for (const std::string& variable : reference.variables()) {
+    if (!is_read_by_model(variable)) names.insert(variable);
   }
   const auto laser = model.variables.find(Quantity::lams_airspeed);
   if (laser != model.variables.end()) names.insert(laser->second);

@@ -77,10 +77,10 @@ void FitFlight::evaluate_now(std::size_t first, std::size_t count, const Eigen::
                              const std::vector<std::size_t>& wanted, double* residual,
                              double* derivatives) const {
   const std::size_t* const samples = kept_.data() + first;
-  if (!linear_ && task_->reference.kind == Reference::Kind::lams) {
-    residuals_.evaluate_speed(samples, count, parameters.data(), wanted, residual, derivatives);
-  } else {
+  if (linear_) {
     residuals_.evaluate(samples, count, parameters.data(), wanted, residual, derivatives);
+  } else {
+    residuals_.evaluate_at_sensor(samples, count, parameters.data(), wanted, residual, derivatives);
   }
 }
 

@@ -56,8 +56,8 @@ std::vector<FitParameter> fit_parameters(const ModelFile& model, const Reference
                                          const RefitOptions& options) {
   std::vector<FitParameter> parameters;
   add_parameters(parameters, model, "", true);
-  if (reference.kind == Reference::Kind::static_system)
-    add_parameters(parameters, *reference.system, "reference:", options.fit_reference);
+  if (reference.model() != nullptr)
+    add_parameters(parameters, *reference.model(), "reference:", options.fit_reference);
   for (const std::string& name : options.free) {
     for (const std::size_t p : places_of(parameters, name, "--free")) parameters[p].fixed = false;
   }

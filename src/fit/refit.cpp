@@ -29,7 +29,7 @@ using Sources = std::vector<FlightSource>;
 
 void require_sense(const Sources& sources, const Reference& reference, const RefitOptions& options) {
   if (sources.empty()) throw Error("no flight to fit; give at least one");
-  if (options.fit_reference && reference.kind != Reference::Kind::static_system) {
+  if (options.fit_reference && reference.model() == nullptr) {
     throw Error(
         "only a static system can be fitted together with the model; give --reference static:OTHER.toml");
   }
@@ -199,7 +199,7 @@ RefitResult fit(const Sources& sources, const ModelFile& model, const Reference&
     const auto own = std::accumulate(
         model.model.effects.begin(), model.model.effects.end(), std::size_t{0},
         [](std::size_t sum, const ModelEffect& effect) { return sum + effect.parameters.size(); });
-    result.reference = fitted_model(*reference.system, own, result, options.loss);
+    result.reference = fitted_model(*reference.model(), own, result, options.loss);
   }
   return result;
 }

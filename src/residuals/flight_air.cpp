@@ -12,6 +12,7 @@
 #include <pcor/physics/geodesy.hpp>
 #include <pcor/physics/moist_air.hpp>
 #include <pcor/physics/standard_atmosphere.hpp>
+#include "residuals/masks.hpp"
 #include "roles/recorded_series.hpp"
 
 namespace pcor::internal {
@@ -20,21 +21,10 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<bool> find_flying(const FlightSamples& samples, const MaskOptions& options) {
-  const std::vector<RegimeSet> regimes = regimes_of_samples(samples.time, samples.intervals);
-  std::vector<bool> flying(samples.time.size());
-  for (std::size_t i = 0; i < flying.size(); ++i) {
-    const auto is = [&](Regime regime) { return regimes[i][static_cast<std::size_t>(regime)]; };
-    flying[i] = !is(Regime::ground) && samples.motion.airspeed[i] >= options.least_airspeed &&
-                (samples.flaps.empty() || !(samples.flaps[i] > options.most_flaps)) &&
-                std::none_of(options.exclude.begin(), options.exclude.end(), is);
-  }
-  if (!options.intervals || samples.time.empty() || !options.intervals->is_for(samples.name)) return flying;
-  for (const Exclusion& exclusion :
-       placed(*options.intervals, samples.time.front(), samples.time.back()).exclude) {
-    for (std::size_t i = 0; i < flying.size(); ++i) {
-      if (samples.time[i] >= exclusion.begin && samples.time[i] < exclusion.end) flying[i] = false;
-    }
-  }
+  const std::vector<Mask> masks = masks_as_flown(samples, options);
+  std::vector<bool> flying(masks.size());
+  for (std::size_t i = 0; i < flying.size(); ++i)
+    flying[i] = masks[i] == Mask::none && samples.motion.airspeed[i] >= options.least_airspeed;
   return flying;
 }
 
@@ -132,12 +122,9 @@ void find_tail_wind(FlightAir& air) {
 FlightAir read_flight_air(const Flight& flight, const ModelFile& model, const MaskOptions& options) {
   const auto laser = model.variables.find(Quantity::lams_airspeed);
   const bool with_laser = laser != model.variables.end() && flight.has(laser->second);
-  Reference reference;
-  if (!with_laser) {
-    reference.kind = Reference::Kind::pressure;
-    reference.variable = model.variables.at(Quantity::static_pressure);
-  }
-  auto samples = std::make_shared<FlightSamples>(read_samples(flight, model, reference, options));
+  const auto reference =
+      with_laser ? lams_reference() : pressure_reference(model.variables.at(Quantity::static_pressure));
+  auto samples = std::make_shared<FlightSamples>(read_samples(flight, model, *reference, options));
   FlightAir air;
   air.notes = samples->notes;
   air.flying = find_flying(*samples, options);

@@ -2,62 +2,91 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <string_view>
+#include <utility>
+
 #include <pcor/words/error.hpp>
+#include "residuals/references/lams.hpp"
+#include "residuals/references/pressure.hpp"
+#include "residuals/references/static_system.hpp"
 
 namespace pcor {
+
+using namespace internal;
+
 namespace {
 
-constexpr const char* static_prefix = "static:";
-constexpr const char* pressure_prefix = "pressure:";
+using Pointer = std::shared_ptr<const Reference>;
 
-/// What follows `prefix` in `text`; nothing where the text does not begin with it.
-std::optional<std::string> after(const std::string& text, const std::string& prefix) {
-  if (text.compare(0, prefix.size(), prefix) != 0) return std::nullopt;
-  return text.substr(prefix.size());
+Pointer read_lams(const std::string&, const ModelFile& model) {
+  if (model.variables.count(Quantity::lams_airspeed) == 0) {
+    throw Error(
+        fmt::format("model '{}' has no lams_airspeed; give it its variable in the table [variables], or "
+                    "another reference: --reference static:OTHER.toml or --reference pressure:VARIABLE",
+                    model.model.name));
+  }
+  return lams_reference();
 }
 
-[[noreturn]] void fail_without_laser(const ModelFile& model, const char* what) {
-  throw Error(fmt::format(
-      "model '{}': {}; give lams_airspeed its variable in the table [variables], or another reference: "
-      "--reference static:OTHER.toml or --reference pressure:VARIABLE",
-      model.model.name, what));
-}
+/// How a text names a reference: "form" or, where it takes an argument, "form:argument".
+struct Form {
+  std::string_view form;
+  std::string_view argument;  ///< in words; empty: it takes none
+  std::string_view meaning;
+  Pointer (*read)(const std::string& argument, const ModelFile& model);
+};
+
+/// All references. The first is that of an empty text.
+constexpr std::array<Form, 3> forms{{
+    {"lams", "", "the laser air-motion sensor; the default", read_lams},
+    {"static", "OTHER.toml", "a second static system, by its model",
+     [](const std::string& file, const ModelFile&) { return static_system_reference(read_model(file)); }},
+    {"pressure", "VARIABLE", "a recorded static pressure",
+     [](const std::string& variable, const ModelFile&) { return pressure_reference(variable); }},
+}};
 
 }  // namespace
 
-std::string Reference::description() const {
-  switch (kind) {
-    case Kind::lams:
-      return "LAMS";
-    case Kind::static_system:
-      return fmt::format("static system '{}'", system->model.name);
-    case Kind::pressure:
-      return fmt::format("static pressure {}", variable);
-  }
+ModelSamples Reference::read(const Flight&, const std::vector<double>&, std::vector<std::string>&) const {
   return {};
 }
 
-Reference read_reference(const std::string& text, const ModelFile& model) {
-  Reference reference;
-  const bool has_laser = model.variables.count(Quantity::lams_airspeed) != 0;
-  if (text.empty() || text == "lams") {
-    if (!has_laser && text.empty())
-      fail_without_laser(model, "it has no laser, so what is it to be held against");
-    if (!has_laser) fail_without_laser(model, "it has no laser");
-    return reference;
+Mask ReferenceOnSamples::why_not_believed(std::size_t, double, const MaskOptions&) const {
+  return Mask::none;
+}
+
+Pointer lams_reference() { return std::make_shared<LamsReference>(); }
+
+Pointer static_system_reference(ModelFile system) {
+  return std::make_shared<StaticSystemReference>(std::move(system));
+}
+
+Pointer pressure_reference(std::string variable) {
+  return std::make_shared<PressureReference>(std::move(variable));
+}
+
+std::string reference_forms() {
+  std::string text;
+  for (const Form& each : forms) {
+    if (&each != &forms.front()) text += &each == &forms.back() ? " or " : ", ";
+    text += each.form;
+    if (!each.argument.empty()) text += fmt::format(":{}", each.argument);
+    text += fmt::format(" ({})", each.meaning);
   }
-  if (const auto file = after(text, static_prefix); file && !file->empty()) {
-    reference.kind = Reference::Kind::static_system;
-    reference.system = read_model(*file);
-    return reference;
+  return text;
+}
+
+Pointer read_reference(const std::string& text, const ModelFile& model) {
+  if (text.empty()) return forms.front().read(text, model);
+  const std::size_t colon = text.find(':');
+  const std::string form = text.substr(0, colon);
+  const std::string argument = colon == std::string::npos ? "" : text.substr(colon + 1);
+  for (const Form& each : forms) {
+    const bool fits = each.argument.empty() ? colon == std::string::npos : !argument.empty();
+    if (each.form == form && fits) return each.read(argument, model);
   }
-  if (const auto variable = after(text, pressure_prefix); variable && !variable->empty()) {
-    reference.kind = Reference::Kind::pressure;
-    reference.variable = *variable;
-    return reference;
-  }
-  throw Error(
-      fmt::format("reference '{}': it is none; give lams, static:OTHER.toml or pressure:VARIABLE", text));
+  throw Error(fmt::format("unknown reference '{}'; give {}", text, reference_forms()));
 }
 
 }  // namespace pcor

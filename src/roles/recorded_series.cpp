@@ -9,28 +9,24 @@
 namespace pcor::internal {
 namespace {
 
-/// The values of a variable, whose unit is `own`; none where it is absent, empty or of another kind.
-std::vector<double> values_if_fit(const Flight& flight, const std::string& variable, const std::string& own,
-                                  const std::string& unit) {
-  try {
-    std::vector<double> values = read_values(
-        flight, variable, UnitConversion::between(own, unit, {variable, flight.path().string(), ""}));
-    const bool any = std::any_of(values.begin(), values.end(), [](double x) { return !std::isnan(x); });
-    return any ? std::move(values) : std::vector<double>{};
-  } catch (const Error& error) {
-    if (error.code() == Error::Code::file) throw;
-    return {};  // a variable of that name with another unit is not the one that is meant
-  }
-}
-
-/// Makes `variable` the series if it fits and none does so far. @param stated the unit that the model states
+/// Makes `variable` the series if none is so far, and it is there, has values and a unit that fits.
+/// @param stated the unit that the model states
 void try_variable(const Flight& flight, const std::string& variable, const std::string& stated,
-                  const std::string& unit, RecordedSeries& series) {
+                  std::string_view unit, RecordedSeries& series) {
   if (!series.values.empty() || !flight.has(variable) || !flight.variable(variable).is_series) return;
   const std::string own = stated.empty() ? flight.variable(variable).units : stated;
   if (own.empty() && series.without_unit.empty()) series.without_unit = variable;
-  series.values = values_if_fit(flight, variable, own, unit);
-  if (!series.values.empty()) series.variable = variable;
+  try {
+    std::vector<double> values =
+        read_values(flight, variable,
+                    UnitConversion::between(own, std::string(unit), {variable, flight.path().string(), ""}));
+    if (std::all_of(values.begin(), values.end(), [](double x) { return std::isnan(x); })) return;
+    series.variable = variable;
+    series.values = std::move(values);
+  } catch (const Error& error) {
+    if (error.code() == Error::Code::file) throw;
+    return;  // a variable of that name with another unit is not the one that is meant
+  }
 }
 
 }  // namespace
@@ -45,13 +41,12 @@ std::vector<double> read_values(const Flight& flight, const std::string& variabl
 
 RecordedSeries read_usual(const Flight& flight, const UsualVariables& usual) {
   RecordedSeries series;
-  for (const std::string& name : usual.names)
-    try_variable(flight, name, "", std::string(usual.series.unit), series);
+  for (const std::string& name : usual.names) try_variable(flight, name, "", usual.series.unit, series);
   return series;
 }
 
 RecordedSeries read_role(const Flight& flight, const ModelFile& model, Quantity role) {
-  const std::string unit(facts_of(role).unit);
+  const std::string_view unit = facts_of(role).unit;
   RecordedSeries series;
   const auto given = model.variables.find(role);
   if (given != model.variables.end()) {

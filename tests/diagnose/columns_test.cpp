@@ -25,7 +25,6 @@ using pcor::ModelEffect;
 using pcor::ModelFile;
 using pcor::NotTestable;
 using pcor::Quantity;
-using pcor::Reference;
 using pcor::Residuals;
 using pcor::internal::Candidate;
 using pcor::internal::CandidateSet;
@@ -130,34 +129,34 @@ ModelEffect formula() {
 
 struct Made {
   ModelFile model = laser_model();
-  Reference reference{};
-  CandidateSet set = pcor::internal::find_candidates(model, {formula()}, {}, reference);
+  std::shared_ptr<const pcor::Reference> reference = pcor::lams_reference();
+  CandidateSet set = pcor::internal::find_candidates(model, {formula()}, {}, *reference);
   std::shared_ptr<const FlightSamples> samples;
   FlightColumns columns;
 
   explicit Made(double laser_noise = 0.3)
       : samples(std::make_shared<const FlightSamples>(made_flight(set.extended.roles(), laser_noise))),
-        columns(pcor::internal::find_columns(samples, model, set, reference, {}, 1.0)) {}
+        columns(pcor::internal::find_columns(samples, model, set, *reference, {}, 1.0)) {}
 };
 
 /// The same samples with the laser where the model says that the air is.
 std::shared_ptr<const FlightSamples> without_laser_noise(const Made& made) {
-  const Residuals residuals(made.samples, made.model, made.reference);
+  const Residuals residuals(made.samples, made.model, *made.reference);
   auto samples = std::make_shared<FlightSamples>(*made.samples);
   for (auto& [quantity, values] : samples->model.columns) {
     if (quantity == Quantity::lams_airspeed)
-      values = residuals.predicted_beam_speed(residuals.parameters().data());
+      values = residuals.predicted_sensor(residuals.parameters().data())->second;
   }
   return samples;
 }
 
 std::vector<double> residual_of(const std::shared_ptr<const FlightSamples>& samples, const ModelFile& model,
                                 const std::vector<double>& parameters) {
-  const Residuals residuals(samples, model, Reference{});
+  const Residuals residuals(samples, model, *pcor::lams_reference());
   std::vector<std::size_t> all(samples->time.size());
   std::iota(all.begin(), all.end(), 0);
   std::vector<double> values(all.size());
-  residuals.evaluate_speed(all.data(), all.size(), parameters.data(), {}, values.data(), nullptr);
+  residuals.evaluate_at_sensor(all.data(), all.size(), parameters.data(), {}, values.data(), nullptr);
   return values;
 }
 
@@ -185,7 +184,7 @@ const std::filesystem::path& flight_file() {
 
 CandidateSet candidates_of_file(const ModelFile& model, const std::vector<ModelEffect>& formulas = {}) {
   const pcor::Flight flight(flight_file());
-  return pcor::internal::find_candidates(model, formulas, {&flight}, Reference{});
+  return pcor::internal::find_candidates(model, formulas, {&flight}, *pcor::lams_reference());
 }
 
 }  // namespace
@@ -237,7 +236,7 @@ TEST(Columns, OfEveryCandidateAreDifferencesThroughTheWholeChain) {
 TEST(Columns, OfTheBaseAreDifferencesToo) {
   const Made made;
   const std::shared_ptr<const FlightSamples> quiet = without_laser_noise(made);
-  const std::vector<double> parameters = Residuals(made.samples, made.model, made.reference).parameters();
+  const std::vector<double> parameters = Residuals(made.samples, made.model, *made.reference).parameters();
   ASSERT_EQ(made.columns.base.cols(), 3);
   EXPECT_THAT(pcor::internal::base_names(made.model),
               testing::ElementsAre("static-constant.a0", "static-alpha.a1", "static-qp.a2"));
@@ -261,7 +260,7 @@ TEST(Columns, OfFixedCoefficientsAreNotThere) {
   for (pcor::EffectFit& fit : made.model.fits) fit.resize(1);
   made.model.fits[1][0].fixed = true;
   const FlightColumns columns =
-      pcor::internal::find_columns(made.samples, made.model, made.set, made.reference, {}, 1.0);
+      pcor::internal::find_columns(made.samples, made.model, made.set, *made.reference, {}, 1.0);
   EXPECT_EQ(columns.base.cols(), 2);
   EXPECT_TRUE(columns.base.col(1).isApprox(made.columns.base.col(2)));
 }
@@ -286,11 +285,11 @@ TEST(Columns, HoldNothingOfTheNoiseOfTheLaser) {
 
 TEST(Columns, ResidualsAreThoseOfTheModel) {
   const Made made;
-  const std::vector<double> expected =
-      residual_of(made.samples, made.model, Residuals(made.samples, made.model, made.reference).parameters());
+  const std::vector<double> expected = residual_of(
+      made.samples, made.model, Residuals(made.samples, made.model, *made.reference).parameters());
   EXPECT_EQ(made.columns.given, expected);
   // The pressure of the model is that of its chain.
-  const Residuals residuals(made.samples, made.model, made.reference);
+  const Residuals residuals(made.samples, made.model, *made.reference);
   EXPECT_EQ(made.columns.corrected_pressure,
             residuals.quantity(Quantity::corrected_static_pressure, residuals.parameters().data()));
   EXPECT_EQ(made.columns.quantity(Quantity::attack), *made.samples->model.find(Quantity::attack));
@@ -300,7 +299,7 @@ TEST(Columns, ResidualsAreThoseOfTheModel) {
 TEST(Columns, OfTheFirstPartEndWithIt) {
   Made made;
   const FlightColumns half =
-      pcor::internal::find_columns(made.samples, made.model, made.set, made.reference, {}, 0.5);
+      pcor::internal::find_columns(made.samples, made.model, made.set, *made.reference, {}, 0.5);
   for (std::size_t i = 0; i < half.given.size(); ++i) {
     EXPECT_EQ(std::isnan(half.given[i]), i >= 200) << i;
   }
@@ -317,7 +316,7 @@ TEST(Columns, FewMissingValuesAreBridgedAndManyAreNot) {
                   std::nan(""));
     }
     const FlightColumns columns =
-        pcor::internal::find_columns(samples, made.model, made.set, made.reference, {}, 1.0);
+        pcor::internal::find_columns(samples, made.model, made.set, *made.reference, {}, 1.0);
     // The model itself does not need the cabin.
     EXPECT_EQ(std::count(columns.mask.begin(), columns.mask.end(), pcor::Mask::none), 400);
     Eigen::Index column = 0;

@@ -20,7 +20,6 @@ using pcor::Diagnosis;
 using pcor::Finding;
 using pcor::ModelEffect;
 using pcor::ModelFile;
-using pcor::Reference;
 using pcor::Verdict;
 using testing::AnyOf;
 using testing::HasSubstr;
@@ -70,7 +69,7 @@ std::filesystem::path flight(const std::string& scenario, unsigned seed, const s
 ModelFile model() { return pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
 
 Diagnosis diagnose(const Paths& flights, const DiagnoseOptions& options = {}) {
-  return pcor::diagnose(flights, model(), Reference{}, options);
+  return pcor::diagnose(flights, model(), *pcor::lams_reference(), options);
 }
 
 /// A formula at the static ports with a coefficient k.
@@ -165,7 +164,7 @@ TEST(Diagnose, FindsTheSameWhereTheModelIsNotFitted) {
   off.model.effects[2].parameters[0] = 0.07;
   const Paths flights{flight("c130-eq18", 321, static_lag)};
   const Diagnosis fitted = diagnose(flights);
-  const Diagnosis diagnosis = pcor::diagnose(flights, off, Reference{});
+  const Diagnosis diagnosis = pcor::diagnose(flights, off, *pcor::lams_reference());
   EXPECT_GT(diagnosis.rms_given, 1.2 * diagnosis.residual_rms);
   EXPECT_NEAR(diagnosis.residual_rms, fitted.residual_rms, 0.01);
   ASSERT_THAT(names_of(diagnosis), testing::ElementsAre("static-lag"));
@@ -329,18 +328,17 @@ TEST(Diagnose, AModelWithoutFreeCoefficientsIsDiagnosedToo) {
   ModelFile fixed = model();
   fixed.fits.assign(3, pcor::EffectFit(1));
   for (pcor::EffectFit& fit : fixed.fits) fit[0].fixed = true;
-  const Diagnosis diagnosis = pcor::diagnose({flight("c130-eq18", 322, beta_odd)}, fixed, Reference{});
+  const Diagnosis diagnosis =
+      pcor::diagnose({flight("c130-eq18", 322, beta_odd)}, fixed, *pcor::lams_reference());
   EXPECT_NEAR(diagnosis.residual_rms, diagnosis.rms_given, 1e-6);
   EXPECT_THAT(names_of(diagnosis), testing::Contains("static-beta-odd"));
 }
 
 TEST(Diagnose, AgainstAStaticSystemFindsWhatOneOfThemHas) {
-  Reference reference;
-  reference.kind = Reference::Kind::static_system;
-  reference.system =
-      pcor::read_model(std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "models" / "c130-psfrd-eq18.toml");
+  const auto reference = pcor::static_system_reference(
+      pcor::read_model(std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "models" / "c130-psfrd-eq18.toml"));
   const Diagnosis diagnosis =
-      pcor::diagnose({flight("c130-eq18", 361, "on = \"PSFD\"\n" + beta_odd)}, model(), reference);
+      pcor::diagnose({flight("c130-eq18", 361, "on = \"PSFD\"\n" + beta_odd)}, model(), *reference);
   EXPECT_THAT(names_of(diagnosis), testing::Contains("static-beta-odd"));
 }
 

@@ -107,8 +107,6 @@ FlightSamples flight(const Made& made = {}) {
   samples.motion.altitude = height;
   samples.motion.vertical_speed = Series(height.size(), 0.0);
   samples.flaps = zero;
-  samples.pressure = p;
-  for (double& value : samples.pressure) value += 2.0;
   samples.model.columns = {{Quantity::static_pressure, p},
                            {Quantity::dynamic_pressure, q},
                            {Quantity::recovery_temperature, recovery},
@@ -131,7 +129,9 @@ FlightSamples flight(const Made& made = {}) {
     if (pcor::index(quantity) < pcor::quantity_count) samples.model.roles.push_back(quantity);
   }
   samples.reference.roles = {Quantity::static_pressure, Quantity::dynamic_pressure};
-  samples.reference.columns = {{Quantity::static_pressure, p}, {Quantity::dynamic_pressure, q}};
+  samples.reference.columns = {{Quantity::static_pressure, p},
+                               {Quantity::dynamic_pressure, q},
+                               {Quantity::corrected_static_pressure, p}};
   return samples;
 }
 
@@ -203,7 +203,6 @@ void expect_complete(const std::vector<Manoeuvre>& all, const FlightSamples& flo
         expect_finite(made->columns[i].second, "column " + std::to_string(i));
       }
     }
-    if (!flown.pressure.empty()) expect_finite(samples.pressure, "reference pressure");
     for (const auto series :
          {&pcor::FlightMotion::time, &pcor::FlightMotion::airspeed, &pcor::FlightMotion::altitude,
           &pcor::FlightMotion::vertical_speed, &pcor::FlightMotion::roll, &pcor::FlightMotion::pitch,
@@ -507,7 +506,7 @@ TEST(Manoeuvres, LeaveOutWhatTheFlightsDoNotTeach) {
         Quantity::sideslip, Quantity::recovery_temperature, Quantity::dew_point})
     erase(little, quantity);
   little.flaps.clear();
-  little.pressure.clear();
+  little.reference.columns.pop_back();
   little.motion = {};
   little.motion.time = little.time;
   const std::vector<Manoeuvre> all = manoeuvres_of(little);
@@ -532,7 +531,7 @@ TEST(Manoeuvres, AreCompleteAfterTwoMinutesWithEmptyColumns) {
   FlightSamples brief = flight();
   const auto cut = [](Series& values) { values.resize(std::min<std::size_t>(values.size(), 120)); };
   for (Series* series : {&brief.time, &brief.motion.time, &brief.motion.airspeed, &brief.motion.altitude,
-                         &brief.motion.vertical_speed, &brief.motion.roll, &brief.flaps, &brief.pressure})
+                         &brief.motion.vertical_speed, &brief.motion.roll, &brief.flaps})
     cut(*series);
   for (pcor::ModelSamples* samples : {&brief.model, &brief.reference}) {
     for (auto& [quantity, values] : samples->columns) {
@@ -550,12 +549,13 @@ TEST(Manoeuvres, AreCompleteAfterTwoMinutesWithEmptyColumns) {
 TEST(Manoeuvres, HaveOnlyColumnsThatAllFlightsHave) {
   FlightSamples less = flight();
   erase(less, Quantity::cabin_pressure);
-  less.pressure.clear();
+  less.reference.columns.pop_back();
   less.flaps.clear();
   const std::vector<Manoeuvre> all = pcor::internal::standard_manoeuvres(
       {std::make_shared<const FlightSamples>(flight()), std::make_shared<const FlightSamples>(less)});
   expect_complete(all, less);
-  for (const Manoeuvre& each : all) EXPECT_TRUE(each.samples->pressure.empty());
+  for (const Manoeuvre& each : all)
+    EXPECT_EQ(each.samples->reference.find(Quantity::corrected_static_pressure), nullptr);
 }
 
 TEST(Manoeuvres, AreNoneWhereNothingWasFlown) {
@@ -574,11 +574,11 @@ TEST(Manoeuvres, OfASimulatedFlightHaveTheAttackOfItsAircraft) {
   pcor::simulate_flight(pcor::read_scenario(scenarios / "c130-short.toml"), directory / "flight.nc");
   const pcor::ModelFile model = pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml");
   const auto flown = std::make_shared<const FlightSamples>(
-      pcor::read_samples(pcor::Flight(directory / "flight.nc"), model, pcor::Reference{}));
+      pcor::read_samples(pcor::Flight(directory / "flight.nc"), model, *pcor::lams_reference()));
   const std::vector<Manoeuvre> all = pcor::internal::standard_manoeuvres({flown});
   expect_complete(all, *flown);
   for (const Manoeuvre& each : all) {
-    const pcor::Residuals residuals(each.samples, model, pcor::Reference{});
+    const pcor::Residuals residuals(each.samples, model, *pcor::lams_reference());
     for (const pcor::Mask mask : residuals.mask()) ASSERT_EQ(mask, pcor::Mask::none) << each.name;
   }
 

@@ -64,12 +64,13 @@ Eigen::Vector3d normal_equations(const FlightSamples& samples) {
   const std::vector<double>& p = *samples.model.find(Quantity::static_pressure);
   const std::vector<double>& q = *samples.model.find(Quantity::dynamic_pressure);
   const std::vector<double>& adifr = *samples.model.find(Quantity::attack_differential_pressure);
+  const std::vector<double>& reference = *samples.reference.find(Quantity::corrected_static_pressure);
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < p.size(); ++i) {
     const Eigen::Vector3d row(p[i], p[i] * adifr[i] / q[i], q[i]);
     matrix += row * row.transpose();
-    right += row * (samples.pressure[i] - p[i]);
+    right += row * (reference[i] - p[i]);
   }
   return matrix.ldlt().solve(right);
 }
@@ -242,7 +243,8 @@ TEST(Refit, FitsSlopesToManoeuvresFirst) {
   const double end = samples.time[1200];
   const std::vector<double>& adifr = *samples.model.find(Quantity::attack_differential_pressure);
   for (std::size_t i = 0; i < samples.time.size(); ++i) {
-    if (samples.time[i] < begin || samples.time[i] >= end) samples.pressure[i] += 0.2 * adifr[i];
+    if (samples.time[i] < begin || samples.time[i] >= end)
+      made::reference_pressure(samples)[i] += 0.2 * adifr[i];
   }
   pcor::Interval interval;
   interval.regime = pcor::Regime::pitch_manoeuvre;

@@ -42,19 +42,7 @@ Residuals residuals(const ModelFile& model, const Reference& reference, const Ma
   return Residuals(samples, model, reference, options);
 }
 
-Reference static_reference() {
-  Reference reference;
-  reference.kind = Reference::Kind::static_system;
-  reference.system = pcor::read_model(data / "models" / "c130-psfrd-eq18.toml");
-  return reference;
-}
-
-Reference pressure_reference(const std::string& variable) {
-  Reference reference;
-  reference.kind = Reference::Kind::pressure;
-  reference.variable = variable;
-  return reference;
-}
+ModelFile other_system() { return pcor::read_model(data / "models" / "c130-psfrd-eq18.toml"); }
 
 std::vector<std::size_t> used(const Residuals& residuals) {
   std::vector<std::size_t> places;
@@ -104,14 +92,14 @@ void expect_derivatives(const Residuals& tested) {
 }  // namespace
 
 TEST(Residuals, AgainstTheTruePressureAreThoseOfTheSensors) {
-  const Residuals tested = residuals(laser_model(), pressure_reference("TRUE_PS"));
+  const Residuals tested = residuals(laser_model(), *pcor::pressure_reference("TRUE_PS"));
   // The model has the law of the truth: what is left is the noise of PSFD, 0.01 to 0.02 hPa, and a little
   // from the other sensors of the law.
   EXPECT_LT(rms_of(tested, tested.values(tested.parameters().data())), 0.03);
 }
 
 TEST(Residuals, AgainstLamsAreTheDefectOfTheLaserLessThatOfTheModel) {
-  const Residuals tested = residuals(laser_model(), Reference{});
+  const Residuals tested = residuals(laser_model(), *pcor::lams_reference());
   const double* const at = tested.parameters().data();
   const std::vector<double> values = tested.values(at);
   const std::vector<double> laser = tested.quantity(Quantity::lams_static_defect, at);
@@ -124,11 +112,8 @@ TEST(Residuals, AgainstLamsAreTheDefectOfTheLaserLessThatOfTheModel) {
 }
 
 TEST(Residuals, OfTwoSystemsAreOppositeWhenTheyChangePlaces) {
-  const Residuals forth = residuals(laser_model(), static_reference());
-  Reference other;
-  other.kind = Reference::Kind::static_system;
-  other.system = laser_model();
-  const Residuals back = residuals(*static_reference().system, other);
+  const Residuals forth = residuals(laser_model(), *pcor::static_system_reference(other_system()));
+  const Residuals back = residuals(other_system(), *pcor::static_system_reference(laser_model()));
   const std::vector<double> a = forth.values(forth.parameters().data());
   const std::vector<double> b = back.values(back.parameters().data());
   for (const std::size_t i : used(forth)) EXPECT_NEAR(a[i], -b[i], 1e-11);
@@ -144,24 +129,24 @@ TEST(Residuals, HaveTheDerivativesOfTheWholeChain) {
   bend.parameter_names = {"k", "c"};
   bend.parameters = {0.3, 2.0};
   model.model.effects.push_back(bend);
-  const Residuals tested = residuals(model, Reference{});
+  const Residuals tested = residuals(model, *pcor::lams_reference());
   const std::vector<bool> linear{true, true, true, true, false, false, false, false, false};
   EXPECT_EQ(tested.is_linear(), linear);
   expect_derivatives(tested);
 }
 
 TEST(Residuals, HaveTheDerivativesOfTheReferenceToo) {
-  const Residuals tested = residuals(laser_model(), static_reference());
+  const Residuals tested = residuals(laser_model(), *pcor::static_system_reference(other_system()));
   ASSERT_EQ(tested.parameters().size(), 6U);
   expect_derivatives(tested);
-  EXPECT_EQ(pcor::residual_parameter_names(laser_model(), static_reference())[4],
+  EXPECT_EQ(pcor::residual_parameter_names(laser_model(), *pcor::static_system_reference(other_system()))[4],
             "reference:static-alpha.a1");
 }
 
 TEST(Masks, SayWhyEverySampleIsNotUsed) {
   MaskOptions options;
   options.exclude = {pcor::Regime::climb};
-  const Residuals tested = residuals(laser_model(), Reference{}, options);
+  const Residuals tested = residuals(laser_model(), *pcor::lams_reference(), options);
   const auto counts = tested.mask_counts();
   EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), std::size_t{0}), tested.size());
   EXPECT_GT(counts[static_cast<std::size_t>(Mask::ground)], 0U);
@@ -178,14 +163,16 @@ TEST(Masks, SayWhyEverySampleIsNotUsed) {
 
 TEST(Masks, KnowALaserThatIsOffOrAstray) {
   const ModelFile model = laser_model();
-  pcor::FlightSamples samples = pcor::read_samples(pcor::Flight(flight_file()), model, Reference{});
-  const std::vector<std::size_t> places = used(residuals(model, Reference{}));
+  pcor::FlightSamples samples =
+      pcor::read_samples(pcor::Flight(flight_file()), model, *pcor::lams_reference());
+  const std::vector<std::size_t> places = used(residuals(model, *pcor::lams_reference()));
   for (auto& [quantity, values] : samples.model.columns) {
     if (quantity != Quantity::lams_airspeed) continue;
     values[places[100]] = std::nan("");
     values[places[101]] += 30.0;
   }
-  const Residuals tested(std::make_shared<const pcor::FlightSamples>(samples), model, Reference{});
+  const Residuals tested(std::make_shared<const pcor::FlightSamples>(samples), model,
+                         *pcor::lams_reference());
   EXPECT_EQ(tested.mask()[places[100]], Mask::reference);
   EXPECT_EQ(tested.mask()[places[101]], Mask::laser_unlocked);
   EXPECT_EQ(tested.mask()[places[102]], Mask::none);
@@ -193,34 +180,17 @@ TEST(Masks, KnowALaserThatIsOffOrAstray) {
 
 TEST(Masks, CountAMissingInputAsMissing) {
   const ModelFile model = laser_model();
-  pcor::FlightSamples samples = pcor::read_samples(pcor::Flight(flight_file()), model, Reference{});
-  const std::vector<std::size_t> places = used(residuals(model, Reference{}));
+  pcor::FlightSamples samples =
+      pcor::read_samples(pcor::Flight(flight_file()), model, *pcor::lams_reference());
+  const std::vector<std::size_t> places = used(residuals(model, *pcor::lams_reference()));
   for (auto& [quantity, values] : samples.model.columns) {
     if (quantity == Quantity::static_pressure) values[places[200]] = std::nan("");
     if (quantity == Quantity::attack_differential_pressure) values[places[201]] = std::nan("");
     if (quantity == Quantity::recovery_temperature) values[places[202]] = std::nan("");
   }
-  const Residuals tested(std::make_shared<const pcor::FlightSamples>(samples), model, Reference{});
+  const Residuals tested(std::make_shared<const pcor::FlightSamples>(samples), model,
+                         *pcor::lams_reference());
   EXPECT_EQ(tested.mask()[places[200]], Mask::missing);
   EXPECT_EQ(tested.mask()[places[201]], Mask::missing);
   EXPECT_EQ(tested.mask()[places[202]], Mask::reference) << "the law needs no thermometer, the laser does";
-}
-
-TEST(Reference, IsReadFromItsName) {
-  EXPECT_EQ(pcor::read_reference("", laser_model()).kind, Reference::Kind::lams);
-  EXPECT_EQ(pcor::read_reference("pressure:PS_A", laser_model()).variable, "PS_A");
-  const ModelFile without = pcor::read_model(data / "models" / "c130-psfd-eq18.toml");
-  const auto message_of = [](const std::string& text, const ModelFile& model) -> std::string {
-    try {
-      pcor::read_reference(text, model);
-    } catch (const pcor::Error& error) {
-      return error.what();
-    }
-    return "";
-  };
-  EXPECT_THAT(message_of("", without), HasSubstr("lams_airspeed"));
-  EXPECT_THAT(message_of("lams", without), HasSubstr("--reference static:OTHER.toml"));
-  EXPECT_THAT(message_of("static:", without), HasSubstr("pressure:VARIABLE"));
-  EXPECT_THAT(message_of("static:absent.toml", without), HasSubstr("absent.toml"));
-  EXPECT_THAT(message_of("PS_A", without), HasSubstr("pressure:VARIABLE"));
 }

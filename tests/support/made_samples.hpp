@@ -36,6 +36,7 @@ inline pcor::FlightSamples flight(const Plan& plan) {
   std::mt19937_64 engine(plan.seed);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform;
+  std::vector<double> reference;
   std::vector<double> p;
   std::vector<double> q;
   std::vector<double> adifr;
@@ -50,8 +51,7 @@ inline pcor::FlightSamples flight(const Plan& plan) {
     adifr.push_back(ratio * qcr.back());
     const double hit = uniform(engine) < plan.outliers ? plan.outlier_size : 0.0;
     samples.time.push_back(1321560000.0 + t);
-    samples.pressure.push_back(p.back() + plan.defect(p.back(), q.back(), ratio, t) + plan.noise * noise +
-                               hit);
+    reference.push_back(p.back() + plan.defect(p.back(), q.back(), ratio, t) + plan.noise * noise + hit);
     noise = plan.memory * noise + std::sqrt(1.0 - plan.memory * plan.memory) * normal(engine);
   }
   using pcor::Quantity;
@@ -61,6 +61,7 @@ inline pcor::FlightSamples flight(const Plan& plan) {
                            {Quantity::dynamic_pressure, std::move(q)},
                            {Quantity::radome_dynamic_pressure, std::move(qcr)},
                            {Quantity::attack_differential_pressure, std::move(adifr)}};
+  samples.reference.columns = {{Quantity::corrected_static_pressure, std::move(reference)}};
   samples.motion.time = samples.time;
   return samples;
 }
@@ -81,11 +82,14 @@ inline pcor::ModelFile model(const std::vector<std::string>& effects) {
   return file;
 }
 
-inline pcor::Reference pressure_reference() {
-  pcor::Reference reference;
-  reference.kind = pcor::Reference::Kind::pressure;
-  reference.variable = "PS_A";
-  return reference;
+inline const pcor::Reference& pressure_reference() {
+  static const auto reference = pcor::pressure_reference("PS_A");
+  return *reference;
+}
+
+/// The reference pressure of a flight that `flight` made, hPa.
+inline std::vector<double>& reference_pressure(pcor::FlightSamples& samples) {
+  return samples.reference.columns.front().second;
 }
 
 }  // namespace made

@@ -158,7 +158,7 @@ void print(const Comparison& comparison, const Options& options) {
     return;
   }
   fmt::print("To refit its coefficients: pcor refit {} -m {} -o fitted.toml\n", flights, quoted(model));
-  if (options.comparison.reference.rfind("static:", 0) == 0) {
+  if (comparison.total_pressure) {
     fmt::print(
         "To refit both systems together: pcor refit {} -m {} -o fitted.toml --refit-reference "
         "fitted-reference.toml\n",

@@ -26,10 +26,8 @@ CLI::Validator is_amount() {
 void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
   add_flight_options(command, options);
   command
-      .add_option(
-          "--reference", options.reference,
-          "the measurement that the model is compared with: lams (the laser air-motion sensor; the default), "
-          "static:OTHER.toml (a second static system, by its model) or pressure:VARIABLE")
+      .add_option("--reference", options.reference,
+                  "the measurement that the model is compared with: " + reference_forms())
       ->type_name("REFERENCE");
 }
 

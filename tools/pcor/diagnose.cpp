@@ -160,7 +160,7 @@ void run(const Options& options) {
   require_writable(options.common.report);
   JsonResult json(options.common);
   const ModelFile model = read_model(options.model);
-  const Reference reference = read_reference(options.comparison.reference, model);
+  const auto reference = read_reference(options.comparison.reference, model);
   DiagnoseOptions diagnose_with;
   diagnose_with.mask = mask_options(options.comparison);
   diagnose_with.time_stamp = time_stamp(options.comparison);
@@ -172,7 +172,7 @@ void run(const Options& options) {
   {
     Progress bar("diagnosing", !options.common.quiet);
     diagnose_with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
-    diagnosis = diagnose(flight_paths(options.comparison), model, reference, diagnose_with);
+    diagnosis = diagnose(flight_paths(options.comparison), model, *reference, diagnose_with);
   }
   if (!options.common.report.empty()) write_report(diagnosis_report(diagnosis, model), options.common.report);
   json.write(as_json(diagnosis));

@@ -98,14 +98,14 @@ void run(const Options& options) {
   for (const std::string& output : {options.output, options.common.report}) require_writable(output);
   JsonResult json(options.common);
   const ModelFile model = read_model(options.model);
-  const Reference reference = read_reference(options.comparison.reference, model);
+  const auto reference = read_reference(options.comparison.reference, model);
   ImproveOptions improve_with = improve_options(options, model);
   Improvement improvement;
   {
     std::optional<Progress> bar;
     improve_with.progress = [&](const std::string& what) { bar.emplace(what, !options.common.quiet); };
     improve_with.refit.progress = [&bar](std::size_t done, std::size_t total) { bar->show(done, total); };
-    improvement = improve(flight_paths(options.comparison), model, reference, improve_with);
+    improvement = improve(flight_paths(options.comparison), model, *reference, improve_with);
   }
   save_model(improvement.model, options.output, inputs);
   if (!options.common.report.empty())

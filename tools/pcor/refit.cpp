@@ -191,15 +191,14 @@ void print(const RefitResult& result, const Options& options) {
              options.reference_output, command_line(fitted), quoted(options.output));
 }
 
-void write_fit_report(const RefitResult& result, const ModelFile& model, const Reference& reference,
-                      const Options& options) {
+void write_fit_report(const RefitResult& result, const ModelFile& model,
+                      const std::shared_ptr<const Reference>& reference, const Options& options) {
   CompareOptions compare_options;
   compare_options.mask = mask_options(options.comparison);
   compare_options.time_stamp = time_stamp(options.comparison);
   std::vector<std::filesystem::path> flights = flight_paths(options.comparison);
   flights.insert(flights.end(), options.holdout.begin(), options.holdout.end());
-  Reference fitted = reference;
-  if (result.reference) fitted.system = result.reference;
+  const auto fitted = result.reference ? static_system_reference(*result.reference) : reference;
   const bool holds_out = !options.holdout.empty() || options.training_share < 1.0;
   const std::string part = holds_out ? ", fitted and held-out samples" : "";
   const Comparison comparison = compare(
@@ -218,13 +217,13 @@ void run(const Options& options) {
     require_writable(output);
   JsonResult json(options.common);
   const ModelFile model = read_model(options.model);
-  const Reference reference = read_reference(options.comparison.reference, model);
+  const auto reference = read_reference(options.comparison.reference, model);
   RefitOptions refit_with = refit_options(options);
   RefitResult result;
   {
     Progress bar("fitting", !options.common.quiet);
     refit_with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
-    result = refit(flight_paths(options.comparison), model, reference, refit_with);
+    result = refit(flight_paths(options.comparison), model, *reference, refit_with);
   }
   save_model(result.model, options.output, inputs);
   if (result.reference) save_model(*result.reference, options.reference_output, inputs);

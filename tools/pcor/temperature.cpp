@@ -195,8 +195,8 @@ void run(const Options& options) {
       RefitOptions refit_with;
       refit_with.mask = with.mask;
       refit_with.time_stamp = with.time_stamp;
-      const Reference reference = read_reference(options.comparison.reference, model);
-      in_turn = calibrate_in_turn(flight_paths(options.comparison), model, reference, refit_with, with);
+      const auto reference = read_reference(options.comparison.reference, model);
+      in_turn = calibrate_in_turn(flight_paths(options.comparison), model, *reference, refit_with, with);
       result = in_turn.temperature;
     } else {
       result = fit_temperature(flight_paths(options.comparison), model, with);

@@ -83,7 +83,7 @@ struct CompareOptions {
 struct Contender {
   std::string name;  ///< in tables
   ModelFile model;
-  Reference reference;
+  std::shared_ptr<const Reference> reference;
 };
 
 /// Holds every contender against its reference over the flights. A sample counts where all models have a

@@ -1,36 +1,70 @@
 #pragma once
 
 #include <pcor/laws/model_file.hpp>
+#include <pcor/residuals/samples.hpp>
 
-#include <optional>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace pcor {
 
+namespace internal {
+class ModelOnSamples;
+class ReferenceOnSamples;
+}  // namespace internal
+
 /// What a model is held against.
 ///
-/// Every kind says what the static pressure really was, so that what a model is off by, the residual, is
+/// Every one says what the static pressure really was, so that what a model is off by, the residual, is
 /// p(reference) - p(model) in hPa: positive where delta-p of the model should be larger.
-struct Reference {
-  enum class Kind {
-    lams,           ///< delta-p from the laser airspeed, memo eq. 11, from the same pressures
-    static_system,  ///< another static system of the aircraft, corrected by a model of its own
-    pressure        ///< a variable that is a static pressure: of the avionics, or corrected already
-  };
-
-  Kind kind = Kind::lams;
-  std::optional<ModelFile> system{};  ///< of a static system
-  std::string variable{};             ///< of a pressure
+///
+/// A new one is a class in a file of its own in src/residuals/references, and a line in the list in
+/// src/residuals/reference.cpp.
+class Reference {
+ public:
+  virtual ~Reference() = default;
 
   /// What it is in words, for example "static system 'C-130 PSFRD/QCFR, equation 18'".
-  std::string description() const;
+  virtual std::string description() const = 0;
+
+  /// The model that corrects it, whose parameters can be fitted together with those of the model that is held
+  /// against it; null where it has none.
+  virtual const ModelFile* model() const { return nullptr; }
+
+  /// The variables of a flight that it reads for itself, beside those of the model that is held against it.
+  virtual std::vector<std::string> variables() const { return {}; }
+
+  /// True where it is made of the laser that the model names.
+  virtual bool reads_laser() const { return false; }
+
+  /// Reads its own variables. @throws Error if one is absent, has no value, or its unit does not fit.
+  virtual ModelSamples read(const Flight& flight, const std::vector<double>& time,
+                            std::vector<std::string>& notes) const;
+
+  /// What it says of every sample. Both arguments must outlive the result.
+  virtual std::unique_ptr<internal::ReferenceOnSamples> on(const FlightSamples& samples,
+                                                           const internal::ModelOnSamples& model) const = 0;
 };
 
-/// The reference that `text` names: "lams", "static:OTHER.toml" or "pressure:VARIABLE". An empty text is
-/// LAMS where `model` has a laser airspeed.
+/// LAMS: delta-p from the laser airspeed, memo eq. 11, from the same pressures as the model.
+std::shared_ptr<const Reference> lams_reference();
+
+/// Another static system of the aircraft, corrected by a model of its own.
+std::shared_ptr<const Reference> static_system_reference(ModelFile system);
+
+/// A variable that is a static pressure: of the avionics, or corrected already.
+std::shared_ptr<const Reference> pressure_reference(std::string variable);
+
+/// The texts that name a reference, with what each is: "lams (the laser ...), static:OTHER.toml (...) or
+/// ...".
+std::string reference_forms();
+
+/// The reference that `text` names, see `reference_forms`. An empty text is LAMS where `model` has a laser
+/// airspeed.
 ///
 /// @throws Error if the text is none of these, the file of a static system cannot be read, the model of a
 /// LAMS comparison has no `lams_airspeed`, or the text is empty and there is no laser.
-Reference read_reference(const std::string& text, const ModelFile& model);
+std::shared_ptr<const Reference> read_reference(const std::string& text, const ModelFile& model);
 
 }  // namespace pcor

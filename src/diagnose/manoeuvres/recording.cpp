@@ -90,8 +90,9 @@ bool all_have(const Flights& flights, ModelSamples FlightSamples::*samples, Quan
 
 /// The member that holds what has a name.
 using Law = std::pair<std::string_view, double Instant::*>;
-constexpr std::array<Law, 27> laws{{
+constexpr std::array<Law, 28> laws{{
     {"static_pressure", &Instant::pressure},
+    {"corrected_static_pressure", &Instant::pressure},
     {"dynamic_pressure", &Instant::dynamic},
     {"ambient_temperature", &Instant::temperature},
     {"recovery_temperature", &Instant::recovery_temperature},
@@ -138,13 +139,6 @@ std::optional<Series> values_of(Quantity quantity, const std::vector<Instant>& i
   return changing ? rates_of(*changing, *values_of("time", instants), step) : values_of(name, instants);
 }
 
-Profile excess_of_reference(const Flown& flown) {
-  Series excess =
-      flown.gathered([](const FlightSamples& flight) -> const Series& { return flight.pressure; });
-  for (std::size_t i = 0; i < excess.size(); ++i) excess[i] -= flown.pressure[i];
-  return {flown.pressure, excess, 0.0};
-}
-
 }  // namespace
 
 Recorder::Recorder(const Flights& flights, const Flown& flown, const Aircraft& aircraft,
@@ -156,11 +150,8 @@ Recorder::Recorder(const Flights& flights, const Flown& flown, const Aircraft& a
       step_(flights.front()->step),
       has_flaps_(std::all_of(flights.begin(), flights.end(),
                              [](const auto& flight) { return !flight->flaps.empty(); })),
-      has_pressure_(std::all_of(flights.begin(), flights.end(),
-                                [](const auto& flight) { return !flight->pressure.empty(); })),
       model_(columns_of(flights, flown, &FlightSamples::model)),
-      reference_(columns_of(flights, flown, &FlightSamples::reference)),
-      pressure_excess_(excess_of_reference(flown)) {}
+      reference_(columns_of(flights, flown, &FlightSamples::reference)) {}
 
 bool Recorder::has(Quantity quantity) const { return find(quantity) != nullptr; }
 
@@ -287,10 +278,6 @@ std::shared_ptr<const FlightSamples> Recorder::record(const std::string& name, c
   }
   samples.model = samples_of(model_, instants);
   samples.reference = samples_of(reference_, instants);
-  if (has_pressure_) {
-    for (const Instant& now : instants)
-      samples.pressure.push_back(now.pressure + pressure_excess_.at(now.pressure));
-  }
   return std::make_shared<const FlightSamples>(std::move(samples));
 }
 

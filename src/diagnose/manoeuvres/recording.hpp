@@ -51,10 +51,8 @@ class Recorder {
   double first_time_;
   double step_;
   bool has_flaps_;
-  bool has_pressure_;
   Columns model_;
   Columns reference_;
-  Profile pressure_excess_;  // of a reference pressure over the static pressure
 };
 
 }  // namespace pcor::internal::manoeuvres

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <pcor/flight/flight.hpp>
+#include <pcor/laws/model_file.hpp>
+#include <pcor/regimes/regimes.hpp>
+#include <pcor/residuals/masks.hpp>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pcor {
+
+class Reference;
+
+/// What a model or a reference reads of a flight: quantities as arrays, one value for each record.
+struct ModelSamples {
+  std::vector<Quantity> roles{};  ///< those that `Chain::build` is told of
+  std::vector<std::pair<Quantity, std::vector<double>>> columns{};
+
+  const std::vector<double>* find(Quantity quantity) const;
+};
+
+/// A flight as comparisons and fits see it: what was recorded, how it was flown, at one sample per record.
+struct FlightSamples {
+  std::string name{};          ///< for tables: the file's name, or what the flight is called
+  std::string aircraft{};      ///< as the file says; may be empty
+  double step = 1.0;           ///< s
+  std::vector<double> time{};  ///< middles of the samples, s since 1970 UTC
+  FlightMotion motion{};
+  std::vector<double> flaps{};        ///< percent; empty: not recorded
+  std::vector<Interval> intervals{};  ///< regimes
+  ModelSamples model{};
+  ModelSamples reference{};          ///< what the reference reads for itself
+  std::vector<std::string> notes{};  ///< what a user should know, a sentence each
+};
+
+/// Reads what `model` and `reference` need of a flight, and finds its regimes.
+///
+/// How it was flown is taken from the roles of the model, and where it has none from the names that NCAR's
+/// files use (GGALT, ROLL, THDG, PLWCC and the like). Regimes of an aircraft that is not known are found by
+/// the criteria of the C-130, which a note says.
+/// @throws Error if a variable that is needed is absent, has no value, or its unit does not fit.
+FlightSamples read_samples(const Flight& flight, const ModelFile& model, const Reference& reference,
+                           const MaskOptions& options = {});
+
+}  // namespace pcor

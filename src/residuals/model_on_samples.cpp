@@ -1,0 +1,96 @@
+#include "residuals/model_on_samples.hpp"
+
+#include <iterator>
+
+namespace pcor::internal {
+namespace {
+
+std::vector<Quantity> roles_of(const ModelFile& file, const ModelSamples& samples) {
+  std::vector<Quantity> roles;
+  std::copy_if(samples.roles.begin(), samples.roles.end(), std::back_inserter(roles),
+               [&](Quantity quantity) { return !is_role(quantity) || file.variables.count(quantity) != 0; });
+  return roles;
+}
+
+}  // namespace
+
+std::vector<Batch::Input> gathered(const std::vector<Batch::Input>& columns, const std::size_t* samples,
+                                   std::size_t count, std::vector<double>& store) {
+  store.resize(columns.size() * count);
+  std::vector<Batch::Input> inputs;
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    double* const to = store.data() + c * count;
+    for (std::size_t i = 0; i < count; ++i) to[i] = columns[c].values[samples[i]];
+    inputs.push_back({columns[c].quantity, to});
+  }
+  return inputs;
+}
+
+ModelOnSamples::ModelOnSamples(const ModelFile& file, const ModelSamples& samples)
+    : model_(file.model), batch_(file.model, roles_of(file, samples)) {
+  for (const Quantity input : chain().inputs()) columns_.push_back({input, samples.find(input)->data()});
+}
+
+std::vector<bool> ModelOnSamples::linear() const {
+  std::vector<bool> linear;
+  const bool has_minimum = std::isfinite(model_.policy.minimum);
+  for (const ModelEffect& effect : model_.effects) {
+    const std::size_t place = effect_named(effect.id);
+    const bool is = !has_minimum && !effect.is_formula() && place != catalogue_size &&
+                    effect_facts[place].where == Where::static_defect;
+    for (std::size_t p = 0; p < effect.parameters.size(); ++p)
+      linear.push_back(is && !effect_facts[place].parameters[p].shape);
+  }
+  linear.resize(linear.size() + model_.additions.size(), false);
+  return linear;
+}
+
+void ModelOnSamples::corrected_static_pressure(const std::vector<Batch::Input>& inputs, std::size_t count,
+                                               const double* parameters, double* out) const {
+  std::vector<double> defect(count);
+  batch_.run(inputs, {{Quantity::port_static_pressure, out}, {Quantity::static_defect, defect.data()}}, count,
+             parameters);
+  for (std::size_t i = 0; i < count; ++i) out[i] += defect[i];
+}
+
+/// A step of a linear parameter that changes delta-p by tenths of hPa.
+double ModelOnSamples::step_of(std::size_t parameter) const {
+  std::size_t first = 0;
+  for (const ModelEffect& effect : model_.effects) {
+    if (parameter < first + effect.parameters.size()) {
+      const double typical = effect_facts[effect_named(effect.id)].parameters[parameter - first].typical;
+      return 0.1 * std::abs(typical);
+    }
+    first += effect.parameters.size();
+  }
+  return 0.0;
+}
+
+void ModelOnSamples::differentiate_linear(const std::vector<Batch::Input>& inputs, std::size_t count,
+                                          const double* parameters,
+                                          const std::vector<LinearColumn>& wanted) const {
+  if (wanted.empty()) return;
+  std::vector<double> defect(count);
+  batch_.run(inputs, {{Quantity::static_defect, defect.data()}}, count, parameters);
+  std::vector<double> moved(parameters, parameters + this->parameters().size());
+  for (const auto& [parameter, derivatives] : wanted) {
+    moved[parameter] += step_of(parameter);
+    batch_.run(inputs, {{Quantity::static_defect, derivatives}}, count, moved.data());
+    const double scale = 1.0 / (moved[parameter] - parameters[parameter]);
+    for (std::size_t i = 0; i < count; ++i) derivatives[i] = scale * (derivatives[i] - defect[i]);
+    moved[parameter] = parameters[parameter];
+  }
+}
+
+bool ModelOnSamples::is_missing_needed(std::size_t sample) const {
+  return std::any_of(columns_.begin(), columns_.end(), [&](const Batch::Input& column) {
+    return chain().needs(column.quantity) && std::isnan(column.values[sample]);
+  });
+}
+
+bool ModelOnSamples::is_missing_any(std::size_t sample) const {
+  return std::any_of(columns_.begin(), columns_.end(),
+                     [&](const Batch::Input& column) { return std::isnan(column.values[sample]); });
+}
+
+}  // namespace pcor::internal

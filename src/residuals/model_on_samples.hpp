@@ -1,0 +1,70 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include <pcor/batch/batch.hpp>
+#include <pcor/residuals/samples.hpp>
+
+namespace pcor::internal {
+
+/// Columns at some places, gathered one after another into `store`.
+std::vector<Batch::Input> gathered(const std::vector<Batch::Input>& columns, const std::size_t* samples,
+                                   std::size_t count, std::vector<double>& store);
+
+/// A linear parameter, and where the derivatives by it go.
+struct LinearColumn {
+  std::size_t parameter;
+  double* derivatives;
+};
+
+/// A model on the samples of a flight, as its chain reads them.
+class ModelOnSamples {
+ public:
+  /// Of the roles of the samples those count that the model names: a diagnosis reads more of a flight.
+  /// @throws Error if the model cannot be used on the samples.
+  ModelOnSamples(const ModelFile& file, const ModelSamples& samples);
+
+  const Batch& batch() const { return batch_; }
+  const Chain& chain() const { return batch_.chain(); }
+  const std::vector<Batch::Input>& columns() const { return columns_; }
+
+  /// As the file has them.
+  const std::vector<double>& parameters() const { return chain().parameters(); }
+
+  /// True for each parameter in which delta-p is exactly linear, and nothing else changes with it: those of
+  /// effects of the catalogue at the static ports, where delta-p has no lower limit.
+  std::vector<bool> linear() const;
+
+  /// One sample through the chain up to delta-p of the model.
+  template <class S>
+  S corrected_static_pressure(std::size_t sample, const S* parameters, State<S>& state) const {
+    NoQualityFlags flags;
+    for (const Batch::Input& column : columns_) state[column.quantity] = S(column.values[sample]);
+    chain().measure(state, parameters, flags);
+    state[Quantity::static_defect] = chain().static_defect(state, parameters, flags);
+    return state[Quantity::port_static_pressure] + state[Quantity::static_defect];
+  }
+
+  /// The corrected static pressure of a block, hPa.
+  void corrected_static_pressure(const std::vector<Batch::Input>& inputs, std::size_t count,
+                                 const double* parameters, double* out) const;
+
+  /// The derivatives of delta-p of a block by linear parameters, hPa per unit.
+  void differentiate_linear(const std::vector<Batch::Input>& inputs, std::size_t count,
+                            const double* parameters, const std::vector<LinearColumn>& wanted) const;
+
+  bool is_missing_needed(std::size_t sample) const;
+  bool is_missing_any(std::size_t sample) const;
+
+ private:
+  double step_of(std::size_t parameter) const;
+
+  Model model_;
+  Batch batch_;
+  std::vector<Batch::Input> columns_;
+};
+
+}  // namespace pcor::internal

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include <pcor/residuals/reference.hpp>
+#include "residuals/reference_on_samples.hpp"
+
+namespace pcor::internal {
+
+/// The laser on the samples of a flight: it has no pressures of its own, and asks for a delta-p of those of
+/// the model (memo eq. 11). Its noise is added to the speed along the beam.
+class LamsOnSamples final : public ReferenceOnSamples, private NoisySensor {
+ public:
+  LamsOnSamples(const FlightSamples& samples, const ModelOnSamples& model)
+      : beam_(*samples.model.find(Quantity::lams_airspeed)), model_(model) {}
+
+  void residuals(const Block& block, const double* parameters, double* out) const override {
+    std::vector<double> defect(block.count);
+    model_.batch().run(block.model,
+                       {{Quantity::static_defect, defect.data()}, {Quantity::lams_static_defect, out}},
+                       block.count, parameters);
+    for (std::size_t i = 0; i < block.count; ++i) out[i] -= defect[i];
+  }
+
+  void residuals(const std::size_t* samples, std::size_t count, const Jet* parameters,
+                 Jet* out) const override {
+    for (std::size_t i = 0; i < count; ++i)
+      out[i] = residual_at(samples[i], Jet(beam_[samples[i]]), parameters);
+  }
+
+  const NoisySensor* sensor() const override { return this; }
+
+  Mask why_missing(std::size_t sample) const override {
+    // The chain of the laser needs more than the law: what the law alone lacks is missing, what the laser
+    // lacks is the reference's.
+    if (!model_.is_missing_any(sample)) return Mask::impossible;
+    State<double> state;
+    model_.corrected_static_pressure(sample, model_.parameters().data(), state);
+    return std::isnan(state[Quantity::static_defect]) ? Mask::missing : Mask::reference;
+  }
+
+  Mask why_not_believed(std::size_t sample, double airspeed, const MaskOptions& options) const override {
+    return std::abs(beam_[sample] - airspeed) > options.most_laser_departure ? Mask::laser_unlocked
+                                                                             : Mask::none;
+  }
+
+ private:
+  Quantity quantity() const override { return Quantity::lams_airspeed; }
+
+  void predict(const std::size_t* samples, std::size_t count, const double* parameters,
+               double* out) const override {
+    for (std::size_t i = 0; i < count; ++i) out[i] = predicted_at(samples[i], parameters);
+  }
+
+  void predict(const std::size_t* samples, std::size_t count, const Jet* parameters,
+               Jet* out) const override {
+    for (std::size_t i = 0; i < count; ++i) out[i] = predicted_at(samples[i], parameters);
+  }
+
+  std::vector<double> sensitivity() const override {
+    const std::size_t count = beam_.size();
+    std::vector<double> mach(count);
+    std::vector<double> pressure(count);
+    std::vector<double> airspeed(count);
+    model_.batch().run(model_.columns(),
+                       {{Quantity::corrected_mach, mach.data()},
+                        {Quantity::corrected_static_pressure, pressure.data()},
+                        {Quantity::corrected_airspeed, airspeed.data()}},
+                       count, model_.parameters().data());
+    std::vector<double> result(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const double squared = mach[i] * mach[i];
+      result[i] = -1.4 * squared * pressure[i] / ((1.0 + 0.2 * squared) * airspeed[i]);
+    }
+    return result;
+  }
+
+  Jet residual_at(std::size_t sample, const Jet& beam, const Jet* parameters) const {
+    State<Jet> state;
+    NoQualityFlags flags;
+    model_.corrected_static_pressure(sample, parameters, state);
+    state[Quantity::lams_airspeed] = beam;
+    return model_.chain().lams_static_defect(state, parameters, flags) - state[Quantity::static_defect];
+  }
+
+  /// The airspeed that pressures and temperature ask for, along the beam, m/s.
+  template <class S>
+  S predicted_at(std::size_t sample, const S* parameters) const {
+    State<S> state;
+    NoQualityFlags flags;
+    const Chain& chain = model_.chain();
+    model_.corrected_static_pressure(sample, parameters, state);
+    chain.correct(state, state[Quantity::static_defect], flags);
+    // The cosine of the beam, but for effects on its speed.
+    const S along = state[Quantity::lams_airspeed] / chain.lams_airspeed(state, parameters);
+    chain.air(state, parameters, flags);
+    return along * state[Quantity::corrected_airspeed];
+  }
+
+  const std::vector<double>& beam_;
+  const ModelOnSamples& model_;
+};
+
+class LamsReference final : public Reference {
+ public:
+  std::string description() const override { return "LAMS"; }
+  bool reads_laser() const override { return true; }
+
+  std::unique_ptr<ReferenceOnSamples> on(const FlightSamples& samples,
+                                         const ModelOnSamples& model) const override {
+    return std::make_unique<LamsOnSamples>(samples, model);
+  }
+};
+
+}  // namespace pcor::internal

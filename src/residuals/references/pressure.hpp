@@ -1,0 +1,81 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <pcor/residuals/reference.hpp>
+#include <pcor/words/error.hpp>
+#include <pcor/words/suggest.hpp>
+#include "residuals/reference_on_samples.hpp"
+#include "roles/recorded_series.hpp"
+
+namespace pcor::internal {
+
+class PressureOnSamples final : public ReferenceOnSamples {
+ public:
+  PressureOnSamples(const FlightSamples& samples, const ModelOnSamples& model)
+      : pressure_(*samples.reference.find(Quantity::corrected_static_pressure)), model_(model) {}
+
+  void residuals(const Block& block, const double* parameters, double* out) const override {
+    model_.corrected_static_pressure(block.model, block.count, parameters, out);
+    const double* const pressure = block.reference.front().values;
+    for (std::size_t i = 0; i < block.count; ++i) out[i] = pressure[i] - out[i];
+  }
+
+  void residuals(const std::size_t* samples, std::size_t count, const Jet* parameters,
+                 Jet* out) const override {
+    for (std::size_t i = 0; i < count; ++i) {
+      State<Jet> state;
+      out[i] = Jet(pressure_[samples[i]]) - model_.corrected_static_pressure(samples[i], parameters, state);
+    }
+  }
+
+  std::vector<Batch::Input> columns() const override {
+    return {{Quantity::corrected_static_pressure, pressure_.data()}};
+  }
+
+  Mask why_missing(std::size_t sample) const override {
+    if (model_.is_missing_needed(sample)) return Mask::missing;
+    return std::isnan(pressure_[sample]) ? Mask::reference : Mask::impossible;
+  }
+
+ private:
+  const std::vector<double>& pressure_;
+  const ModelOnSamples& model_;
+};
+
+class PressureReference final : public Reference {
+ public:
+  explicit PressureReference(std::string variable) : variable_(std::move(variable)) {}
+
+  std::string description() const override { return fmt::format("static pressure {}", variable_); }
+  std::vector<std::string> variables() const override { return {variable_}; }
+
+  ModelSamples read(const Flight& flight, const std::vector<double>&,
+                    std::vector<std::string>&) const override {
+    if (!flight.has(variable_)) {
+      const std::string meant = did_you_mean(variable_, flight.variables());
+      throw Error(fmt::format("{}: {}, the reference, is not in this file{}; give another with --reference",
+                              flight.path().string(), variable_, meant.empty() ? "" : "; " + meant));
+    }
+    const UnitConversion conversion = flight.conversion(variable_, "hPa");
+    flight.require_values(variable_);
+    ModelSamples samples;
+    samples.columns = {{Quantity::corrected_static_pressure, read_values(flight, variable_, conversion)}};
+    return samples;
+  }
+
+  std::unique_ptr<ReferenceOnSamples> on(const FlightSamples& samples,
+                                         const ModelOnSamples& model) const override {
+    return std::make_unique<PressureOnSamples>(samples, model);
+  }
+
+ private:
+  std::string variable_;
+};
+
+}  // namespace pcor::internal

@@ -1,0 +1,151 @@
+#include "residuals/samples.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <pcor/physics/air_data.hpp>
+#include <pcor/physics/standard_atmosphere.hpp>
+#include <pcor/realtime/chain.hpp>
+#include <pcor/residuals/reference.hpp>
+#include <pcor/words/error.hpp>
+#include "roles/model_inputs.hpp"
+#include "roles/recorded_series.hpp"
+
+namespace pcor {
+
+using namespace internal;
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Centred differences in time; NaN at the ends and beside gaps.
+std::vector<double> rate_of(const std::vector<double>& values, const std::vector<double>& time, double step) {
+  std::vector<double> rate(values.size(), nan);
+  for (std::size_t i = 1; i + 1 < values.size(); ++i) {
+    const double across = time[i + 1] - time[i - 1];
+    if (across <= 2.5 * step) rate[i] = (values[i + 1] - values[i - 1]) / across;
+  }
+  return rate;
+}
+
+Chain chain_of(const Model& model, const std::vector<Quantity>& roles) {
+  BindingError why;
+  std::optional<Chain> chain = Chain::build(model, roles, &why);
+  if (!chain) throw Error(Error::Code::model, fmt::format("model '{}': {}", model.name, why.message()));
+  return std::move(*chain);
+}
+
+/// True airspeed from the pressures as measured, m/s: within 2 %, for regimes and masks.
+std::vector<double> measured_airspeed(const ModelSamples& samples) {
+  const std::vector<double>& p = *samples.find(Quantity::static_pressure);
+  const std::vector<double>& q = *samples.find(Quantity::dynamic_pressure);
+  const std::vector<double>* recovery = samples.find(Quantity::recovery_temperature);
+  const std::vector<double>* ambient = samples.find(Quantity::ambient_temperature);
+  std::vector<double> airspeed(p.size(), nan);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (!(p[i] > 0.0) || std::isnan(q[i])) continue;
+    const double mach = q[i] > 0.0 ? mach_number(p[i], q[i], dry_air<double>()) : 0.0;
+    double temperature = nan;
+    if (ambient != nullptr) temperature = (*ambient)[i];
+    if (std::isnan(temperature) && recovery != nullptr)
+      temperature = (*recovery)[i] / (1.0 + 0.2 * mach * mach);
+    if (std::isnan(temperature)) temperature = standard_temperature(pressure_altitude(p[i]));
+    airspeed[i] = true_airspeed(mach, temperature, dry_air<double>());
+  }
+  return airspeed;
+}
+
+FlightMotion read_motion(const Flight& flight, const ModelFile& model, const FlightSamples& samples) {
+  const auto read = [&](Quantity role) { return read_role(flight, model, role).values; };
+  FlightMotion motion;
+  motion.time = samples.time;
+  motion.airspeed = measured_airspeed(samples.model);
+  motion.altitude = read(Quantity::altitude);
+  if (motion.altitude.empty()) motion.altitude = read_usual(flight, usual_series("other_altitude")).values;
+  motion.vertical_speed = read(Quantity::vertical_speed);
+  motion.roll = read(Quantity::roll);
+  motion.pitch = read(Quantity::pitch);
+  motion.heading = read(Quantity::heading);
+  motion.attack = read(Quantity::attack);
+  motion.sideslip = read(Quantity::sideslip);
+  motion.ground_speed = read(Quantity::ground_speed);
+  motion.ground_track = read(Quantity::ground_track);
+  motion.liquid_water = read(Quantity::liquid_water);
+  return motion;
+}
+
+}  // namespace
+
+const std::vector<double>* ModelSamples::find(Quantity quantity) const {
+  const auto found = std::find_if(columns.begin(), columns.end(),
+                                  [quantity](const auto& column) { return column.first == quantity; });
+  return found == columns.end() ? nullptr : &found->second;
+}
+
+ModelSamples internal::read_model_columns(const Flight& flight, const ModelFile& model, bool with_laser,
+                                          const std::vector<double>& time, std::vector<std::string>& notes) {
+  std::vector<Quantity> roles = model.roles();
+  if (!with_laser) roles.erase(std::remove(roles.begin(), roles.end(), Quantity::lams_airspeed), roles.end());
+  const Chain chain = chain_of(model.model, roles);
+  ModelSamples samples;
+  for (const ModelInput& input : model_inputs(flight, model, chain, roles, notes)) {
+    samples.columns.emplace_back(input.quantity, read_values(flight, input.variable, input.conversion));
+    if (is_role(input.quantity)) samples.roles.push_back(input.quantity);
+  }
+  const auto add = [&samples](Quantity quantity, std::vector<double> values) {
+    samples.columns.emplace_back(quantity, std::move(values));
+    samples.roles.push_back(quantity);
+  };
+  if (chain.derives(Quantity::time)) {
+    std::vector<double> since_first = time;
+    for (double& each : since_first) each -= time.front();
+    add(Quantity::time, std::move(since_first));
+  }
+  for (const auto& [quantity, rate] : rates) {
+    if (chain.derives(rate)) add(rate, rate_of(*samples.find(quantity), time, flight.time().step));
+  }
+  return samples;
+}
+
+FlightSamples read_samples(const Flight& flight, const ModelFile& model, const Reference& reference,
+                           const MaskOptions& options) {
+  FlightSamples samples;
+  samples.name = flight.path().filename().string();
+  samples.aircraft = flight.aircraft();
+  samples.step = flight.time().step;
+  samples.time.resize(flight.records());
+  for (const RecordBlock block : blocks_of(flight.records()))
+    flight.read_sample_times(block, 1, samples.time.data() + block.first);
+  samples.notes = notes_on_law(flight, model);
+  samples.model = read_model_columns(flight, model, reference.reads_laser(), samples.time, samples.notes);
+  samples.reference = reference.read(flight, samples.time, samples.notes);
+  samples.motion = read_motion(flight, model, samples);
+  samples.flaps = read_role(flight, model, Quantity::flaps).values;
+  if (samples.flaps.empty()) {
+    samples.notes.emplace_back(
+        "the flight records no flaps, so an approach with flaps and gear out takes part; --min-airspeed or "
+        "--intervals leaves it out");
+  }
+  const std::optional<RegimeCriteria> criteria = RegimeCriteria::of(samples.aircraft);
+  if (!criteria) {
+    samples.notes.push_back(
+        fmt::format("the aircraft {} is not known here, so its regimes are found by the criteria of the "
+                    "C-130, whose speed "
+                    "runs are slower than those of a jet; --intervals adds regimes and takes them away",
+                    samples.aircraft.empty() ? "of this flight" : "'" + samples.aircraft + "'"));
+  }
+  samples.intervals = find_regimes(samples.motion, criteria.value_or(RegimeCriteria::c130()));
+  if (options.intervals && options.intervals->is_for(flight.path())) {
+    samples.intervals =
+        apply(*options.intervals, std::move(samples.intervals), samples.time.front(), samples.time.back());
+  }
+  return samples;
+}
+
+}  // namespace pcor

@@ -1,0 +1,64 @@
+#include <pcor/residuals/reference.hpp>
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <string>
+
+#include <pcor/words/error.hpp>
+
+namespace pcor {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::filesystem::path data = std::filesystem::path(PCOR_SOURCE_DIR) / "data";
+
+ModelFile with_laser() { return read_model(data / "scenarios" / "models" / "c130-psfd-eq18.toml"); }
+ModelFile without_laser() { return read_model(data / "models" / "c130-psfd-eq18.toml"); }
+
+std::string message_of(const std::string& text, const ModelFile& model) {
+  try {
+    read_reference(text, model);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Reference, IsReadFromItsName) {
+  EXPECT_EQ(read_reference("", with_laser())->description(), "LAMS");
+  EXPECT_EQ(read_reference("lams", with_laser())->description(), "LAMS");
+  EXPECT_THAT(read_reference("pressure:PS_A", without_laser())->variables(), ElementsAre("PS_A"));
+  const std::string file = (data / "models" / "c130-psfrd-eq18.toml").string();
+  EXPECT_EQ(read_reference("static:" + file, without_laser())->model()->model.name,
+            read_model(file).model.name);
+}
+
+TEST(Reference, OfAnotherTextIsRefusedWithThoseThatThereAre) {
+  for (const char* form : {"lams (", ", static:OTHER.toml (", " or pressure:VARIABLE ("})
+    EXPECT_THAT(reference_forms(), HasSubstr(form));
+  for (const char* text : {"static:", "pressure:", "lams:", "lams:V", "PS_A", ":", "static", "LAMS"})
+    EXPECT_THAT(message_of(text, with_laser()), HasSubstr(reference_forms())) << text;
+  EXPECT_THAT(message_of("static:absent.toml", with_laser()), HasSubstr("absent.toml"));
+}
+
+TEST(Reference, OfALaserThatTheModelDoesNotNameIsRefused) {
+  for (const char* text : {"", "lams"}) {
+    EXPECT_THAT(message_of(text, without_laser()), HasSubstr("lams_airspeed")) << text;
+    EXPECT_THAT(message_of(text, without_laser()), HasSubstr("--reference static:OTHER.toml")) << text;
+  }
+}
+
+TEST(Reference, SaysWhatItReadsForItself) {
+  EXPECT_TRUE(lams_reference()->reads_laser());
+  EXPECT_TRUE(lams_reference()->variables().empty());
+  EXPECT_EQ(lams_reference()->model(), nullptr);
+  const auto system = static_system_reference(with_laser());
+  EXPECT_FALSE(system->reads_laser()) << "the laser is one of the model that is held against it";
+  EXPECT_THAT(system->variables(), testing::IsSupersetOf({"PSFD", "QCF", "ADIFR", "QCR"}));
+}
+
+}  // namespace
+}  // namespace pcor
