@@ -9,6 +9,7 @@
 #include <pcor/numerics/noise.hpp>
 #include <pcor/physics/geodesy.hpp>
 #include "checks/flown.hpp"
+#include "checks/leg_pair.hpp"
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
@@ -168,16 +169,15 @@ Estimated floor_of(const Octave& highest) {
   return {std::sqrt(2.0) * highest.rms, std::sqrt(2.0) * highest.error};
 }
 
-/// How much delta-p from LAMS changes with the airspeed, hPa per m/s: gamma M^2 p/((1 + 0.2 M^2) v), the mean
-/// of all that was flown.
+/// How much delta-p from LAMS changes with the airspeed at the same total temperature, hPa per m/s without
+/// sign: the mean of all that was flown.
 double pressure_per_speed(const CheckedFlights& flights) {
   std::vector<double> sensitivities;
   for (const CheckedFlight& flight : flights) {
     const FlightAir& air = flight.air;
     for (std::size_t i = 0; i < air.airspeed.size(); ++i) {
-      const double square = air.mach[i] * air.mach[i];
       if (air.flying[i])
-        sensitivities.push_back(1.4 * square * air.pressure[i] / ((1.0 + 0.2 * square) * air.airspeed[i]));
+        sensitivities.push_back(-pressure_per_airspeed(air.pressure[i], air.mach[i], air.airspeed[i]));
     }
   }
   return mean_value(sensitivities);

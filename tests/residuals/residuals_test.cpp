@@ -143,6 +143,40 @@ TEST(Residuals, HaveTheDerivativesOfTheReferenceToo) {
             "reference:static-alpha.a1");
 }
 
+TEST(Residuals, AtTheSensorAreThoseOfThePressureToFirstOrder) {
+  // With a recovery thermometer the temperature goes with the Mach number, with an ambient one it does not.
+  for (const bool with_recovery : {true, false}) {
+    ModelFile model = laser_model();
+    if (!with_recovery) {
+      model.variables.erase(Quantity::recovery_temperature);
+      model.variables[Quantity::ambient_temperature] = "TRUE_AT";
+      model.model.lams.approach = pcor::LamsApproach::with_temperature;
+    }
+    // The laser 1 cm/s from where the model says that the air is.
+    pcor::FlightSamples samples =
+        pcor::read_samples(pcor::Flight(flight_file()), model, *pcor::lams_reference());
+    const Residuals recorded(std::make_shared<const pcor::FlightSamples>(samples), model,
+                             *pcor::lams_reference());
+    const auto [sensor, predicted] = *recorded.predicted_sensor(recorded.parameters().data());
+    for (auto& [quantity, values] : samples.model.columns) {
+      if (quantity == sensor) values = predicted;
+      for (double& value : values) value += quantity == sensor ? 0.01 : 0.0;
+    }
+    const Residuals tested(std::make_shared<const pcor::FlightSamples>(samples), model,
+                           *pcor::lams_reference());
+    const std::vector<std::size_t> places = used(tested);
+    ASSERT_GT(places.size(), 500U);
+    std::vector<double> pressure(places.size());
+    std::vector<double> at_sensor(places.size());
+    const double* const at = tested.parameters().data();
+    tested.evaluate(places.data(), places.size(), at, {}, pressure.data(), nullptr);
+    tested.evaluate_at_sensor(places.data(), places.size(), at, {}, at_sensor.data(), nullptr);
+    // What is of second order is 1 cm/s over the airspeed, 1e-4.
+    for (std::size_t i = 0; i < places.size(); ++i)
+      EXPECT_NEAR(at_sensor[i] / pressure[i], 1.0, 3e-4) << (with_recovery ? "recovery" : "ambient");
+  }
+}
+
 TEST(Masks, SayWhyEverySampleIsNotUsed) {
   MaskOptions options;
   options.exclude = {pcor::Regime::climb};

@@ -60,19 +60,11 @@ class LamsOnSamples final : public ReferenceOnSamples, private NoisySensor {
   }
 
   std::vector<double> sensitivity() const override {
-    const std::size_t count = beam_.size();
-    std::vector<double> mach(count);
-    std::vector<double> pressure(count);
-    std::vector<double> airspeed(count);
-    model_.batch().run(model_.columns(),
-                       {{Quantity::corrected_mach, mach.data()},
-                        {Quantity::corrected_static_pressure, pressure.data()},
-                        {Quantity::corrected_airspeed, airspeed.data()}},
-                       count, model_.parameters().data());
-    std::vector<double> result(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const double squared = mach[i] * mach[i];
-      result[i] = -1.4 * squared * pressure[i] / ((1.0 + 0.2 * squared) * airspeed[i]);
+    const std::vector<Jet> parameters(model_.parameters().begin(), model_.parameters().end());
+    std::vector<double> result(beam_.size());
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      const Jet beam(predicted_at(i, model_.parameters().data()), 0);
+      result[i] = residual_at(i, beam, parameters.data()).v[0];
     }
     return result;
   }
