@@ -27,7 +27,8 @@ Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix, double least);
 
 /// The x of information x = right, unknowns scaled alike, over the directions above `least`; zero over the
 /// others.
-Eigen::VectorXd pseudo_solution(const Eigen::MatrixXd& information, const Eigen::VectorXd& right, double least);
+Eigen::VectorXd pseudo_solution(const Eigen::MatrixXd& information, const Eigen::VectorXd& right,
+                                double least);
 
 /// The Moore-Penrose inverse, with directions left out that rounding cannot tell from zero.
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix);

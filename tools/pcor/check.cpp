@@ -59,8 +59,8 @@ nlohmann::ordered_json as_json(const Checks& checks) {
 /// "-0.154 +- 0.024 hPa between the systems; matters from 0.3 on".
 std::string key_number(const CheckResult& result) {
   const KeyNumber& key = result.key;
-  return fmt::format("{:+.3f} +- {:.3f} {} {}; matters from {:g} on", key.value,
-                     key.standard_error, key.unit, key.what, key.matters);
+  return fmt::format("{:+.3f} +- {:.3f} {} {}; matters from {:g} on", key.value, key.standard_error, key.unit,
+                     key.what, key.matters);
 }
 
 /// The first rows of a table in columns, the first to the left and the others to the right.
