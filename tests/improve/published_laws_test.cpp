@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,6 @@
 
 using pcor::ModelFile;
 using pcor::Quantity;
-using pcor::Reference;
 using testing::Gt;
 using testing::IsEmpty;
 using testing::Not;
@@ -76,15 +76,15 @@ TEST_P(PublishedLaw, GoesThroughEveryCommandOnAFlightThatHasAllVariables) {
   const ModelFile file = law(GetParam());
   for (const std::string text : {"lams", "pressure:PS_A"}) {
     SCOPED_TRACE(text);
-    const Reference reference = pcor::read_reference(text, file);
+    const std::shared_ptr<const pcor::Reference> reference = pcor::read_reference(text, file);
     const pcor::Comparison comparison = pcor::compare(flight(), {{"law", file, reference}});
     EXPECT_THAT(comparison.models.front().all.samples, Gt(500U));
-    EXPECT_THAT(pcor::refit(flight(), file, reference).samples, Gt(500U));
-    const pcor::Diagnosis diagnosis = pcor::diagnose(flight(), file, reference);
+    EXPECT_THAT(pcor::refit(flight(), file, *reference).samples, Gt(500U));
+    const pcor::Diagnosis diagnosis = pcor::diagnose(flight(), file, *reference);
     EXPECT_THAT(diagnosis.candidates, Gt(10U));
     pcor::ImproveOptions once;
     once.most_steps = 1;
-    EXPECT_THAT(pcor::improve(flight(), file, reference, once).steps, Not(IsEmpty()));
+    EXPECT_THAT(pcor::improve(flight(), file, *reference, once).steps, Not(IsEmpty()));
   }
 }
 
