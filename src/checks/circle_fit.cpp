@@ -1,7 +1,7 @@
 #include "checks/circle_fit.hpp"
+#include "numerics/missing.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <pcor/physics/constants.hpp>
 
@@ -15,7 +15,7 @@ CircleFit fit_circle(const std::vector<double>& airspeed, const std::vector<doub
   std::vector<double> left(2 * count);
   std::vector<double> both_times(2 * count);
   CircleFit circle;
-  double before = std::numeric_limits<double>::quiet_NaN();
+  double before = nan;
   for (std::size_t i = 0; i < count; ++i) {
     const double angle = heading[i] * constants::radians_per_degree;
     const double sine = std::sin(angle);

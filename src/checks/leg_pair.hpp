@@ -1,8 +1,7 @@
 #pragma once
 
-#include <limits>
-
 #include "numerics/least_squares.hpp"
+#include "numerics/missing.hpp"
 
 namespace pcor::internal {
 
@@ -11,12 +10,12 @@ struct LegMean {
   Estimated tail_wind{};  ///< UXW, m/s
   double scatter = 0.0;   ///< of UXW, m/s
   /// Ground velocity to starboard of the nose, m/s; NaN: not known. Wind and sideslip make it.
-  double cross_speed = std::numeric_limits<double>::quiet_NaN();
-  double heading = 0.0;                                        ///< deg
-  double airspeed = std::numeric_limits<double>::quiet_NaN();  ///< true, m/s
-  double pressure = std::numeric_limits<double>::quiet_NaN();  ///< hPa
-  double mach = std::numeric_limits<double>::quiet_NaN();
-  double temperature = std::numeric_limits<double>::quiet_NaN();  ///< ambient, K
+  double cross_speed = nan;
+  double heading = 0.0;   ///< deg
+  double airspeed = nan;  ///< true, m/s
+  double pressure = nan;  ///< hPa
+  double mach = nan;
+  double temperature = nan;  ///< ambient, K
 };
 
 /// What a pair of legs says. Errors are those of the legs' means, without changes of the wind between them.

@@ -10,6 +10,7 @@
 #include <pcor/effects/catalogue.hpp>
 #include "diagnose/manoeuvres.hpp"
 #include "numerics/decompositions.hpp"
+#include "numerics/median.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
@@ -37,8 +38,7 @@ std::vector<Prospect> prospects_of(const Analysis& analysis, const CandidateSet&
   std::vector<double> levels;
   for (const Eigen::VectorXd& level : analysis.noise().level)
     levels.insert(levels.end(), level.data(), level.data() + level.size());
-  std::nth_element(levels.begin(), levels.begin() + static_cast<std::ptrdiff_t>(levels.size() / 2),
-                   levels.end());
+  const double usual_level = median(levels);
   NoiseModel noise;
   noise.coefficients = analysis.noise().coefficients;
 
@@ -49,7 +49,7 @@ std::vector<Prospect> prospects_of(const Analysis& analysis, const CandidateSet&
     if (bins.size() == 0) continue;
     const Eigen::MatrixXd binned = binned_columns(columns, bins);
     if (!binned.allFinite()) continue;
-    noise.level = {Eigen::VectorXd::Constant(binned.rows(), levels[levels.size() / 2])};
+    noise.level = {Eigen::VectorXd::Constant(binned.rows(), usual_level)};
     const Eigen::MatrixXd white = whitened(binned, bins, noise, 0);
     prospects.push_back({std::move(manoeuvre), white.transpose() * white});
   }

@@ -6,19 +6,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <optional>
 
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/realtime/chain.hpp>
 #include <pcor/words/error.hpp>
+#include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr int jet_width = 3;
 using Jet = ceres::Jet<double, jet_width>;
 

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include <pcor/effects/catalogue.hpp>
 #include "numerics/decompositions.hpp"
+#include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
@@ -273,8 +273,7 @@ std::vector<std::vector<double>> evidence_along(const Analysis& analysis, std::s
   std::vector<std::vector<double>> along;
   for (const std::size_t group : analysis.result().chosen) {
     const Eigen::VectorXd evidence = evidence_of(analysis, group, analysis.result().chosen);
-    std::vector<double>& series =
-        along.emplace_back(analysis.flights()[flight].given.size(), std::numeric_limits<double>::quiet_NaN());
+    std::vector<double>& series = along.emplace_back(analysis.flights()[flight].given.size(), nan);
     for (std::size_t k = 0; k < bins.records().size(); ++k) {
       const auto bin = static_cast<std::size_t>(bins.bins()[k]);
       series[bins.records()[k]] = evidence[analysis.scores().block[flight][bin]];

@@ -351,7 +351,7 @@ UnitConversion Flight::conversion(const std::string& name, const std::string& wa
         Error::Code::unit,
         fmt::format(
             "{}: {} has the unit \"{}\", and the model states \"{}\"; remove unit.{} from the [units] of the "
-            "model, or mend the units attribute of the file if that is wrong",
+            "model, or correct the units attribute of the file if that is wrong",
             path().string(), name, own, stated, role));
   return conversion;
 }

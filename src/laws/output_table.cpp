@@ -30,14 +30,26 @@ Quantities delta_p(const Correction& correction) {
                                               : Quantities{Q::static_defect};
 }
 
-Quantities law(const Correction& correction) {
+/// What these quantities are measured or found from.
+Quantities sources_of(const Correction& correction, const Quantities& quantities) {
   Quantities recorded;
-  for (const Quantity read : StaticDefect::reads(correction)) {
+  for (const Quantity read : quantities) {
     const Quantities sources = MeasuredQuantities::sources(correction.chain, read);
     recorded.insert(recorded.end(), sources.begin(), sources.end());
   }
   std::sort(recorded.begin(), recorded.end());
   return recorded;
+}
+
+Quantities law(const Correction& correction) {
+  return sources_of(correction, StaticDefect::reads(correction));
+}
+
+/// What effects before the ports read.
+Quantities read_before_ports(const Correction& correction, const std::vector<Where>& places) {
+  Quantities read;
+  for (const Where place : places) read = joined({read, correction.chain.read_at(place)});
+  return sources_of(correction, read);
 }
 
 Quantities ambient_temperature(const Correction& correction) {
@@ -57,11 +69,16 @@ const std::vector<OutputRow>& output_table() {
        }},
       {"PSXC", Q::corrected_static_pressure, "Corrected Static Pressure", "air_pressure", "Atmos. State",
        [](const Correction& c) {
-         return joined({{Q::static_pressure}, delta_p(c)});
+         return joined({{Q::static_pressure},
+                        delta_p(c),
+                        read_before_ports(c, {Where::static_transducer, Where::static_line})});
        }},
       {"QCXC", Q::corrected_dynamic_pressure, "Corrected Dynamic Pressure", "", "Aircraft State",
        [](const Correction& c) {
-         return joined({{Q::dynamic_pressure}, delta_p(c)});
+         return joined({{Q::dynamic_pressure},
+                        delta_p(c),
+                        read_before_ports(c, {Where::dynamic_transducer, Where::static_line,
+                                              Where::total_line, Where::pitot})});
        }},
       {"MACHX", Q::corrected_mach, "Aircraft Mach Number", "", "Aircraft State",
        [](const Correction& c) {

@@ -40,10 +40,10 @@ RegimeCriteria RegimeCriteria::gv() {
   return criteria;
 }
 
-std::optional<RegimeCriteria> RegimeCriteria::of(std::string_view registration) {
-  const auto found =
-      std::find_if(known_aircraft.begin(), known_aircraft.end(),
-                   [&](const KnownAircraft& each) { return each.registration == registration; });
+std::optional<RegimeCriteria> RegimeCriteria::of(std::string_view aircraft) {
+  const auto found = std::find_if(
+      known_aircraft.begin(), known_aircraft.end(),
+      [&](const KnownAircraft& each) { return aircraft.find(each.registration) != std::string_view::npos; });
   return found == known_aircraft.end() ? std::nullopt : std::optional(found->criteria());
 }
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "numerics/missing.hpp"
 #include "regimes/search.hpp"
 
 namespace pcor::internal {
@@ -65,7 +65,7 @@ std::vector<Found> find_speed_runs(const Cells& cells, const std::vector<bool>& 
   std::vector<Found> found;
   const std::vector<double> airspeed = running_mean(cells.airspeed, smoothing);
   const std::vector<double> altitude = running_mean(cells.altitude, smoothing);
-  std::vector<double> acceleration(cells.count(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> acceleration(cells.count(), nan);
   for (std::size_t i = 0; i + 1 < cells.count(); ++i) {
     if (flying[i] && flying[i + 1]) acceleration[i] = airspeed[i + 1] - airspeed[i];
   }

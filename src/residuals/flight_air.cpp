@@ -12,13 +12,12 @@
 #include <pcor/physics/geodesy.hpp>
 #include <pcor/physics/moist_air.hpp>
 #include <pcor/physics/standard_atmosphere.hpp>
+#include "numerics/missing.hpp"
 #include "residuals/masks.hpp"
 #include "roles/recorded_series.hpp"
 
 namespace pcor::internal {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<bool> find_flying(const FlightSamples& samples, const MaskOptions& options) {
   const std::vector<Mask> masks = masks_as_flown(samples, options);

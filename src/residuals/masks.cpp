@@ -1,11 +1,11 @@
 #include "residuals/masks.hpp"
+#include "numerics/missing.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace pcor {
@@ -40,7 +40,7 @@ namespace {
 
 double airspeed_at(const FlightSamples& samples, std::size_t sample) {
   const std::vector<double>& airspeed = samples.motion.airspeed;
-  return airspeed.empty() ? std::numeric_limits<double>::quiet_NaN() : airspeed[sample];
+  return airspeed.empty() ? nan : airspeed[sample];
 }
 
 Mask mask_as_flown(const FlightSamples& samples, std::size_t sample, const RegimeSet& regimes,

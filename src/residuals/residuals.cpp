@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "numerics/missing.hpp"
 #include "residuals/masks.hpp"
 #include "residuals/model_on_samples.hpp"
 #include "residuals/reference_on_samples.hpp"
@@ -172,7 +173,8 @@ std::vector<double> Residuals::wanted_defect(const double* parameters) const {
 
 std::vector<double> Residuals::quantity(Quantity quantity, const double* parameters) const {
   const Implementation& own = *implementation_;
-  std::vector<double> result(size());
+  std::vector<double> result(size(), nan);
+  if (!own.model.batch().finds(quantity)) return result;
   own.model.batch().run(own.model.columns(), {{quantity, result.data()}}, size(), parameters);
   return result;
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -13,6 +12,7 @@
 #include <pcor/realtime/chain.hpp>
 #include <pcor/residuals/reference.hpp>
 #include <pcor/words/error.hpp>
+#include "numerics/missing.hpp"
 #include "roles/model_inputs.hpp"
 #include "roles/recorded_series.hpp"
 
@@ -21,8 +21,6 @@ namespace pcor {
 using namespace internal;
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Centred differences in time; NaN at the ends and beside gaps.
 std::vector<double> rate_of(const std::vector<double>& values, const std::vector<double>& time, double step) {

@@ -2,19 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "numerics/missing.hpp"
 #include "residuals/residual_sums.hpp"
 
 namespace pcor {
 
 using namespace internal;
-
-namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
 
 void ResidualSums::add(double residual, double noise, double samples_per_independent) {
   ++samples;

@@ -39,9 +39,10 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelFile& file
     }
     if (!flight.has(name)) {
       const std::string meant = did_you_mean(name, flight.variables());
-      throw Error(fmt::format(
-          "{}: {}, which a formula of the model names, is neither a variable of this file nor a quantity{}",
-          flight.path().string(), name, meant.empty() ? "" : "; " + meant));
+      throw Error(Error::Code::variable,
+                  fmt::format("{}: {}, which a formula of the model names, is neither a variable of this "
+                              "file nor a quantity{}",
+                              flight.path().string(), name, meant.empty() ? "" : "; " + meant));
     }
     const std::string unit = flight.variable(name).units;
     notes.push_back(

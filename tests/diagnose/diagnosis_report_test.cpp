@@ -291,7 +291,7 @@ TEST(DiagnosisReport, HasAPageInWordsForEachFinding) {
         "20:35:00 UTC (level, yaw manoeuvre), 55 %", "falls from 0.196 to 0.152 hPa",
         "lams-azimuth (error of the azimuth of the laser beam; correlation +0.991, chi2 1.4 lower, 3.2 times "
         "the usual size).",
-        "decide with a probability of 93 %", "Source: memo eq. 19."})
+        "decide with a probability of 93 %", "Source: Cooper (2012) eq. 19."})
     EXPECT_THAT(text, HasSubstr(part));
   const auto* second = item<ReportText>(report, "Finding 2: static-lag");
   ASSERT_NE(second, nullptr);

@@ -88,4 +88,13 @@ TEST_P(PublishedLaw, GoesThroughEveryCommandOnAFlightThatHasAllVariables) {
   }
 }
 
+TEST(Laws, NeedNoThermometerAgainstAPressure) {
+  ModelFile file = law(data / "models" / "c130-psfd-eq18.toml");
+  for (const Quantity role : {Quantity::recovery_temperature, Quantity::ambient_temperature,
+                              Quantity::vapor_pressure, Quantity::dew_point, Quantity::lams_airspeed})
+    file.variables.erase(role);
+  const std::shared_ptr<const pcor::Reference> reference = pcor::read_reference("pressure:PS_A", file);
+  EXPECT_THAT(pcor::diagnose(flight(), file, *reference).candidates, Gt(10U));
+}
+
 INSTANTIATE_TEST_SUITE_P(Data, PublishedLaw, testing::ValuesIn(laws()), name_of);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <bitset>
 #include <cstddef>
@@ -79,9 +78,6 @@ class BoundModel {
   bool counts_vapor() const { return moist_ || acts(Where::humidity); }
 
   bool has_lams() const { return recorded(Quantity::lams_airspeed); }
-  bool needs_rates() const {
-    return std::any_of(rates.begin(), rates.end(), [this](const Rate& each) { return needs(each.rate); });
-  }
 
   /// What effect number `effect` of the model gives for a state that `Chain::measure` has been through, in
   /// the unit of its place. Zero for an effect on the laser's beam where there is no laser.

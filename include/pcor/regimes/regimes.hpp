@@ -155,8 +155,9 @@ struct RegimeCriteria {
   /// Those of the NSF/NCAR GV, which accelerates faster (0.3 m/s2, QAtools).
   static RegimeCriteria gv();
 
-  /// Those of the aircraft with that registration, e.g. N677F; nothing where the aircraft is not known.
-  static std::optional<RegimeCriteria> of(std::string_view registration);
+  /// Those of the aircraft whose registration is in the text, e.g. "N677F" or "GV N677F"; nothing where it is
+  /// not known.
+  static std::optional<RegimeCriteria> of(std::string_view aircraft);
 };
 
 /// How a regime is found, in words with the numbers of the criteria.

@@ -1,8 +1,8 @@
 #include "diagnose/manoeuvres/aircraft.hpp"
+#include "numerics/missing.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 
@@ -31,7 +31,7 @@ double median_or(Series values, double otherwise) {
 
 Series ratio_of(const Flown& flown, const Series& numerator, const Series& denominator) {
   constexpr double least = 1.0;  // hPa
-  Series ratio(flown.pressure.size(), std::numeric_limits<double>::quiet_NaN());
+  Series ratio(flown.pressure.size(), nan);
   for (std::size_t i = 0; i < ratio.size(); ++i) {
     if (denominator[i] > least) ratio[i] = numerator[i] / denominator[i];
   }
@@ -158,7 +158,7 @@ Envelope::Envelope(const Flown& flown, double step)
 
   Series where = flown.pressure;
   for (std::size_t i = 0; i < where.size(); ++i) {
-    if (flown.mach[i] < greatest_mach_) where[i] = std::numeric_limits<double>::quiet_NaN();
+    if (flown.mach[i] < greatest_mach_) where[i] = nan;
   }
   fast = level_at(median(std::move(where)));
 }
@@ -169,8 +169,7 @@ Level Envelope::level_at(double pressure) const {
   Series speeds = flown_.airspeed;
   Series temperatures = flown_.temperature;
   for (std::size_t i = 0; i < speeds.size(); ++i) {
-    if (std::abs(flown_.pressure[i] / pressure - 1.0) > near)
-      speeds[i] = temperatures[i] = std::numeric_limits<double>::quiet_NaN();
+    if (std::abs(flown_.pressure[i] / pressure - 1.0) > near) speeds[i] = temperatures[i] = nan;
   }
   const double temperature = median_or(std::move(temperatures), median(flown_.temperature));
   const auto airspeed_of = [&](double mach) { return true_airspeed(mach, temperature, dry_air<double>()); };

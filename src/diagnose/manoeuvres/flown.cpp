@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <pcor/physics/air_data.hpp>
 #include <pcor/physics/humidity.hpp>
@@ -10,11 +9,11 @@
 #include <pcor/physics/recovery_factor.hpp>
 #include <pcor/physics/standard_atmosphere.hpp>
 #include "diagnose/manoeuvres/statistics.hpp"
+#include "numerics/missing.hpp"
 
 namespace pcor::internal::manoeuvres {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 const std::vector<double> nothing;
 
 const std::vector<double>& series_of(const FlightSamples& flight, Quantity quantity) {

@@ -1,10 +1,10 @@
 #include "diagnose/manoeuvres/statistics.hpp"
+#include "numerics/missing.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <functional>
-#include <limits>
 #include <map>
 #include <utility>
 
@@ -39,7 +39,7 @@ std::vector<Point> thinned(const std::vector<Point>& points, std::size_t most) {
 double quantile(std::vector<double> values, double share) {
   values.erase(std::remove_if(values.begin(), values.end(), [](double x) { return !std::isfinite(x); }),
                values.end());
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  if (values.empty()) return nan;
   const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
   std::nth_element(values.begin(), values.begin() + place, values.end());
   return values[static_cast<std::size_t>(place)];

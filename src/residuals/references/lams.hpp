@@ -5,6 +5,7 @@
 #include <string>
 
 #include <pcor/residuals/reference.hpp>
+#include <pcor/words/error.hpp>
 #include "residuals/reference_on_samples.hpp"
 
 namespace pcor::internal {
@@ -102,6 +103,8 @@ class LamsReference final : public Reference {
 
   std::unique_ptr<ReferenceOnSamples> on(const FlightSamples& samples,
                                          const ModelOnSamples& model) const override {
+    if (samples.model.find(Quantity::lams_airspeed) == nullptr)
+      throw Error(Error::Code::model, "the model has no lams_airspeed, so LAMS is no reference for it");
     return std::make_unique<LamsOnSamples>(samples, model);
   }
 };

@@ -59,7 +59,8 @@ class PressureReference final : public Reference {
                     std::vector<std::string>&) const override {
     if (!flight.has(variable_)) {
       const std::string meant = did_you_mean(variable_, flight.variables());
-      throw Error(fmt::format("{}: {}, the reference, is not in this file{}; give another with --reference",
+      throw Error(Error::Code::variable,
+                  fmt::format("{}: {}, the reference, is not in this file{}; give another with --reference",
                               flight.path().string(), variable_, meant.empty() ? "" : "; " + meant));
     }
     const UnitConversion conversion = flight.conversion(variable_, "hPa");
