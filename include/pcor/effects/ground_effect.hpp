@@ -31,7 +31,7 @@ struct GroundEffect {
   static auto value(const State& state, const P* parameter) {
     using S = typename State::Scalar;
     using R = Promoted<S, P>;
-    const R height(state[Quantity::height_above_ground]);
+    const auto height = R(state[Quantity::height_above_ground]);
     const R nearest(parameter[1] * P(0.25));
     const R ratio = nearest / select(height < nearest, nearest, height);
     return parameter[0] * (ratio * ratio);
