@@ -434,7 +434,7 @@ TEST_F(FlightTest, AUnitOfTheModelNeverReplacesAnotherOneOfTheFile) {
   EXPECT_EQ(refusal_of("PSFD", "Pa"),
             path().string() +
                 ": PSFD has the unit \"mbar\", and the model states \"Pa\"; remove unit.static_pressure from "
-                "the [units] of the model, or mend the units attribute of the file if that is wrong");
+                "the [units] of the model, or correct the units attribute of the file if that is wrong");
   EXPECT_THAT(refusal_of("HEAT", "hPa"), HasSubstr("HEAT has the unit \"K\", and the model states \"hPa\""));
   for (const char* wrong : {"furlong", "K", "furlong-ish"})
     EXPECT_THAT(refusal_of("BARE", wrong),
