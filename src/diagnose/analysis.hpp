@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "diagnose/columns.hpp"
-#include "diagnose/noise_model.hpp"
+#include "numerics/noise_model.hpp"
 #include "diagnose/scores.hpp"
 #include "diagnose/search.hpp"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <pcor/residuals/residuals.hpp>
-#include "diagnose/binning.hpp"
+#include "numerics/binning.hpp"
 #include "diagnose/candidates.hpp"
 
 namespace pcor::internal {

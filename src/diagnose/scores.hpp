@@ -3,7 +3,7 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "diagnose/noise_model.hpp"
+#include "numerics/noise_model.hpp"
 
 namespace pcor::internal {
 

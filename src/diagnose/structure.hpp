@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/binning.hpp"
-#include "diagnose/noise_model.hpp"
+#include "numerics/binning.hpp"
+#include "numerics/noise_model.hpp"
 #include "diagnose/smooth.hpp"
 
 namespace pcor::internal {

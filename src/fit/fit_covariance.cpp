@@ -3,120 +3,249 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include <pcor/numerics/noise.hpp>
 #include "fit/loss_function.hpp"
+#include "fit/prior.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
+namespace {
 
-FitCovariance fit_covariance(FitFlights& flights, const Solution& solution, const Eigen::MatrixXd& earlier) {
-  const FitTask& task = flights.task();
-  const std::unique_ptr<ceres::LossFunction> loss = loss_function(task.options.loss, solution.deviation);
-  const FitSetup& setup = flights.setup();
-  const auto earlier_count = static_cast<std::size_t>(earlier.rows());
-  const Eigen::Index size = as_index(setup.wanted.size() + flights.offsets());
-  std::vector<Eigen::MatrixXd> curvatures(flights.count(), Eigen::MatrixXd::Zero(size, size));
-  std::vector<Eigen::MatrixXd> scores(flights.count(), Eigen::MatrixXd::Zero(size, size));
-  std::vector<double> memories(flights.count(), 0.0);
-  flights.visit([&](std::size_t number, std::size_t first_offset, FitFlight& fit) {
-    const std::size_t kept = fit.kept().size();
-    if (kept == 0) return;
-    const FlightSamples& samples = fit.residuals().samples();
-    const std::size_t length = samples.time.size();
-    std::vector<std::vector<double>> columns(static_cast<std::size_t>(size),
-                                             std::vector<double>(length, 0.0));
-    std::vector<double> influence(length, nan);
-    FitFlight::Rows rows;
-    double slope = 0.0;
-    double squares = 0.0;
-    for (std::size_t first = 0; first < kept; first += samples_per_chunk) {
-      const std::size_t count = std::min(samples_per_chunk, kept - first);
-      fit.evaluate(first, count, solution.values, solution.offsets, first_offset, rows);
-      for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t place = fit.kept()[first + i];
-        const double weight = 1.0 / fit.noise(first + i);
-        const double normal = weight * rows.residual()[i];
-        std::array<double, 3> rho{normal * normal, 1.0, 0.0};
-        if (loss != nullptr) loss->Evaluate(rho[0], rho.data());
-        influence[place] = rho[1] * normal;
-        squares += influence[place] * influence[place];
-        slope += rho[1] + 2.0 * normal * normal * rho[2];
-        for (std::size_t k = 0; k < columns.size(); ++k) columns[k][place] = weight * rows.columns[k][i];
-      }
+constexpr std::size_t fewest_flights = 8;  // from which on whole flights are left out
+constexpr double parts = 20.0;             // else so many parts of all flights together
+constexpr double shortest_part = 120.0;    // s
+
+/// Which flights, or parts of flights, are left out one after another.
+class Blocks {
+ public:
+  explicit Blocks(FitFlights& flights) : begin_(flights.count(), 0.0), first_(flights.count(), 0) {
+    std::vector<double> length(flights.count(), 0.0);
+    flights.visit([&](std::size_t number, std::size_t, FitFlight& fit) {
+      const std::vector<double>& time = fit.bins().time();
+      if (time.empty()) return;
+      begin_[number] = time.front();
+      length[number] = time.back() - time.front();
+    });
+    double all = 0.0;
+    for (const double each : length) all += each;
+    length_ = flights.count() >= fewest_flights ? infinity : std::max(all / parts, shortest_part);
+    for (std::size_t f = 0; f < flights.count(); ++f) {
+      first_[f] = count_;
+      count_ += length_ == infinity ? 1 : static_cast<std::size_t>(length[f] / length_) + 1;
     }
-    slope /= static_cast<double>(kept);
-    const Autoregression noise =
-        autoregression(influence, stretches_of(influence, samples.time, samples.step), infinity);
-    memories[number] = noise.samples_per_independent(std::sqrt(squares / static_cast<double>(kept))) *
-                       static_cast<double>(kept);
-    const std::vector<double> present(length, 0.0);
+  }
+
+  std::size_t count() const { return count_; }
+
+  std::size_t operator()(std::size_t flight, double time) const {
+    if (length_ == infinity) return first_[flight];
+    const std::size_t last = flight + 1 < first_.size() ? first_[flight + 1] : count_;
+    const double place = std::max((time - begin_[flight]) / length_, 0.0);
+    return std::min(first_[flight] + static_cast<std::size_t>(place), last - 1);
+  }
+
+ private:
+  double length_ = infinity;  // s
+  std::vector<double> begin_;
+  std::vector<std::size_t> first_;
+  std::size_t count_ = 0;
+};
+
+/// Sums over the bins of one set of equations.
+struct Sums {
+  std::vector<Eigen::MatrixXd> derivatives;  ///< of the scores by all parameters, of each block
+  std::vector<Eigen::VectorXd> score;        ///< of each block
+  Eigen::MatrixXd covariance;                ///< of the sum of the scores
+  double influence_ratio = 1.0;              ///< of the variance of the influence to the slope of the loss
+};
+
+/// @param all the parameters of all equations and those that are held
+Sums sums_of(const FitEquations& equations, const std::vector<std::size_t>& all, const Blocks& blocks) {
+  FitFlights& flights = *equations.flights;
+  const Solution& solution = equations.solution;
+  const std::unique_ptr<ceres::LossFunction> loss =
+      loss_function(flights.task().options.loss, solution.deviation);
+  const Eigen::Index size = as_index(all.size());
+  const Eigen::Index own = as_index(equations.parameters.size());
+  std::vector<Eigen::Index> rows;  // of the own parameters among all
+  for (const std::size_t p : equations.parameters)
+    rows.push_back(std::find(all.begin(), all.end(), p) - all.begin());
+  std::vector<Sums> each(flights.count());
+  std::vector<double> squares(flights.count(), 0.0);
+  std::vector<double> slopes(flights.count(), 0.0);
+  flights.visit([&](std::size_t number, std::size_t first_offset, FitFlight& fit) {
+    Sums& sums = each[number];
+    sums.derivatives.assign(blocks.count(), Eigen::MatrixXd());
+    sums.score.assign(blocks.count(), Eigen::VectorXd());
+    sums.covariance = Eigen::MatrixXd::Zero(own, own);
+    if (fit.bins().size() == 0) return;
+    Eigen::VectorXd offsets;
+    if (fit.offsets() > 0)
+      offsets = solution.offsets.segment(as_index(first_offset), as_index(fit.offsets()));
+    const Eigen::MatrixXd white = fit.white_rows(solution.values, offsets);
+    Eigen::MatrixXd columns = fit.white_columns(solution.values, all);
+    const Eigen::Index count = white.rows();
+    std::vector<double> influence(static_cast<std::size_t>(count));
+    Eigen::VectorXd weight(count);
+    double slope = 0.0;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const double innovation = white(i, white.cols() - 1);
+      std::array<double, 3> rho{innovation * innovation, 1.0, 0.0};
+      if (loss != nullptr) loss->Evaluate(rho[0], rho.data());
+      influence[static_cast<std::size_t>(i)] = rho[1] * innovation;
+      weight[i] = rho[1];
+      slope += rho[1] + 2.0 * innovation * innovation * rho[2];
+      squares[number] += influence[static_cast<std::size_t>(i)] * influence[static_cast<std::size_t>(i)];
+    }
+    slopes[number] = slope;
+    slope /= static_cast<double>(count);
+    if (fit.offsets() > 0) {
+      // What the offsets of the intervals take up is no business of the parameters.
+      const Eigen::MatrixXd shifts =
+          white.middleCols(as_index(flights.setup().wanted.size()), as_index(fit.offsets()));
+      const Eigen::MatrixXd weighted = weight.asDiagonal() * shifts;
+      columns -= shifts * (pseudo_inverse(shifts.transpose() * weighted) * (weighted.transpose() * columns));
+    }
+    const std::vector<Stretch>& stretches = fit.bins().stretches();
+    std::vector<double> series = influence;
+    const Autoregression memory = autoregression(series, stretches, infinity);
     std::vector<const double*> pointers;
-    for (const std::vector<double>& column : columns) pointers.push_back(column.data());
-    const std::vector<double> sums =
-        covariance_of_sums(noise, pointers, stretches_of(present, samples.time, samples.step));
-    scores[number] = Eigen::Map<const Eigen::MatrixXd>(sums.data(), size, size);
-    for (Eigen::Index a = 0; a < size; ++a) {
-      const Eigen::Map<const Eigen::VectorXd> left(columns[static_cast<std::size_t>(a)].data(),
-                                                   as_index(length));
-      for (Eigen::Index b = 0; b <= a; ++b) {
-        const Eigen::Map<const Eigen::VectorXd> right(columns[static_cast<std::size_t>(b)].data(),
-                                                      as_index(length));
-        curvatures[number](a, b) = curvatures[number](b, a) = slope * left.dot(right);
+    for (const Eigen::Index row : rows) pointers.push_back(columns.col(row).data());
+    const std::vector<double> covariance = covariance_of_sums(memory, pointers, stretches);
+    sums.covariance = Eigen::Map<const Eigen::MatrixXd>(covariance.data(), own, own);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const std::size_t block = blocks(number, fit.bins().time()[static_cast<std::size_t>(i)]);
+      if (sums.derivatives[block].size() == 0) {
+        sums.derivatives[block] = Eigen::MatrixXd::Zero(own, size);
+        sums.score[block] = Eigen::VectorXd::Zero(own);
       }
+      const Eigen::VectorXd left = columns.row(i)(rows).transpose();
+      sums.derivatives[block] += slope * left * columns.row(i);
+      sums.score[block] += influence[static_cast<std::size_t>(i)] * left;
     }
   });
-  Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(size, size);
-  Eigen::MatrixXd score = Eigen::MatrixXd::Zero(size, size);
-  double memory = 0.0;
-  for (std::size_t i = 0; i < flights.count(); ++i) {
-    curvature += curvatures[i];
-    score += scores[i];
-    memory += memories[i];
-  }
-  FitCovariance found;
-  found.samples_per_independent = std::max(memory / static_cast<double>(flights.samples()), 1.0);
-  const Eigen::Index early = as_index(earlier_count);
-  const Eigen::Index wanted = as_index(setup.wanted.size());
-  const Eigen::VectorXd weights = prior_weights(task, solution, setup.wanted).cwiseAbs2();
-  curvature.diagonal().head(wanted) += weights;
-  score.diagonal().head(wanted) += solution.prior_strength * solution.prior_strength * weights;
-  // What is at a bound does not vary.
-  std::vector<Eigen::Index> varying;
-  for (Eigen::Index k = early; k < size; ++k) {
-    if (k >= wanted || !solution.at_bound[setup.wanted[static_cast<std::size_t>(k)]]) varying.push_back(k);
-  }
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(size, size);
-  result.topLeftCorner(early, early) = earlier;
-  if (varying.empty()) {
-    found.matrix = result.topLeftCorner(wanted, wanted);
-    return found;
-  }
-  const Eigen::MatrixXd inner = curvature(varying, varying);
-  const Eigen::VectorXd lengths = inner.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd inverse = lengths.asDiagonal() *
-                                  pseudo_inverse(lengths.asDiagonal() * inner * lengths.asDiagonal()) *
-                                  lengths.asDiagonal();
-  Eigen::MatrixXd own = inverse * score(varying, varying) * inverse.transpose();
-  if (early > 0) {
-    std::vector<Eigen::Index> before(earlier_count);
-    std::iota(before.begin(), before.end(), 0);
-    const Eigen::MatrixXd carried = -inverse * curvature(varying, before);
-    own += carried * earlier * carried.transpose();
-    const Eigen::MatrixXd across = carried * earlier;
-    for (std::size_t a = 0; a < varying.size(); ++a) {
-      for (Eigen::Index b = 0; b < early; ++b)
-        result(varying[a], b) = result(b, varying[a]) = across(as_index(a), b);
+  Sums whole;
+  whole.derivatives.assign(blocks.count(), Eigen::MatrixXd::Zero(own, size));
+  whole.score.assign(blocks.count(), Eigen::VectorXd::Zero(own));
+  whole.covariance = Eigen::MatrixXd::Zero(own, own);
+  double square_sum = 0.0;
+  double slope_sum = 0.0;
+  for (std::size_t f = 0; f < each.size(); ++f) {
+    whole.covariance += each[f].covariance;
+    square_sum += squares[f];
+    slope_sum += slopes[f];
+    for (std::size_t b = 0; b < blocks.count(); ++b) {
+      if (each[f].derivatives[b].size() == 0) continue;
+      whole.derivatives[b] += each[f].derivatives[b];
+      whole.score[b] += each[f].score[b];
     }
   }
+  whole.influence_ratio = square_sum / slope_sum;
+  return whole;
+}
+
+double information_of(FitFlights& flights) {
+  std::vector<double> parts_of_it(flights.count(), 0.0);
+  flights.visit([&](std::size_t number, std::size_t, FitFlight& fit) {
+    parts_of_it[number] = fit.white(Eigen::VectorXd::Ones(as_index(fit.bins().size()))).squaredNorm();
+  });
+  double sum = 0.0;
+  for (const double part : parts_of_it) sum += part;
+  return sum;
+}
+
+/// The inverse of a regular matrix whose unknowns may differ by powers of ten.
+Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& matrix) {
+  const Eigen::VectorXd scale = matrix.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  return scale.asDiagonal() * pseudo_inverse(scale.asDiagonal() * matrix * scale.asDiagonal()) *
+         scale.asDiagonal();
+}
+
+}  // namespace
+
+FitCovariance fit_covariance(const std::vector<FitEquations>& equations,
+                             const std::vector<std::size_t>& held) {
+  const FitEquations& last = equations.back();
+  const FitTask& task = last.flights->task();
+  std::vector<std::size_t> all;
+  for (const FitEquations& each : equations)
+    all.insert(all.end(), each.parameters.begin(), each.parameters.end());
+  const Eigen::Index fitted = as_index(all.size());
+  const std::vector<std::size_t> parameters = all;
+  all.insert(all.end(), held.begin(), held.end());
+  const Eigen::Index size = as_index(all.size());
+
+  const Blocks blocks(*last.flights);
+  std::vector<Eigen::MatrixXd> block_derivatives(blocks.count(), Eigen::MatrixXd::Zero(fitted, size));
+  std::vector<Eigen::VectorXd> block_score(blocks.count(), Eigen::VectorXd::Zero(fitted));
+  Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(fitted, size);
+  Eigen::MatrixXd score = Eigen::MatrixXd::Zero(fitted, fitted);
+  const Eigen::Index of_last = as_index(last.parameters.size());
+  Eigen::Index first = 0;
+  for (const FitEquations& each : equations) {
+    const Eigen::Index own = as_index(each.parameters.size());
+    if (own == 0) continue;
+    const Sums sums = sums_of(each, all, blocks);
+    Eigen::MatrixXd here = Eigen::MatrixXd::Zero(own, size);
+    for (std::size_t b = 0; b < blocks.count(); ++b) {
+      here += sums.derivatives[b];
+      block_derivatives[b].middleRows(first, own) = sums.derivatives[b];
+      block_score[b].segment(first, own) = sums.score[b];
+    }
+    derivatives.middleRows(first, own) = here;
+    score.block(first, first, own, own) = sums.covariance;
+    if (first + own < fitted) {
+      // The last equations weigh all samples by the inverse covariance of the noise, so what the noise does
+      // to them and to an earlier stage together is the derivative of that stage by their parameters.
+      const Eigen::MatrixXd across = sums.influence_ratio * here.middleCols(fitted - of_last, of_last);
+      score.block(first, fitted - of_last, own, of_last) = across;
+      score.block(fitted - of_last, first, of_last, own) = across.transpose();
+    }
+    first += own;
+  }
+  const Eigen::MatrixXd prior = prior_rows(task, parameters);
+  const Eigen::MatrixXd drawn = last.solution.deviation * last.solution.deviation * prior.transpose() * prior;
+  derivatives.leftCols(fitted) += drawn;
+  score += drawn;
+
+  FitCovariance found;
+  found.information = information_of(*last.flights);
+  found.blocks = blocks.count();
+  found.matrix = Eigen::MatrixXd::Zero(size, size);
+  found.jackknife = Eigen::VectorXd::Constant(fitted, nan);
+  const Eigen::MatrixXd doubt = task.doubt(held, held);
+  found.matrix.bottomRightCorner(size - fitted, size - fitted) = doubt;
+  // What is at a bound does not vary.
+  std::vector<Eigen::Index> varying;
+  for (Eigen::Index k = 0; k < fitted; ++k) {
+    if (!last.solution.at_bound[all[static_cast<std::size_t>(k)]]) varying.push_back(k);
+  }
+  if (varying.empty()) return found;
+  const Eigen::MatrixXd inverse = scaled_inverse(derivatives(varying, varying));
+  const Eigen::MatrixXd carried = -inverse * derivatives(varying, Eigen::all).rightCols(size - fitted);
+  const Eigen::MatrixXd own =
+      inverse * score(varying, varying) * inverse.transpose() + carried * doubt * carried.transpose();
+  const Eigen::MatrixXd across = carried * doubt;
   for (std::size_t a = 0; a < varying.size(); ++a) {
     for (std::size_t b = 0; b < varying.size(); ++b)
-      result(varying[a], varying[b]) = own(as_index(a), as_index(b));
+      found.matrix(varying[a], varying[b]) =
+          0.5 * (own(as_index(a), as_index(b)) + own(as_index(b), as_index(a)));
+    for (Eigen::Index b = fitted; b < size; ++b)
+      found.matrix(varying[a], b) = found.matrix(b, varying[a]) = across(as_index(a), b - fitted);
   }
-  const Eigen::MatrixXd corner = result.topLeftCorner(wanted, wanted);
-  found.matrix = 0.5 * (corner + corner.transpose());
+
+  // One step of Newton from the fit of all to that without a block.
+  Eigen::MatrixXd moved(as_index(varying.size()), as_index(blocks.count()));
+  for (std::size_t b = 0; b < blocks.count(); ++b) {
+    const Eigen::MatrixXd rest = derivatives(varying, varying) - block_derivatives[b](varying, varying);
+    moved.col(as_index(b)) = scaled_inverse(rest) * block_score[b](varying);
+  }
+  const auto count = static_cast<double>(blocks.count());
+  moved.colwise() -= moved.rowwise().mean().eval();
+  const Eigen::VectorXd errors = (moved.rowwise().squaredNorm() * ((count - 1.0) / count)).cwiseSqrt();
+  if (blocks.count() > 2) found.jackknife(varying) = errors;
   return found;
 }
 

@@ -1,22 +1,43 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <memory>
+#include <vector>
 
 #include "fit/fit_flights.hpp"
 
 namespace pcor::internal {
 
-struct FitCovariance {
-  Eigen::MatrixXd matrix{};  ///< of the wanted parameters; zero for those at a bound
-  double samples_per_independent = 1.0;
+/// The equations that a fit solves: some parameters from the samples of some flights, with what their stage
+/// found.
+struct FitEquations {
+  FitFlights* flights;
+  std::vector<std::size_t> parameters;
+  Solution solution;
 };
 
-/// The covariance of what a loss makes of noise with the memory that the residuals have: curvature^-1 times
-/// the covariance of the score times curvature^-1, where the score is the sum of derivative times influence
-/// (rho' r), and its noise an autoregression fitted to the influence of each flight.
+struct FitCovariance {
+  /// Of the parameters of all equations, in their order, and after them of those that were held at a value of
+  /// which the files state the error. Zero for those at a bound.
+  Eigen::MatrixXd matrix{};
+  /// The standard errors of the parameters of the equations by leaving out one flight, or one part of a
+  /// flight, after another: they need no model of the noise.
+  Eigen::VectorXd jackknife{};
+  std::size_t blocks = 0;    ///< flights, or parts of flights, that were left out
+  double information = 0.0;  ///< that all bins have of a common mean, 1/hPa^2
+};
+
+/// The covariance of what a fit, of one or several stages, makes of the noise.
 ///
-/// @param earlier of the first of the wanted parameters, which were found in stages before; what these err by
-///        goes on to the others. Empty without stages.
-FitCovariance fit_covariance(FitFlights& flights, const Solution& solution, const Eigen::MatrixXd& earlier);
+/// The equations of all stages stand in one system: each says that the derivatives by its parameters are at
+/// right angles to what is left. Their derivatives by all parameters are A, the covariance of their scores is
+/// B, and that of the parameters A^-1 B A^-T (Newey and McFadden 1994, Handbook of Econometrics 4, section
+/// 6). A score is the sum of white derivative times influence (rho' r); what memory the influence still has,
+/// an autoregression tells. What parameters that are held may err by goes on to the others.
+///
+/// @param equations the last of them of all samples @param held parameters that were not fitted and of which
+///        the files state an error
+FitCovariance fit_covariance(const std::vector<FitEquations>& equations,
+                             const std::vector<std::size_t>& held);
 
 }  // namespace pcor::internal

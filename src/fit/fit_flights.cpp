@@ -11,6 +11,7 @@
 
 #include <pcor/words/error.hpp>
 #include "numerics/missing.hpp"
+#include "numerics/spikes.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -36,122 +37,193 @@ FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask
       static_cast<std::size_t>(std::llround(task.options.training_share * static_cast<double>(kept_.size())));
   kept_.resize(training);
   if (!setup.regimes.empty()) {
-    std::vector<std::size_t> inside;
+    std::vector<int> inside(mask.size(), -1);  // number of the interval; the first that holds a sample counts
     for (const Interval& interval : flight.intervals) {
       if (std::find(setup.regimes.begin(), setup.regimes.end(), interval.regime) == setup.regimes.end())
         continue;
-      const std::size_t before = inside.size();
+      bool any = false;
       for (const std::size_t i : kept_) {
-        if (flight.time[i] >= interval.begin && flight.time[i] < interval.end) inside.push_back(i);
+        if (inside[i] >= 0 || flight.time[i] < interval.begin || flight.time[i] >= interval.end) continue;
+        inside[i] = static_cast<int>(offset_count_);
+        any = true;
       }
-      if (inside.size() == before) continue;
-      if (setup.with_offsets) offset_.resize(inside.size(), static_cast<int>(offset_count_));
-      ++offset_count_;
+      if (any) ++offset_count_;
     }
-    if (!setup.with_offsets) offset_count_ = 0;
-    kept_ = std::move(inside);
+    kept_.erase(std::remove_if(kept_.begin(), kept_.end(), [&](std::size_t i) { return inside[i] < 0; }),
+                kept_.end());
+    for (const std::size_t i : kept_) offset_.push_back(inside[i]);
   }
-  linear_ = std::all_of(setup.wanted.begin(), setup.wanted.end(),
+  linear_ = task.reference.model() != nullptr ||
+            std::all_of(setup.wanted.begin(), setup.wanted.end(),
                         [this](std::size_t parameter) { return residuals_.is_linear()[parameter]; });
+  prepare(setup.values, Eigen::VectorXd::Zero(as_index(offset_count_)));
 }
 
-void FitFlight::keep_derivatives() {
-  if (!linear_) return;
-  kept_parameters_ = setup_->values;
-  const std::size_t count = kept_.size();
-  std::vector<double> residual(count);
-  std::vector<double> derivatives(setup_->wanted.size() * count);
-  std::vector<double> part(setup_->wanted.size() * samples_per_chunk);
-  for (std::size_t first = 0; first < count; first += samples_per_chunk) {
-    const std::size_t length = std::min(samples_per_chunk, count - first);
-    residuals_.evaluate(kept_.data() + first, length, kept_parameters_.data(), setup_->wanted,
-                        residual.data() + first, part.data());
-    for (std::size_t k = 0; k < setup_->wanted.size(); ++k)
-      std::copy_n(part.data() + k * length, length, derivatives.data() + k * count + first);
+void FitFlight::prepare(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) {
+  const FlightSamples& flight = residuals_.samples();
+  std::vector<double> residual(kept_.size());
+  for (std::size_t first = 0; first < kept_.size(); first += samples_per_chunk) {
+    const std::size_t count = std::min(samples_per_chunk, kept_.size() - first);
+    evaluate(residuals_, first, count, parameters, {}, residual.data() + first, nullptr);
   }
-  kept_residual_ = std::move(residual);
-  kept_derivatives_ = std::move(derivatives);
+  std::vector<double> series(flight.time.size(), nan);
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    const double offset = offset_.empty() ? 0.0 : offsets[offset_[i]] * (*static_pressure_)[kept_[i]];
+    series[kept_[i]] = residual[i] - offset;
+  }
+  spikes_ = 0;
+  if (task_->options.loss != Loss::none) {
+    const std::vector<double> nothing(series.size(), 0.0);
+    const std::vector<double> calm = without_outliers(series, nothing, flight.time, flight.step, spikes_);
+    for (const std::size_t i : kept_) {
+      if (calm[i] != series[i]) series[i] = nan;
+    }
+  }
+  bins_ = Binning(series, flight.time, flight.step);
+  bin_.assign(kept_.size(), -1);
+  in_bin_ = Eigen::VectorXd::Zero(as_index(bins_.size()));
+  std::size_t i = 0;
+  for (std::size_t k = 0; k < bins_.records().size(); ++k) {
+    while (kept_[i] != bins_.records()[k]) ++i;
+    bin_[i] = bins_.bins()[k];
+    in_bin_[bin_[i]] += 1.0;
+  }
+  whitening_.reset();
+  kept_rows_.resize(0, 0);
+  kept_white_rows_.resize(0, 0);
+  if (linear_) keep_rows(parameters);
 }
 
-void FitFlight::evaluate_now(std::size_t first, std::size_t count, const Eigen::VectorXd& parameters,
-                             const std::vector<std::size_t>& wanted, double* residual,
-                             double* derivatives) const {
+void FitFlight::set_noise(const FitNoise& noise, std::size_t flight) {
+  NoiseModel model;
+  model.coefficients = noise.model.coefficients;
+  model.slow = noise.model.slow;
+  const std::vector<double>& time = noise.time[flight];
+  const Eigen::VectorXd& level = noise.model.level[flight];
+  Eigen::VectorXd& own = model.level.emplace_back(as_index(bins_.size()));
+  for (std::size_t i = 0; i < bins_.size(); ++i) {
+    const auto after = std::upper_bound(time.begin(), time.end(), bins_.time()[i] + 1e-6);
+    own[as_index(i)] = level[std::max<std::ptrdiff_t>(after - time.begin() - 1, 0)];
+  }
+  whitening_.emplace(bins_, model, 0);
+  if (kept_rows_.size() > 0) kept_white_rows_ = (*whitening_)(kept_rows_);
+}
+
+/// Through the chain; for LAMS, where some effect is not at the static ports, in the laser's own measure.
+void FitFlight::evaluate(const Residuals& residuals, std::size_t first, std::size_t count,
+                         const Eigen::VectorXd& parameters, const std::vector<std::size_t>& wanted,
+                         double* residual, double* derivatives) const {
   const std::size_t* const samples = kept_.data() + first;
   if (linear_) {
-    residuals_.evaluate(samples, count, parameters.data(), wanted, residual, derivatives);
+    residuals.evaluate(samples, count, parameters.data(), wanted, residual, derivatives);
   } else {
-    residuals_.evaluate_at_sensor(samples, count, parameters.data(), wanted, residual, derivatives);
+    residuals.evaluate_at_sensor(samples, count, parameters.data(), wanted, residual, derivatives);
   }
 }
 
-/// From the derivatives that are kept, where there are any.
-void FitFlight::find_residuals(std::size_t first, std::size_t count, const Eigen::VectorXd& parameters,
-                               const double* offsets, double* residual) const {
-  if (kept_residual_.empty()) {
-    evaluate_now(first, count, parameters, {}, residual, nullptr);
-  } else {
-    std::copy_n(kept_residual_.data() + first, count, residual);
-    for (std::size_t k = 0; k < setup_->wanted.size(); ++k) {
-      const Eigen::Index parameter = as_index(setup_->wanted[k]);
-      const double step = parameters[parameter] - kept_parameters_[parameter];
-      const double* const column = kept_derivatives_.data() + k * kept_.size() + first;
-      for (std::size_t i = 0; i < count; ++i) residual[i] += step * column[i];
+/// Means over the bins of derivatives and residual.
+Eigen::MatrixXd FitFlight::binned(const Residuals& residuals, const Eigen::VectorXd& parameters,
+                                  const std::vector<std::size_t>& wanted) const {
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(as_index(bins_.size()), as_index(wanted.size()) + 1);
+  std::vector<double> store((wanted.size() + 1) * samples_per_chunk);
+  for (std::size_t first = 0; first < kept_.size(); first += samples_per_chunk) {
+    const std::size_t count = std::min(samples_per_chunk, kept_.size() - first);
+    double* const residual = store.data() + wanted.size() * count;
+    evaluate(residuals, first, count, parameters, wanted, residual, store.data());
+    for (std::size_t c = 0; c <= wanted.size(); ++c) {
+      const double* const column = store.data() + c * count;
+      for (std::size_t i = 0; i < count; ++i) {
+        if (bin_[first + i] >= 0) sums(bin_[first + i], as_index(c)) += column[i];
+      }
     }
   }
-  if (offset_.empty()) return;
-  for (std::size_t i = 0; i < count; ++i)
-    residual[i] -= offsets[offset_[first + i]] * static_pressure(first + i);
+  return in_bin_.cwiseInverse().asDiagonal() * sums;
 }
 
-std::vector<double> FitFlight::values(const Eigen::VectorXd& parameters, const double* offsets) const {
-  std::vector<double> result(kept_.size());
-  for (std::size_t first = 0; first < kept_.size(); first += samples_per_chunk) {
-    find_residuals(first, std::min(samples_per_chunk, kept_.size() - first), parameters, offsets,
-                   result.data() + first);
+/// The derivatives of `recorded`, but for two static systems those at common pressures.
+Eigen::MatrixXd FitFlight::columns(const Eigen::VectorXd& parameters, const std::vector<std::size_t>& wanted,
+                                   const Eigen::MatrixXd& recorded) const {
+  if (const auto common = residuals_.at_common_pressures()) {
+    const Residuals elsewhere(common, task_->model, task_->reference, task_->options.mask);
+    return binned(elsewhere, parameters, wanted).leftCols(as_index(wanted.size()));
   }
+  return recorded.leftCols(as_index(wanted.size()));
+}
+
+void FitFlight::keep_rows(const Eigen::VectorXd& parameters) {
+  const Eigen::Index fitted = as_index(setup_->wanted.size());
+  const Eigen::MatrixXd recorded = binned(residuals_, parameters, setup_->wanted);
+  kept_parameters_ = parameters;
+  kept_rows_ = Eigen::MatrixXd::Zero(recorded.rows(), fitted + as_index(offset_count_) + 1);
+  kept_rows_.leftCols(fitted) = columns(parameters, setup_->wanted, recorded);
+  kept_rows_.rightCols(1) = recorded.rightCols(1);
+  for (std::size_t i = 0; i < offset_.size(); ++i) {
+    if (bin_[i] >= 0)
+      kept_rows_(bin_[i], fitted + offset_[i]) -= (*static_pressure_)[kept_[i]] / in_bin_[bin_[i]];
+  }
+}
+
+Eigen::MatrixXd FitFlight::rows(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) const {
+  const Eigen::Index fitted = as_index(setup_->wanted.size());
+  const Eigen::Index own = as_index(offset_count_);
+  Eigen::MatrixXd result;
+  if (linear_) {
+    result = kept_rows_;
+    result.rightCols(1) += kept_rows_.leftCols(fitted) * (parameters - kept_parameters_)(setup_->wanted);
+  } else {
+    const Eigen::MatrixXd now = binned(residuals_, parameters, setup_->wanted);
+    result = Eigen::MatrixXd::Zero(now.rows(), fitted + own + 1);
+    result.leftCols(fitted) = now.leftCols(fitted);
+    result.rightCols(1) = now.rightCols(1);
+    for (std::size_t i = 0; i < offset_.size(); ++i) {
+      if (bin_[i] >= 0)
+        result(bin_[i], fitted + offset_[i]) -= (*static_pressure_)[kept_[i]] / in_bin_[bin_[i]];
+    }
+  }
+  if (own > 0) result.rightCols(1) += result.middleCols(fitted, own) * offsets;
   return result;
 }
 
-void FitFlight::evaluate(std::size_t first, std::size_t count, const Eigen::VectorXd& parameters,
-                         const Eigen::VectorXd& offsets, std::size_t first_offset, Rows& rows) const {
-  const std::size_t fitted = setup_->wanted.size();
-  const auto all_offsets = static_cast<std::size_t>(offsets.size());
-  const bool kept = !kept_residual_.empty();
-  rows.columns.clear();
-  rows.store.assign((all_offsets + 1 + (kept ? 0 : fitted)) * count, 0.0);
-  double* const residual = rows.store.data();
-  double* const shifts = residual + count;
-  double* const derivatives = shifts + all_offsets * count;
-  if (kept) {
-    find_residuals(first, count, parameters, offsets.data() + first_offset, residual);
-  } else {
-    evaluate_now(first, count, parameters, setup_->wanted, residual, derivatives);
-    for (std::size_t i = 0; i < count && !offset_.empty(); ++i) {
-      const Eigen::Index offset = as_index(first_offset) + offset_[first + i];
-      residual[i] -= offsets[offset] * static_pressure(first + i);
-    }
-  }
-  for (std::size_t k = 0; k < fitted; ++k)
-    rows.columns.push_back(kept ? kept_derivatives_.data() + k * kept_.size() + first
-                                : derivatives + k * count);
-  for (std::size_t k = 0; k < all_offsets; ++k) rows.columns.push_back(shifts + k * count);
-  for (std::size_t i = 0; i < count && !offset_.empty(); ++i) {
-    const std::size_t offset = first_offset + static_cast<std::size_t>(offset_[first + i]);
-    shifts[offset * count + i] = -static_pressure(first + i);
-  }
-  rows.columns.push_back(residual);
+Eigen::MatrixXd FitFlight::white_rows(const Eigen::VectorXd& parameters,
+                                      const Eigen::VectorXd& offsets) const {
+  if (!whitening_ || !linear_) return white(rows(parameters, offsets));
+  const Eigen::Index fitted = as_index(setup_->wanted.size());
+  const Eigen::Index own = as_index(offset_count_);
+  Eigen::MatrixXd result = kept_white_rows_;
+  result.rightCols(1) += kept_white_rows_.leftCols(fitted) * (parameters - kept_parameters_)(setup_->wanted);
+  if (own > 0) result.rightCols(1) += kept_white_rows_.middleCols(fitted, own) * offsets;
+  return result;
 }
 
-void FitFlight::measure_noise(const Eigen::VectorXd& parameters, const double* offsets) {
-  const FlightSamples& flight = residuals_.samples();
-  const std::vector<double> residual = values(parameters, offsets);
-  std::vector<double> series(flight.time.size(), nan);
-  for (std::size_t i = 0; i < kept_.size(); ++i) series[kept_[i]] = residual[i];
-  const NoiseFloor floor = noise_floor(series, stretches_of(series, flight.time, flight.step), flight.step);
-  noise_.assign(kept_.size(), 1.0F);
-  // Without noise (data that a formula made) all samples count alike.
-  if (!(floor.rms > 0.0)) return;
-  for (std::size_t i = 0; i < kept_.size(); ++i) noise_[i] = static_cast<float>(floor.local_rms[kept_[i]]);
+Eigen::MatrixXd FitFlight::white_columns(const Eigen::VectorXd& parameters,
+                                         const std::vector<std::size_t>& wanted) const {
+  return white(columns(parameters, wanted, binned(residuals_, parameters, wanted)));
+}
+
+Eigen::MatrixXd FitFlight::unweighted_factor(const Eigen::VectorXd& parameters) const {
+  const std::vector<std::size_t>& wanted = setup_->wanted;
+  const std::vector<double> ones(samples_per_chunk, 1.0);
+  std::vector<double> store((wanted.size() + 1) * samples_per_chunk);
+  TriangularFactor factor(as_index(wanted.size()) + 1);
+  for (std::size_t first = 0; first < kept_.size(); first += samples_per_chunk) {
+    const std::size_t count = std::min(samples_per_chunk, kept_.size() - first);
+    std::vector<const double*> columns;
+    for (std::size_t c = 0; c <= wanted.size(); ++c) columns.push_back(store.data() + c * count);
+    evaluate(residuals_, first, count, parameters, wanted, store.data() + wanted.size() * count,
+             store.data());
+    factor.add(columns, ones.data(), count);
+  }
+  return factor.factor();
+}
+
+std::size_t FitFlight::outliers(const Eigen::VectorXd& parameters, double limit) const {
+  const Eigen::VectorXd innovations =
+      white_rows(parameters, Eigen::VectorXd::Zero(as_index(offset_count_))).rightCols(1);
+  double count = static_cast<double>(spikes_);
+  for (Eigen::Index i = 0; i < innovations.size(); ++i) {
+    if (std::abs(innovations[i]) > limit) count += in_bin_[i];
+  }
+  return static_cast<std::size_t>(count);
 }
 
 FitFlights::FitFlights(std::vector<FlightSource> sources, const FitTask& task, FitSetup setup)
@@ -193,9 +265,10 @@ std::shared_ptr<FitFlight> FitFlights::made(std::size_t number,
   const std::size_t own_bytes = sources_[number].samples ? 0 : bytes_of(*samples);
   auto fit = std::make_shared<FitFlight>(std::move(samples), task_, setup_);
   if (noise_parameters_.size() > 0)
-    fit->measure_noise(noise_parameters_, noise_offsets_.data() + first_offset_[number]);
-  const std::size_t bytes = own_bytes + fit->kept().size() * (setup_.wanted.size() + 1) * sizeof(double);
-  fit->keep_derivatives();
+    fit->prepare(noise_parameters_, own(noise_offsets_, first_offset_[number], *fit));
+  if (noise_) fit->set_noise(*noise_, number);
+  const std::size_t bytes =
+      own_bytes + (2 * fit->bins().size() * (setup_.wanted.size() + 1) + fit->kept().size()) * sizeof(double);
   const std::lock_guard lock(counting_);
   if (cached_bytes_ + bytes <= task_.options.memory) {
     cached_bytes_ += bytes;
@@ -236,31 +309,33 @@ void FitFlights::visit(const std::function<void(std::size_t, std::size_t, FitFli
 
 Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets,
                              const ceres::LossFunction* loss) {
-  const Eigen::Index columns = as_index(setup_.wanted.size() + offsets_ + 1);
+  const Eigen::Index fitted = as_index(setup_.wanted.size());
+  const Eigen::Index columns = fitted + as_index(offsets_) + 1;
   std::vector<Reduction> parts(count());
   visit([&](std::size_t number, std::size_t first_offset, FitFlight& fit) {
     Reduction& part = parts[number];
-    TriangularFactor factor(columns);
-    FitFlight::Rows rows;
-    std::array<double, samples_per_chunk> scale{};
+    const Eigen::MatrixXd rows = fit.white_rows(parameters, own(offsets, first_offset, fit));
+    const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(rows.rows());
+    std::vector<const double*> pointers(static_cast<std::size_t>(columns), nothing.data());
+    for (Eigen::Index k = 0; k < fitted; ++k) pointers[static_cast<std::size_t>(k)] = rows.col(k).data();
+    for (std::size_t k = 0; k < fit.offsets() && offsets_ > 0; ++k)
+      pointers[static_cast<std::size_t>(fitted) + first_offset + k] = rows.col(fitted + as_index(k)).data();
+    pointers.back() = rows.col(rows.cols() - 1).data();
+    std::vector<double> scale(static_cast<std::size_t>(rows.rows()));
     double slopes = 0.0;
     double curvatures = 0.0;
-    for (std::size_t first = 0; first < fit.kept().size(); first += samples_per_chunk) {
-      const std::size_t length = std::min(samples_per_chunk, fit.kept().size() - first);
-      fit.evaluate(first, length, parameters, offsets, first_offset, rows);
-      for (std::size_t i = 0; i < length; ++i) {
-        const double noise = fit.noise(first + i);
-        const double normal = rows.residual()[i] / noise;
-        std::array<double, 3> rho{normal * normal, 1.0, 0.0};
-        if (loss != nullptr) loss->Evaluate(rho[0], rho.data());
-        part.cost += 0.5 * rho[0];
-        slopes += rho[1];
-        curvatures += rho[1] + 2.0 * normal * normal * rho[2];
-        scale[i] = std::sqrt(rho[1]) / noise;
-      }
-      factor.add(rows.columns, scale.data(), length);
+    for (std::size_t i = 0; i < scale.size(); ++i) {
+      const double innovation = pointers.back()[i];
+      std::array<double, 3> rho{innovation * innovation, 1.0, 0.0};
+      if (loss != nullptr) loss->Evaluate(rho[0], rho.data());
+      part.cost += 0.5 * rho[0];
+      slopes += rho[1];
+      curvatures += rho[1] + 2.0 * innovation * innovation * rho[2];
+      scale[i] = std::sqrt(rho[1]);
     }
-    part.samples = fit.kept().size();
+    TriangularFactor factor(columns);
+    factor.add(pointers, scale.data(), scale.size());
+    part.bins = scale.size();
     if (slopes > 0.0) part.curvature = curvatures / slopes;
     part.factor = factor.factor();
   });
@@ -270,56 +345,70 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const Eigen::Vec
   for (const Reduction& part : parts) {
     sum.add(part.factor);
     whole.cost += part.cost;
-    whole.samples += part.samples;
-    if (part.samples > 0) curvature += part.curvature * static_cast<double>(part.samples);
+    whole.bins += part.bins;
+    if (part.bins > 0) curvature += part.curvature * static_cast<double>(part.bins);
   }
-  whole.curvature = curvature / static_cast<double>(whole.samples);
+  whole.curvature = curvature / static_cast<double>(whole.bins);
   whole.factor = sum.factor();
   whole.valid = std::isfinite(whole.cost) && whole.factor.allFinite();
   return whole;
 }
 
 Eigen::MatrixXd FitFlights::unweighted_factor(const Eigen::VectorXd& parameters) {
-  const Eigen::Index columns = as_index(setup_.wanted.size() + 1);
-  const std::vector<double> ones(samples_per_chunk, 1.0);
   std::vector<Eigen::MatrixXd> parts(count());
   visit([&](std::size_t number, std::size_t, FitFlight& fit) {
-    TriangularFactor factor(columns);
-    FitFlight::Rows rows;
-    for (std::size_t first = 0; first < fit.kept().size(); first += samples_per_chunk) {
-      const std::size_t length = std::min(samples_per_chunk, fit.kept().size() - first);
-      fit.evaluate(first, length, parameters, Eigen::VectorXd(), 0, rows);
-      factor.add(rows.columns, ones.data(), length);
-    }
-    parts[number] = factor.factor();
+    parts[number] = fit.unweighted_factor(parameters);
   });
-  TriangularFactor sum(columns);
+  TriangularFactor sum(as_index(setup_.wanted.size()) + 1);
   for (const Eigen::MatrixXd& part : parts) sum.add(part);
   return sum.factor();
 }
 
-void FitFlights::measure_noise(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) {
-  // Flights that are read again measure it again, at the same parameters.
+void FitFlights::prepare(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) {
+  // Flights that are read again are prepared again, at the same parameters.
   noise_parameters_ = parameters;
   noise_offsets_ = offsets;
   visit([&](std::size_t number, std::size_t first_offset, FitFlight& fit) {
-    if (cache_[number]) fit.measure_noise(parameters, offsets.data() + first_offset);
+    if (!cache_[number]) return;
+    fit.prepare(parameters, own(offsets, first_offset, fit));
+    if (noise_) fit.set_noise(*noise_, number);
+  });
+}
+
+void FitFlights::measure_noise(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) {
+  prepare(parameters, offsets);
+  if (shares_noise_) return;
+  // How slow the noise is, is found from a few of many flights.
+  constexpr std::size_t enough = 16;
+  const std::size_t every = (count() + enough - 1) / enough;
+  std::vector<Binning> bins(count());
+  std::vector<Eigen::VectorXd> residuals(count());
+  std::vector<Eigen::MatrixXd> columns(count());
+  visit([&](std::size_t number, std::size_t first_offset, FitFlight& fit) {
+    const Eigen::MatrixXd rows = fit.rows(parameters, own(offsets, first_offset, fit));
+    bins[number] = fit.bins();
+    residuals[number] = rows.rightCols(1);
+    if (number % every == 0) columns[number] = rows.leftCols(as_index(setup_.wanted.size()));
+  });
+  auto found = std::make_shared<FitNoise>();
+  found->model = find_noise(bins, columns, residuals);
+  for (const Binning& each : bins) found->time.push_back(each.time());
+  noise_ = std::move(found);
+  visit([&](std::size_t number, std::size_t, FitFlight& fit) {
+    if (cache_[number]) fit.set_noise(*noise_, number);
   });
 }
 
 double FitFlights::deviation(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) {
-  std::vector<double> squares(count(), 0.0);
+  std::vector<std::vector<double>> parts(count());
   visit([&](std::size_t number, std::size_t first_offset, FitFlight& fit) {
-    std::vector<double> normal = fit.values(parameters, offsets.data() + first_offset);
-    for (std::size_t i = 0; i < normal.size(); ++i) normal[i] /= fit.noise(i);
-    if (normal.empty()) return;
-    const auto samples = static_cast<double>(normal.size());
-    const double deviation = robust_deviation(std::move(normal));
-    squares[number] = samples * deviation * deviation;
+    const Eigen::VectorXd innovations =
+        fit.white_rows(parameters, own(offsets, first_offset, fit)).rightCols(1);
+    parts[number].assign(innovations.data(), innovations.data() + innovations.size());
   });
-  double sum = 0.0;
-  for (const double square : squares) sum += square;
-  return std::sqrt(sum / static_cast<double>(samples_));
+  std::vector<double> all;
+  for (const std::vector<double>& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return robust_deviation(std::move(all));
 }
 
 }  // namespace pcor::internal

@@ -7,13 +7,15 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include <pcor/numerics/noise.hpp>
 #include <pcor/residuals/residuals.hpp>
 #include "fit/fit_task.hpp"
+#include "numerics/noise_model.hpp"
 #include "numerics/triangular_factor.hpp"
+#include "numerics/whitening.hpp"
 
 namespace ceres {
 class LossFunction;
@@ -38,7 +40,18 @@ struct FitSetup {
   bool with_offsets = false;          ///< every interval of these regimes has its own offset of delta-p/p
 };
 
-/// One flight of a fit: the samples that take part, their weights, and their residuals and derivatives.
+/// The noise of the flights of a fit, and the times of the bins in which its level was found, s.
+struct FitNoise {
+  NoiseModel model{};
+  std::vector<std::vector<double>> time{};  ///< of each flight
+};
+
+/// One flight of a fit: the samples that take part, in bins of a few seconds, and their residuals and
+/// derivatives in units of the noise and without its memory.
+///
+/// Derivatives by the coefficients of two static systems are those at common pressures
+/// (`Residuals::at_common_pressures`), and stay until the flight is prepared again: the solution is where
+/// they are at right angles to the residual, which is a method of instruments, not of least squares.
 class FitFlight {
  public:
   FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask& task, const FitSetup& setup);
@@ -46,61 +59,76 @@ class FitFlight {
   const Residuals& residuals() const { return residuals_; }
   const std::vector<std::size_t>& kept() const { return kept_; }
   std::size_t offsets() const { return offset_count_; }
-
-  /// The residuals of the samples that take part. @param offsets those of this flight
-  std::vector<double> values(const Eigen::VectorXd& parameters, const double* offsets) const;
-
-  /// Residuals and derivatives of consecutive kept samples, by columns: those of the wanted parameters, of
-  /// all offsets of the fit, and the residual, hPa. They point into the flight or into `store`.
-  struct Rows {
-    std::vector<const double*> columns{};
-    std::vector<double> store{};
-    const double* residual() const { return columns.back(); }
-  };
-
-  /// Puts `count` of the kept samples from `first` on into `rows`. @param offsets of all flights, those of
-  /// this one from `first_offset` on
-  void evaluate(std::size_t first, std::size_t count, const Eigen::VectorXd& parameters,
-                const Eigen::VectorXd& offsets, std::size_t first_offset, Rows& rows) const;
-
+  const Binning& bins() const { return bins_; }
   double static_pressure(std::size_t kept) const { return (*static_pressure_)[kept_[kept]]; }
 
-  /// Measures the noise of the residuals at `parameters`, which becomes the weight of the samples.
-  void measure_noise(const Eigen::VectorXd& parameters, const double* offsets);
-  double noise(std::size_t kept) const { return noise_.empty() ? 1.0 : static_cast<double>(noise_[kept]); }
+  /// Finds samples that depart from their neighbours at these parameters, which are left out from now on, and
+  /// prepares the bins of the others. With a loss of least squares none is left out.
+  void prepare(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets);
 
-  /// Keeps derivatives, where the residual is linear in all that is wanted.
-  void keep_derivatives();
+  /// Sets the noise, number `flight` of `noise`; without one all bins count alike.
+  void set_noise(const FitNoise& noise, std::size_t flight);
+
+  /// Derivatives by the wanted parameters and by the offsets of this flight, and the residual, hPa, by
+  /// columns, one row for each bin.
+  Eigen::MatrixXd rows(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) const;
+
+  /// The same in units of the noise and without its memory: the last column are the innovations.
+  Eigen::MatrixXd white_rows(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) const;
+
+  /// Derivatives by any parameters, in units of the noise and without its memory.
+  Eigen::MatrixXd white_columns(const Eigen::VectorXd& parameters,
+                                const std::vector<std::size_t>& wanted) const;
+
+  /// Columns of one row for each bin in units of the noise and without its memory.
+  Eigen::MatrixXd white(const Eigen::MatrixXd& columns) const {
+    return whitening_ ? (*whitening_)(columns) : columns;
+  }
+
+  /// The factor of rows (derivatives, residual) in hPa, all samples alike.
+  Eigen::MatrixXd unweighted_factor(const Eigen::VectorXd& parameters) const;
+
+  /// Samples that were left out, or are in bins whose innovation is beyond `limit`.
+  std::size_t outliers(const Eigen::VectorXd& parameters, double limit) const;
 
  private:
-  /// Through the chain; for LAMS, where some effect is not at the static ports, in the laser's own measure.
-  void evaluate_now(std::size_t first, std::size_t count, const Eigen::VectorXd& parameters,
-                    const std::vector<std::size_t>& wanted, double* residual, double* derivatives) const;
-  void find_residuals(std::size_t first, std::size_t count, const Eigen::VectorXd& parameters,
-                      const double* offsets, double* residual) const;
+  void evaluate(const Residuals& residuals, std::size_t first, std::size_t count,
+                const Eigen::VectorXd& parameters, const std::vector<std::size_t>& wanted, double* residual,
+                double* derivatives) const;
+  Eigen::MatrixXd binned(const Residuals& residuals, const Eigen::VectorXd& parameters,
+                         const std::vector<std::size_t>& wanted) const;
+  Eigen::MatrixXd columns(const Eigen::VectorXd& parameters, const std::vector<std::size_t>& wanted,
+                          const Eigen::MatrixXd& recorded) const;
+  void keep_rows(const Eigen::VectorXd& parameters);
 
   const FitTask* task_;
   const FitSetup* setup_;
   Residuals residuals_;
   const std::vector<double>* static_pressure_;  // of the samples
   std::vector<std::size_t> kept_;
-  std::vector<int> offset_;
+  std::vector<int> offset_;  // of each kept sample
   std::size_t offset_count_ = 0;
-  std::vector<float> noise_;  // weights need no more digits
+  std::size_t spikes_ = 0;
+  Binning bins_;
+  std::vector<Eigen::Index> bin_;  // of each kept sample; -1 for those that are left out
+  Eigen::VectorXd in_bin_;         // samples in each bin
   bool linear_ = false;
-  std::vector<double> kept_residual_;     // at `kept_parameters_`
-  std::vector<double> kept_derivatives_;  // columns
+  std::optional<Whitening> whitening_;
+  // Where the residual counts as linear in all that is wanted: rows at `kept_parameters_` without offsets.
+  Eigen::MatrixXd kept_rows_;
+  Eigen::MatrixXd kept_white_rows_;
   Eigen::VectorXd kept_parameters_;
 };
 
 /// What a pass over all flights gives.
 struct Reduction {
-  Eigen::MatrixXd factor;  ///< of rows (derivatives by wanted parameters and offsets, residual), weighted
-  double cost = 0.0;       ///< half the sum of the loss
-  /// The curvature of the loss over its slope, rho' + 2 s rho'' over rho', mean over the samples: by so much
-  /// the second derivative of the cost is less than that of the weighted squares.
+  Eigen::MatrixXd
+      factor;         ///< of white rows (derivatives by wanted parameters and offsets, residual), weighted
+  double cost = 0.0;  ///< half the sum of the loss over the innovations
+  /// The curvature of the loss over its slope, rho' + 2 s rho'' over rho', mean over the bins: by so much the
+  /// second derivative of the cost is less than that of the weighted squares.
   double curvature = 1.0;
-  std::size_t samples = 0;
+  std::size_t bins = 0;
   bool valid = true;  ///< false where some residual is not a number at these parameters
 };
 
@@ -139,15 +167,28 @@ class FitFlights {
   /// The factor of rows (derivatives, residual) in hPa, all samples alike.
   Eigen::MatrixXd unweighted_factor(const Eigen::VectorXd& parameters);
 
-  /// Measures the noise of every flight, which weights its samples from now on.
+  /// Prepares every flight at these parameters; the noise stays.
+  void prepare(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets);
+
+  /// Prepares every flight, and finds the noise, which weights the bins from now on; or keeps that of
+  /// `share_noise`.
   void measure_noise(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets);
 
-  /// The robust deviation of the weighted residuals.
+  /// The noise of other samples of the same flights.
+  void share_noise(const FitFlights& others) {
+    noise_ = others.noise_;
+    shares_noise_ = true;
+  }
+
+  /// The robust deviation of the innovations; 1 where the noise is right.
   double deviation(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets);
 
  private:
   std::shared_ptr<const FlightSamples> samples_of(std::size_t number) const;
   std::shared_ptr<FitFlight> made(std::size_t number, std::shared_ptr<const FlightSamples> samples);
+  Eigen::VectorXd own(const Eigen::VectorXd& offsets, std::size_t first, const FitFlight& fit) const {
+    return offsets.size() == 0 ? offsets : offsets.segment(as_index(first), as_index(fit.offsets()));
+  }
 
   std::vector<FlightSource> sources_;
   const FitTask& task_;
@@ -160,6 +201,8 @@ class FitFlights {
   std::size_t samples_ = 0;
   std::size_t offsets_ = 0;
   std::array<std::size_t, mask_count> masks_{};
+  std::shared_ptr<const FitNoise> noise_;
+  bool shares_noise_ = false;
   Eigen::VectorXd noise_parameters_;
   Eigen::VectorXd noise_offsets_;
 };

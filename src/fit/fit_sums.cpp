@@ -31,8 +31,8 @@ FitSums sums_at(FitFlights& flights, const Eigen::VectorXd& values, double devia
       sums.relative_squares += relative * relative;
       sums.wanted += defect;
       sums.wanted_squares += defect * defect;
-      if (std::abs(residual[i]) > tukey_width * deviation * fit.noise(i)) ++sums.outliers;
     }
+    sums.outliers = fit.outliers(values, tukey_width * deviation);
     const double bulk = robust_deviation(residual);
     if (sums.samples > 0) sums.bulk_squares = bulk * bulk * static_cast<double>(sums.samples);
   });

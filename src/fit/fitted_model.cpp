@@ -56,13 +56,16 @@ ModelFile fitted_model(ModelFile file, std::size_t first, const RefitResult& fit
       const FittedParameter& parameter = fit.parameters[p];
       const std::string name = effect.id + "." + names[i];
       effect.parameters[i] = parameter.value;
-      if (!parameter.fitted) {
+      const bool in_covariance = std::find(known.begin(), known.end(), parameter.name) != known.end();
+      if (!parameter.fitted && !in_covariance) {
         held.push_back(name);
         continue;
       }
-      file.fits[e][i].standard_error.reset();
-      if (!std::isfinite(parameter.standard_error)) continue;
-      file.fits[e][i].standard_error = parameter.standard_error;
+      if (parameter.fitted) {
+        file.fits[e][i].standard_error.reset();
+        if (!std::isfinite(parameter.standard_error)) continue;
+        file.fits[e][i].standard_error = parameter.standard_error;
+      }
       covariance.parameters.push_back(name);
       inside.push_back(
           static_cast<std::size_t>(std::find(known.begin(), known.end(), parameter.name) - known.begin()));

@@ -79,22 +79,25 @@ class ReducedCost final : public ceres::CostFunction {
 /// Draws the first unknowns to their starts.
 class PriorCost final : public ceres::CostFunction {
  public:
-  explicit PriorCost(const Prior& prior) : prior_(prior) {
-    set_num_residuals(static_cast<int>(prior.weight.size()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(prior.weight.size()));
+  PriorCost(const Prior& prior, Eigen::Index unknowns) : prior_(prior), unknowns_(unknowns) {
+    set_num_residuals(static_cast<int>(prior.rows.rows()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(unknowns));
   }
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
-    const Eigen::Index size = prior_.weight.size();
-    const Eigen::Map<const Eigen::VectorXd> x(blocks[0], size);
-    Eigen::Map<Eigen::VectorXd>(residuals, size) = prior_.weight.cwiseProduct(x - prior_.start);
+    const Eigen::Index drawn = prior_.start.size();
+    const Eigen::Map<const Eigen::VectorXd> x(blocks[0], drawn);
+    Eigen::Map<Eigen::VectorXd>(residuals, prior_.rows.rows()) = prior_.rows * (x - prior_.start);
     if (jacobians == nullptr || jacobians[0] == nullptr) return true;
-    Eigen::Map<RowMajor>(jacobians[0], size, size) = prior_.weight.asDiagonal();
+    Eigen::Map<RowMajor> jacobian(jacobians[0], prior_.rows.rows(), unknowns_);
+    jacobian.setZero();
+    jacobian.leftCols(drawn) = prior_.rows;
     return true;
   }
 
  private:
   const Prior& prior_;
+  Eigen::Index unknowns_;
 };
 
 }  // namespace
@@ -104,7 +107,7 @@ void minimise(FitFlights& flights, const Eigen::VectorXd& parameters, const cere
   ceres::Problem problem;
   problem.AddParameterBlock(x.data(), static_cast<int>(x.size()));
   problem.AddResidualBlock(new ReducedCost(flights, parameters, loss), nullptr, x.data());
-  if (prior.weight.size() > 0) problem.AddResidualBlock(new PriorCost(prior), nullptr, x.data());
+  if (prior.rows.rows() > 0) problem.AddResidualBlock(new PriorCost(prior, x.size()), nullptr, x.data());
   int place = 0;
   for (const std::size_t p : flights.setup().wanted) {
     const Bounds& bounds = flights.task().parameters[p].bounds;

@@ -6,17 +6,18 @@
 
 namespace pcor::internal {
 
-/// What draws unknowns to their starting values: weight (x - start) as further residuals. Empty for none.
+/// What draws the first unknowns to their starting values: rows (x - start) as further residuals. No rows for
+/// none.
 struct Prior {
   Eigen::VectorXd start{};
-  Eigen::VectorXd weight{};
+  Eigen::MatrixXd rows{};
 };
 
 /// Finds with Ceres, from `x` on, the unknowns of a fit (its wanted parameters, then the offsets) with the
 /// least loss. Every step is one pass over the flights.
 ///
 /// @param parameters all parameters; those that are not wanted stay as they are there
-/// @param loss of weighted residuals; null for least squares
+/// @param loss of the innovations; null for least squares
 /// @throws Error if residuals are not numbers
 void minimise(FitFlights& flights, const Eigen::VectorXd& parameters, const ceres::LossFunction* loss,
               const Prior& prior, Eigen::VectorXd& x);

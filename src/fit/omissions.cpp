@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "fit/loss_function.hpp"
+#include "fit/prior.hpp"
 #include "numerics/bounded_least_squares.hpp"
 
 namespace pcor::internal {
@@ -34,13 +35,13 @@ std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, c
   const FitTask& task = flights.task();
   const std::unique_ptr<ceres::LossFunction> loss = loss_function(task.options.loss, solution.deviation);
   const Eigen::Index size = as_index(wanted.size());
-  const Eigen::VectorXd weight = prior_weights(task, solution, wanted);
+  const Eigen::MatrixXd prior = solution.deviation * prior_rows(task, wanted);
   // Rows of derivatives and residual at some coefficients, with what draws these to their start.
   const auto rows_at = [&](const Eigen::VectorXd& values) {
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2 * size, size + 1);
+    Eigen::MatrixXd rows(size + prior.rows(), size + 1);
     rows.topRows(size) = flights.reduce(values, Eigen::VectorXd(), loss.get()).factor.topRows(size);
-    rows.bottomLeftCorner(size, size) = weight.asDiagonal();
-    rows.bottomRightCorner(size, 1) = weight.cwiseProduct(values(wanted) - task.start(wanted));
+    rows.bottomLeftCorner(prior.rows(), size) = prior;
+    rows.bottomRightCorner(prior.rows(), 1) = prior * (values(wanted) - task.start(wanted));
     task.tell();
     return rows;
   };

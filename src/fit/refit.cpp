@@ -14,7 +14,9 @@
 #include "fit/fitted_model.hpp"
 #include "fit/identifiability.hpp"
 #include "fit/omissions.hpp"
+#include "fit/prior.hpp"
 #include "fit/solver.hpp"
+#include "fit/warnings.hpp"
 #include "numerics/missing.hpp"
 
 namespace pcor {
@@ -61,7 +63,8 @@ void require_one_kind(const Sources& sources, const RefitOptions& options) {
 }
 
 FitTask task_of(const ModelFile& model, const Reference& reference, const RefitOptions& options) {
-  FitTask task{model, reference, options, fit_parameters(model, reference, options), {}, {}};
+  FitTask task{model, reference, options, fit_parameters(model, reference, options), {}, {}, {}};
+  task.doubt = stated_covariance(model, reference, task.parameters);
   task.start.resize(as_index(task.parameters.size()));
   for (std::size_t p = 0; p < task.parameters.size(); ++p) task.start[as_index(p)] = task.parameters[p].start;
   task.tell = [&progress = options.progress, passes = std::size_t{0}]() mutable {
@@ -71,52 +74,91 @@ FitTask task_of(const ModelFile& model, const Reference& reference, const RefitO
   return task;
 }
 
-/// What the stages of a fit found, one after another.
+/// What the stages of a fit found.
 struct Fitted {
   Solution solution{};
-  std::vector<std::size_t> parameters{};  // in the order of the stages
-  std::vector<int> stage_of{};            // of all parameters
-  Eigen::MatrixXd earlier{};              // covariance of what stages before the last found
-  std::unique_ptr<FitFlights> flights{};  // with all samples and all parameters that were fitted
+  std::vector<std::size_t> parameters{};           // in the order of the stages
+  std::vector<std::size_t> held{};                 // of which the files state an error
+  std::vector<int> stage_of{};                     // of all parameters
+  std::unique_ptr<FitFlights> flights{};           // with all samples and all parameters that were fitted
+  std::vector<std::unique_ptr<FitFlights>> own{};  // those of each stage, where there are several
+  std::vector<FitEquations> equations{};
+  bool stands_still = true;
 };
+
+/// Solves stage after stage, again and again, until no coefficient moves by a hundredth of what the flights
+/// leave open. The noise is that of all samples.
+void repeat_stages(Fitted& fitted, const Sources& sources, const FitTask& task,
+                   const std::vector<std::vector<std::size_t>>& stages) {
+  constexpr int most_rounds = 50;
+  Solution& solution = fitted.solution;
+  for (std::size_t s = 0; s < stages.size(); ++s) {
+    const bool last = s + 1 == stages.size();
+    FitSetup setup{solution.values, stages[s]};
+    if (!last) setup.regimes = task.options.stages[s].regimes;
+    setup.with_offsets = !last;
+    fitted.own.push_back(std::make_unique<FitFlights>(sources, task, std::move(setup)));
+    fitted.equations.push_back({fitted.own.back().get(), stages[s], {}});
+  }
+  fitted.stands_still = false;
+  for (int round = 0; round < most_rounds && !fitted.stands_still; ++round) {
+    const Eigen::VectorXd before = solution.values;
+    // The noise hardly changes after the first rounds.
+    if (round < 2) fitted.flights->measure_noise(solution.values, Eigen::VectorXd());
+    for (FitEquations& each : fitted.equations) {
+      if (each.parameters.empty()) continue;
+      each.flights->share_noise(*fitted.flights);
+      solution = solve(*each.flights, std::move(solution));
+      each.solution = solution;
+      if (round == 0) {
+        condition_number(each.flights->reduce(solution.values, solution.offsets, nullptr), task,
+                         each.parameters);
+      }
+    }
+    const Eigen::MatrixXd factor = fitted.flights->reduce(solution.values, Eigen::VectorXd(), nullptr)
+                                       .factor.leftCols(as_index(fitted.parameters.size()));
+    const Eigen::VectorXd step = (solution.values - before)(fitted.parameters);
+    fitted.stands_still =
+        (factor.colwise().norm().transpose().cwiseProduct(step)).cwiseAbs().maxCoeff() < 0.01;
+  }
+  // Every stage at the coefficients that all of them found.
+  for (FitEquations& each : fitted.equations) {
+    if (each.parameters.empty()) continue;
+    each.flights->prepare(solution.values, each.solution.offsets);
+    each.solution.values = solution.values;
+    each.solution.at_bound = solution.at_bound;
+  }
+}
 
 Fitted fit_in_stages(const Sources& sources, const FitTask& task) {
   const std::vector<std::vector<std::size_t>> stages =
       fit_stages(task.parameters, task.options.stages, task.model.model.name);
   Fitted fitted;
   fitted.stage_of.resize(task.parameters.size(), 0);
-  Solution& solution = fitted.solution;
-  solution.values = task.start;
   for (std::size_t s = 0; s < stages.size(); ++s) {
-    if (stages[s].empty()) continue;
-    const bool last = s + 1 == stages.size();
-    FitSetup setup{solution.values, stages[s]};
-    if (!last) setup.regimes = task.options.stages[s].regimes;
-    setup.with_offsets = !last;
-    fitted.flights = std::make_unique<FitFlights>(sources, task, std::move(setup));
-    solution = solve(*fitted.flights, std::move(solution));
     for (const std::size_t p : stages[s]) fitted.stage_of[p] = static_cast<int>(s) + 1;
     fitted.parameters.insert(fitted.parameters.end(), stages[s].begin(), stages[s].end());
-    if (last) break;
-    condition_number(fitted.flights->reduce(solution.values, solution.offsets, nullptr), task, stages[s]);
-    const Eigen::MatrixXd own = fit_covariance(*fitted.flights, solution, Eigen::MatrixXd(0, 0)).matrix;
-    const Eigen::Index size = fitted.earlier.rows() + own.rows();
-    fitted.earlier.conservativeResizeLike(Eigen::MatrixXd::Zero(size, size));
-    fitted.earlier.bottomRightCorner(own.rows(), own.rows()) = own;
   }
+  for (std::size_t p = 0; p < task.parameters.size(); ++p) {
+    if (fitted.stage_of[p] == 0 && task.doubt(as_index(p), as_index(p)) > 0.0) fitted.held.push_back(p);
+  }
+  Solution& solution = fitted.solution;
+  solution.values = task.start;
+  fitted.flights = std::make_unique<FitFlights>(sources, task, FitSetup{solution.values, fitted.parameters});
+  solution = solve(*fitted.flights, std::move(solution));
+  if (stages.size() > 1) repeat_stages(fitted, sources, task, stages);
   // What comes now, errors, what can be told apart, and what each effect does, is of all samples.
-  if (stages.size() > 1)
-    fitted.flights =
-        std::make_unique<FitFlights>(sources, task, FitSetup{solution.values, fitted.parameters});
   solution.offsets = Eigen::VectorXd();
   fitted.flights->measure_noise(solution.values, solution.offsets);
   solution.deviation = fitted.flights->deviation(solution.values, solution.offsets);
+  if (fitted.equations.empty())
+    fitted.equations.push_back({fitted.flights.get(), fitted.parameters, solution});
   return fitted;
 }
 
 /// The coefficients after the fit, and their covariance.
 void list_coefficients(RefitResult& result, const FitTask& task, const Fitted& fitted,
-                       const Eigen::MatrixXd& covariance) {
+                       const FitCovariance& covariance) {
   for (std::size_t p = 0; p < task.parameters.size(); ++p) {
     FittedParameter& parameter = result.parameters.emplace_back();
     parameter.name = task.parameters[p].name;
@@ -124,14 +166,20 @@ void list_coefficients(RefitResult& result, const FitTask& task, const Fitted& f
     parameter.start = task.start[as_index(p)];
     parameter.value = fitted.solution.values[as_index(p)];
     parameter.standard_error = nan;
+    parameter.jackknife_error = nan;
     parameter.stage = fitted.stage_of[p];
     parameter.fitted = parameter.stage > 0;
     parameter.at_bound = fitted.solution.at_bound[p];
   }
-  for (std::size_t a = 0; a < fitted.parameters.size(); ++a) {
-    FittedParameter& parameter = result.parameters[fitted.parameters[a]];
-    const auto row = covariance.row(as_index(a));
-    if (!parameter.at_bound) parameter.standard_error = std::sqrt(row[as_index(a)]);
+  std::vector<std::size_t> all = fitted.parameters;
+  all.insert(all.end(), fitted.held.begin(), fitted.held.end());
+  for (std::size_t a = 0; a < all.size(); ++a) {
+    FittedParameter& parameter = result.parameters[all[a]];
+    const auto row = covariance.matrix.row(as_index(a));
+    if (parameter.fitted && !parameter.at_bound) {
+      parameter.standard_error = std::sqrt(row[as_index(a)]);
+      parameter.jackknife_error = covariance.jackknife[as_index(a)];
+    }
     result.covariance_names.push_back(parameter.name);
     result.covariance.emplace_back(row.begin(), row.end());
   }
@@ -144,21 +192,16 @@ std::vector<std::string> notes_of(const RefitResult& result, const FitTask& task
   const auto add = [&notes](const std::vector<std::string>& more) {
     notes.insert(notes.end(), more.begin(), more.end());
   };
-  if (result.rms > 1.02 * result.rms_before) {
-    notes.push_back(
-        fmt::format("the fit left a larger rms, {:.3f} hPa, than the coefficients of the file, {:.3f}: "
-                    "what a stage held does not suit the rest, or outliers rule the rms",
-                    result.rms, result.rms_before));
-  }
   add(identifiability_notes(task, fitted.solution, covariance, fitted.parameters, result.condition_number,
                             compared.flown));
+  add(error_notes(result, fitted.flights->count(), fitted.stands_still));
   add(compared.notes);
   add(bound_notes(task, fitted.solution, result.condition_number));
   if (task.uses_prior()) {
     notes.emplace_back(
-        "every coefficient of an effect of the catalogue was drawn to its starting value by the typical size "
-        "of its effect; two static systems alone tell only their difference, so how it is shared between "
-        "them is what the starting values say");
+        "every coefficient was drawn to its starting value, by the covariance that its file states, else by "
+        "the typical size of its effect; what the flights cannot tell, as what two static systems have in "
+        "common, keeps that value, and the prior is its error");
   }
   return notes;
 }
@@ -175,24 +218,31 @@ RefitResult fit(const Sources& sources, const ModelFile& model, const Reference&
   RefitResult result;
   result.reference_text = reference.description();
   result.masks = flights.masks();
-  result.condition_number =
-      condition_number(flights.reduce(solution.values, solution.offsets, nullptr), task, fitted.parameters);
-  const FitCovariance covariance = fit_covariance(flights, solution, fitted.earlier);
-  result.samples_per_independent = covariance.samples_per_independent;
+  Reduction alike;
+  alike.factor = flights.unweighted_factor(solution.values);
+  result.condition_number = condition_number(alike, task, fitted.parameters);
+  const FitCovariance covariance = fit_covariance(fitted.equations, fitted.held);
   const FitSums sums = sums_at(flights, solution.values, solution.deviation);
   result.samples = sums.samples;
   result.rms = sums.rms_of(sums.squares);
   result.rms_over_pressure = sums.rms_of(sums.relative_squares);
   result.bulk_rms = sums.rms_of(sums.bulk_squares);
+  result.samples_per_independent =
+      std::max(static_cast<double>(sums.samples) /
+                   (sums.bulk_squares / static_cast<double>(sums.samples) * covariance.information),
+               1.0);
   result.r_squared = sums.r_squared(sums.squares);
   result.outliers = sums.outliers;
+  const FitSums before = sums_at(flights, task.start, solution.deviation);
+  result.rms_before = before.rms_of(before.squares);
   const SquaredResiduals squares(flights, solution);
-  result.rms_before = sums.rms_of(squares.at(task.start));
   result.omissions = omissions(flights, solution, sums, squares);
   BeforeAndAfter compared = before_and_after(flights, solution.values);
   result.noise_rms = compared.noise_rms(result.samples);
   result.flights = std::move(compared.flights);
-  list_coefficients(result, task, fitted, covariance.matrix);
+  list_coefficients(result, task, fitted, covariance);
+  result.worse = why_worse(result, before.rms_of(before.bulk_squares));
+  result.warnings = fit_warnings(flights, result, solution.values);
   result.notes = notes_of(result, task, fitted, covariance.matrix, compared);
   result.model = fitted_model(model, 0, result, options.loss);
   if (options.fit_reference) {

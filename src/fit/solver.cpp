@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include <pcor/words/error.hpp>
 #include "fit/global_search.hpp"
 #include "fit/loss_function.hpp"
 #include "fit/minimise.hpp"
+#include "fit/prior.hpp"
 #include "numerics/bounded_least_squares.hpp"
 #include "numerics/missing.hpp"
 
@@ -43,28 +43,6 @@ void require_samples(const FitFlights& flights) {
   }
 }
 
-/// For how many samples one independent one stands in the residuals at hand: what a starting value is weighed
-/// against.
-double memory_of(FitFlights& flights, const Solution& solution) {
-  std::vector<double> memory(flights.count(), 0.0);
-  flights.visit([&](std::size_t number, std::size_t first_offset, FitFlight& fit) {
-    const FlightSamples& samples = fit.residuals().samples();
-    const std::vector<double> values = fit.values(solution.values, solution.offsets.data() + first_offset);
-    if (values.empty()) return;
-    std::vector<double> series(samples.time.size(), nan);
-    double squares = 0.0;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      series[fit.kept()[i]] = values[i] / fit.noise(i);
-      squares += series[fit.kept()[i]] * series[fit.kept()[i]];
-    }
-    const auto count = static_cast<double>(values.size());
-    const Autoregression noise = autoregression(series, stretches_of(series, samples.time, samples.step));
-    memory[number] = count * noise.samples_per_independent(std::sqrt(squares / count));
-  });
-  const double sum = std::accumulate(memory.begin(), memory.end(), 0.0);
-  return std::max(sum / static_cast<double>(flights.samples()), 1.0);
-}
-
 /// The unknowns are the wanted parameters and after them the offsets.
 class Solver {
  public:
@@ -74,6 +52,7 @@ class Solver {
         wanted_(flights.setup().wanted),
         fitted_(as_index(wanted_.size())),
         solution_(std::move(from)),
+        prior_(prior_rows(task_, wanted_)),
         unknowns_(Eigen::VectorXd::Zero(fitted_ + as_index(flights.offsets()))),
         lower_(Eigen::VectorXd::Constant(unknowns_.size(), -infinity)),
         upper_(Eigen::VectorXd::Constant(unknowns_.size(), infinity)) {
@@ -93,14 +72,23 @@ class Solver {
       unknowns_ = global_search(flights_, solution_.values);
       spread();
     }
-    if (!task_.uses_prior()) linear_step(nullptr);
+    flights_.prepare(solution_.values, solution_.offsets);
+    linear_step(nullptr);
     measure();
-    if (task_.uses_prior()) balance_prior();
     const Loss loss = task_.options.loss;
     // The solution of a convex loss is unique; from Huber's the others find the minimum of the bulk.
-    if (loss == Loss::tukey || loss == Loss::cauchy) settles_with(Loss::huber);
-    const int rounds = loss == Loss::none ? 1 : 5;
-    for (int round = 0; round < rounds && !settles_with(loss); ++round) {
+    settles_with(loss == Loss::none ? loss : Loss::huber);
+    measure();
+    constexpr int rounds = 10;
+    for (int round = 0; round < rounds; ++round) {
+      const Eigen::VectorXd before = unknowns_;
+      const bool settled = settles_with(loss);
+      if (task_.reference.model() == nullptr) {
+        if (settled) break;
+        continue;
+      }
+      if (settled && stands_still(before)) break;
+      flights_.prepare(solution_.values, solution_.offsets);
     }
     find_bounds();
     return std::move(solution_);
@@ -124,37 +112,30 @@ class Solver {
     const Reduction reduction = flights_.reduce(solution_.values, solution_.offsets, loss);
     task_.tell();
     const Eigen::Index size = unknowns_.size();
-    const Eigen::VectorXd weight = prior_weights(task_, solution_, wanted_);
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2 * size, size);
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(2 * size);
+    const Prior drawn = prior();
+    const Eigen::Index more = drawn.rows.rows();
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(size + more, size);
+    Eigen::VectorXd right(size + more);
     rows.topRows(size) = reduction.factor.topLeftCorner(size, size);
     right.head(size) = -reduction.factor.col(size).head(size);
-    rows.block(size, 0, fitted_, fitted_) = weight.asDiagonal();
-    right.segment(size, fitted_) = weight.cwiseProduct(task_.start(wanted_) - unknowns_.head(fitted_));
+    rows.bottomLeftCorner(more, fitted_) = drawn.rows;
+    right.tail(more) = drawn.rows * (drawn.start - unknowns_.head(fitted_));
     if (!rows.allFinite() || !right.allFinite()) return infinity;
     unknowns_ = bounded_least_squares(rows, right + rows * unknowns_, lower_, upper_, unknowns_);
     spread();
     return reduction.cost;
   }
 
-  /// The samples count by their noise and memory, which only the residuals of a fit show: again until they
-  /// agree.
-  void balance_prior() {
-    for (int round = 0; round < 10; ++round) {
-      const double before = solution_.prior_strength;
-      solution_.prior_strength = std::sqrt(memory_of(flights_, solution_)) * solution_.deviation;
-      if (std::abs(solution_.prior_strength - before) < 0.05 * before) break;
-      linear_step(nullptr);
-      measure();
-    }
-  }
+  Prior prior() const { return {task_.start(wanted_), solution_.deviation * prior_}; }
 
-  Prior prior() const {
-    if (!(solution_.prior_strength > 0.0)) return {};
-    Prior prior{unknowns_, Eigen::VectorXd::Zero(unknowns_.size())};
-    prior.start.head(fitted_) = task_.start(wanted_);
-    prior.weight.head(fitted_) = prior_weights(task_, solution_, wanted_);
-    return prior;
+  /// True where no unknown moved by a hundredth of what the flights and the prior leave open.
+  bool stands_still(const Eigen::VectorXd& before) {
+    const Reduction reduction = flights_.reduce(solution_.values, solution_.offsets, nullptr);
+    const Eigen::Index size = unknowns_.size();
+    const Eigen::VectorXd step = unknowns_ - before;
+    const double by_flights = (reduction.factor.topLeftCorner(size, size) * step).norm();
+    const double by_prior = (prior_ * step.head(fitted_)).norm();
+    return std::max(by_flights, by_prior) < 0.01 * std::max(solution_.deviation, 1e-300);
   }
 
   /// Notes which parameters are at a bound. True where some are.
@@ -198,6 +179,7 @@ class Solver {
   const std::vector<std::size_t>& wanted_;
   Eigen::Index fitted_;
   Solution solution_;
+  Eigen::MatrixXd prior_;
   Eigen::VectorXd unknowns_;
   Eigen::VectorXd lower_;
   Eigen::VectorXd upper_;

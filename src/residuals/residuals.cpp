@@ -164,6 +164,23 @@ std::optional<std::pair<Quantity, std::vector<double>>> Residuals::predicted_sen
   return std::pair(sensor->quantity(), std::move(values));
 }
 
+std::shared_ptr<const FlightSamples> Residuals::at_common_pressures() const {
+  const Implementation& own = *implementation_;
+  if (own.reference->model() == nullptr) return nullptr;
+  auto result = std::make_shared<FlightSamples>(*own.samples);
+  const auto column = [](ModelSamples& of, Quantity quantity) -> std::vector<double>& {
+    return std::find_if(of.columns.begin(), of.columns.end(),
+                        [quantity](const auto& each) { return each.first == quantity; })
+        ->second;
+  };
+  for (const Quantity pressure : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
+    std::vector<double>& ours = column(result->model, pressure);
+    std::vector<double>& theirs = column(result->reference, pressure);
+    for (std::size_t i = 0; i < size(); ++i) ours[i] = theirs[i] = 0.5 * (ours[i] + theirs[i]);
+  }
+  return result;
+}
+
 std::vector<double> Residuals::wanted_defect(const double* parameters) const {
   std::vector<double> result = values(parameters);
   const std::vector<double> defect = quantity(Quantity::static_defect, parameters);

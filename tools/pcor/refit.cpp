@@ -11,6 +11,7 @@
 #include <pcor/words/error.hpp>
 #include "comparison.hpp"
 #include "progress.hpp"
+#include "refusal.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -30,6 +31,7 @@ struct Options {
   double memory_mib = 512.0;
   bool prior = false;
   bool search = false;
+  bool force = false;
 };
 
 std::string trimmed(const std::string& text) {
@@ -89,10 +91,12 @@ nlohmann::ordered_json effects_as_json(const std::vector<FittedParameter>& param
       effects.push_back({{"id", id},
                          {"parameters", nlohmann::ordered_json::object()},
                          {"stderr", nlohmann::ordered_json::object()},
+                         {"stderr_jackknife", nlohmann::ordered_json::object()},
                          {"start", nlohmann::ordered_json::object()}});
     }
     effects.back()["parameters"][name] = parameter.value;
     effects.back()["stderr"][name] = parameter.standard_error;
+    effects.back()["stderr_jackknife"][name] = parameter.jackknife_error;
     effects.back()["start"][name] = parameter.start;
     if (parameter.at_bound) effects.back()["at_bound"].push_back(name);
     if (!parameter.fitted) effects.back()["fixed"].push_back(name);
@@ -129,6 +133,8 @@ nlohmann::ordered_json as_json(const RefitResult& result) {
                                {"after", as_json(flight.after)}});
   }
   json["masks"] = masks_as_json(result.masks);
+  if (!result.worse.empty()) json["worse"] = result.worse;
+  json["warnings"] = result.warnings;
   json["notes"] = result.notes;
   return json;
 }
@@ -143,16 +149,21 @@ void print_flights(const RefitResult& result) {
   }
 }
 
-void print(const RefitResult& result, const Options& options) {
+void print_result(const RefitResult& result) {
+  for (const std::string& warning : result.warnings) fmt::print("Warning: {}.\n\n", warning);
   fmt::print("reference: {}\n", result.reference_text);
   fmt::print("fitted to {} samples; not used: {}\n\n", result.samples, mask_text(result.masks));
-  fmt::print("{:<36} {:>13} {:>13} {:>13}  {}\n", "coefficient", "before", "after", "std. error", "unit");
+  fmt::print("{:<36} {:>13} {:>13} {:>13} {:>13}  {}\n", "coefficient", "before", "after", "std. error",
+             "by jackknife", "unit");
   for (const FittedParameter& p : result.parameters) {
     const std::string error = !p.fitted                      ? "held"
                               : p.at_bound                   ? "at bound"
                               : std::isnan(p.standard_error) ? "unknown"
                                                              : fmt::format("{:.3g}", p.standard_error);
-    fmt::print("{:<36} {:>13.6g} {:>13.6g} {:>13}  {}\n", p.name, p.start, p.value, error, p.unit);
+    const std::string jackknife =
+        std::isnan(p.jackknife_error) ? "" : fmt::format("{:.3g}", p.jackknife_error);
+    fmt::print("{:<36} {:>13.6g} {:>13.6g} {:>13} {:>13}  {}\n", p.name, p.start, p.value, error, jackknife,
+               p.unit);
   }
   fmt::print(
       "\nrms {:.3f} hPa ({:.5f} of p), before {:.3f}; robust standard deviation {:.3f}; noise {:.3f} hPa; {} "
@@ -180,6 +191,9 @@ void print(const RefitResult& result, const Options& options) {
   }
   print_flights(result);
   for (const std::string& note : result.notes) fmt::print("\nNote: {}.\n", note);
+}
+
+void print_next_step(const Options& options) {
   if (options.reference_output.empty()) {
     fmt::print("\nwrote {}\nTo see where it still fails: pcor compare {} -m {} -m {}\n", options.output,
                command_line(options.comparison), quoted(options.model), quoted(options.output));
@@ -225,11 +239,14 @@ void run(const Options& options) {
     refit_with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
     result = refit(flight_paths(options.comparison), model, *reference, refit_with);
   }
-  save_model(result.model, options.output, inputs);
-  if (result.reference) save_model(*result.reference, options.reference_output, inputs);
   if (!options.common.report.empty()) write_fit_report(result, model, reference, options);
   json.write(as_json(result));
-  if (wants_text(options.common)) print(result, options);
+  if (wants_text(options.common)) print_result(result);
+  refuse_worse(result.worse, options.force, result.model);
+  if (result.reference) refuse_worse(result.worse, options.force, *result.reference);
+  save_model(result.model, options.output, inputs);
+  if (result.reference) save_model(*result.reference, options.reference_output, inputs);
+  if (wants_text(options.common)) print_next_step(options);
 }
 
 }  // namespace
@@ -258,10 +275,10 @@ std::function<void()> add_refit(CLI::App& program) {
   command->add_option("--free", options->free, "fit a coefficient that the model file holds fixed")
       ->type_name("NAME");
   command
-      ->add_option(
-          "--stage", options->stages,
-          "first fit these coefficients to these regimes alone, each interval with an offset of its own, and "
-          "then hold them: 'pitch manoeuvre: static-alpha'")
+      ->add_option("--stage", options->stages,
+                   "fit these coefficients to these regimes alone, each interval with an offset of its own, "
+                   "the others "
+                   "to all samples, again and again until nothing moves: 'pitch manoeuvre: static-alpha'")
       ->type_name("REGIMES: NAMES");
   command->add_option("--holdout", options->holdout, "a flight that is not fitted, but tests the fit")
       ->type_name("T.nc");
@@ -272,7 +289,8 @@ std::function<void()> add_refit(CLI::App& program) {
       ->capture_default_str();
   command->add_flag(
       "--prior", options->prior,
-      "take the starting values for measurements, with the typical size of each effect as standard error");
+      "take the starting values for measurements, with the covariance that the model file states, else with "
+      "the typical size of each effect as standard error");
   command->add_flag(
       "--search", options->search,
       "find the starting values by a global search between the bounds, for coefficients that are not linear");
@@ -281,6 +299,7 @@ std::function<void()> add_refit(CLI::App& program) {
                    "MiB of samples that are kept between passes over the flights; the rest is read again")
       ->check(is_amount())
       ->capture_default_str();
+  add_force_option(*command, options->force);
   add_common_options(*command, options->common);
   return [options] { run(*options); };
 }

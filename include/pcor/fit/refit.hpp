@@ -14,9 +14,9 @@
 
 namespace pcor {
 
-/// A first stage of a fit: some parameters from the samples of some regimes, each interval of which has an
-/// offset of its own, of delta-p/p; then they are held. So the memo found the sensitivities of its eq. 19
-/// from manoeuvres.
+/// A stage of a fit: some parameters from the samples of some regimes alone, each interval of which has an
+/// offset of its own, of delta-p/p. So the memo found the sensitivities of its eq. 19 from manoeuvres. Stages
+/// are repeated until no coefficient moves by a hundredth of its error.
 struct FitStage {
   std::vector<Regime> regimes;
   std::vector<std::string> parameters;  ///< like "static-alpha.a1"; or an effect: all of its parameters
@@ -31,8 +31,10 @@ struct RefitOptions {
   std::vector<FitStage> stages{};
   /// The model of a static system that is the reference is fitted together with the model.
   bool fit_reference = false;
-  /// Every coefficient is drawn to its starting value, as if that were measured to within the typical size of
-  /// its effect. Always so where the reference is fitted too: two static systems tell only their difference.
+  /// Every coefficient is drawn to its starting value, as if that were measured: with the covariance that its
+  /// file states, else to within the typical size of its effect. Always so where the reference is fitted too:
+  /// two static systems tell only their difference, and what they have in common keeps its value, and the
+  /// prior as its error.
   bool use_prior = false;
   /// Look for the start by a global search between the bounds, for parameters in which the residual is not
   /// linear.
@@ -53,8 +55,12 @@ struct FittedParameter {
   std::string unit;
   double start = 0.0;
   double value = 0.0;
-  double standard_error =
-      0.0;  ///< with the memory of the noise; NaN where it was not fitted or is at a bound
+  /// With the memory and the slow drift of the noise, and with what held coefficients may err by; NaN where
+  /// it was not fitted or is at a bound.
+  double standard_error = 0.0;
+  /// The standard error that leaving out one flight, or one part of a flight, after another gives, without a
+  /// model of the noise.
+  double jackknife_error = 0.0;
   bool fitted = false;
   bool at_bound = false;
   int stage = 0;  ///< in which it was fitted, from 1; the last is that of all the rest
@@ -80,7 +86,8 @@ struct RefitResult {
   std::optional<ModelFile> reference{};  ///< of the reference's model, where it was fitted too
   std::vector<FittedParameter> parameters{};
   std::vector<std::string> covariance_names{};
-  std::vector<std::vector<double>> covariance{};  ///< of the fitted parameters
+  /// Of the fitted parameters, and of those that were held with a stated error, which the others carry.
+  std::vector<std::vector<double>> covariance{};
   std::size_t samples = 0;
   double rms = 0.0;                ///< hPa, of all samples in the fit, outliers too
   double rms_over_pressure = 0.0;  ///< of residual over static pressure
@@ -88,7 +95,7 @@ struct RefitResult {
   double noise_rms = 0.0;          ///< of the noise floor, hPa
   double r_squared = 0.0;
   double rms_before = 0.0;   ///< hPa, with the coefficients of the file
-  std::size_t outliers = 0;  ///< samples beyond 4.685 robust deviations
+  std::size_t outliers = 0;  ///< samples that depart from what the noise allows after those before them
   /// Ratio of the largest to the smallest singular value of the derivatives, each column of length one.
   double condition_number = 0.0;
   double samples_per_independent = 1.0;
@@ -96,15 +103,20 @@ struct RefitResult {
   std::vector<Omission> omissions{};
   std::vector<FlightFit> flights{};
   std::string reference_text{};
-  std::vector<std::string> notes{};  ///< what a user should know, a sentence each, the gravest first
+  /// Why the fit's own numbers call it worse than the coefficients of the file; empty where they do not.
+  std::string worse{};
+  std::vector<std::string> warnings{};  ///< why the fit should not be trusted, a sentence each
+  std::vector<std::string> notes{};     ///< what a user should know, a sentence each, the gravest first
 };
 
 /// Fits the free coefficients of `model` to the flights.
 ///
-/// From the coefficients of the file the linear problem is solved in closed form; then Ceres does the full
-/// one, with bounds and loss. Every pass reduces each flight to a triangular factor of its derivatives and
-/// residuals, and the factors add up. Residuals are weighted by the noise measured in each flight, five
-/// minutes at a time. Standard errors are those of the loss on noise with the memory that the residuals have.
+/// Generalised least squares with robust weights: residuals and derivatives are averaged over four seconds
+/// and whitened by one model of the noise (an autoregression whose level changes every five minutes, and slow
+/// drift), which is found from the residuals by restricted likelihood; the loss is of the innovations. From
+/// the coefficients of the file the linear problem is solved in closed form; then Ceres does the full one,
+/// with bounds and loss. Every pass reduces each flight to a triangular factor, and the factors add up.
+/// Standard errors are those of the loss on this noise; beside each stands that of a jackknife.
 ///
 /// @throws Error if a flight cannot be read, nothing is free, no sample is left (with the masks), samples are
 /// fewer than coefficients, bounds leave nothing, or coefficients cannot be told apart on these flights: the

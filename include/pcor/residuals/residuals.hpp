@@ -74,6 +74,16 @@ class Residuals {
   /// beam, m/s. NaN where missing. Nothing for a reference whose noise is added to the residual itself.
   std::optional<std::pair<Quantity, std::vector<double>>> predicted_sensor(const double* parameters) const;
 
+  /// The samples with the mean of what model and reference recorded as the static and the dynamic pressure of
+  /// both: where derivatives by coefficients of two static systems are to be taken. Null where the reference
+  /// is no static system.
+  ///
+  /// Of the same effect in both laws the flights know the difference alone, and there the two derivatives are
+  /// exactly opposite. At the recorded pressures they differ by the noise of the residual, which a fit takes
+  /// for a signal of what both systems have in common: it shrinks the noise by tens of hPa of static defect.
+  /// The pressures differ by the difference of the defects, less than 1 %, and so do the derivatives.
+  std::shared_ptr<const FlightSamples> at_common_pressures() const;
+
   /// Delta-p that the reference asks for, p(reference) - p at the port, hPa; NaN where missing.
   std::vector<double> wanted_defect(const double* parameters) const;
 

@@ -12,6 +12,7 @@ namespace pcor::internal {
 /// short enough for every manoeuvre.
 class Binning {
  public:
+  Binning() = default;  // of nothing
   /// @param residual one value for each record, NaN where not used; @param time s; @param step s
   Binning(const std::vector<double>& residual, const std::vector<double>& time, double step);
 

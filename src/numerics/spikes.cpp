@@ -1,4 +1,4 @@
-#include "diagnose/outliers.hpp"
+#include "numerics/spikes.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Noise of binned residuals: whitening against the covariance of the process, written out.
-#include "diagnose/noise_model.hpp"
+#include "numerics/noise_model.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Means over bins, and outliers that are replaced before.
-#include "diagnose/binning.hpp"
+#include "numerics/binning.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "diagnose/outliers.hpp"
+#include "numerics/spikes.hpp"
 
 using namespace pcor::internal;
 

@@ -1,4 +1,4 @@
-#include "diagnose/binning.hpp"
+#include "numerics/binning.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,132 @@
+#include "fit/warnings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <pcor/words/utc.hpp>
+#include "fit/loss_function.hpp"
+#include "numerics/missing.hpp"
+
+namespace pcor::internal {
+namespace {
+
+constexpr double larger = 1.02;
+constexpr double longest_chance = 30.0;  // s of outliers in a row; spikes and gusts are shorter
+constexpr double many_outliers = 0.05;   // of all samples
+
+/// Samples in a row that are all on one side of the noise.
+struct Run {
+  std::string flight{};
+  std::size_t samples = 0;
+  double begin = 0.0;  ///< s since 1970 UTC
+  double end = 0.0;
+  double mean = 0.0;  ///< hPa
+};
+
+Run longest_run(const FitFlight& fit, const Eigen::VectorXd& values) {
+  const FlightSamples& samples = fit.residuals().samples();
+  const std::vector<double> residual = fit.residuals().values(values.data());
+  std::vector<double> series(residual.size(), nan);
+  for (const std::size_t i : fit.kept()) series[i] = residual[i];
+  const NoiseFloor noise =
+      noise_floor(series, stretches_of(series, samples.time, samples.step), samples.step);
+  Run longest{samples.name};
+  Run now;
+  for (const std::size_t i : fit.kept()) {
+    const bool beyond = std::abs(series[i]) > tukey_width * noise.local_rms[i];
+    const bool goes_on =
+        now.samples > 0 && series[i] * now.mean > 0.0 && samples.time[i] - now.end < 1.5 * samples.step;
+    if (!beyond) {
+      now = {};
+      continue;
+    }
+    if (!goes_on) now = {samples.name, 0, samples.time[i]};
+    now.end = samples.time[i];
+    now.mean += (series[i] - now.mean) / static_cast<double>(++now.samples);
+    if (now.end - now.begin > longest.end - longest.begin) longest = now;
+  }
+  return longest;
+}
+
+}  // namespace
+
+std::string why_worse(const RefitResult& result, double bulk_rms_before) {
+  if (result.rms > larger * result.rms_before && result.bulk_rms > larger * bulk_rms_before) {
+    return fmt::format(
+        "the fit leaves a larger rms, {:.3f} hPa, than the coefficients of the file, {:.3f} hPa, on the "
+        "samples that were fitted",
+        result.rms, result.rms_before);
+  }
+  for (const FlightFit& flight : result.flights) {
+    if (flight.holdout && flight.after.rms > larger * flight.before.rms) {
+      return fmt::format(
+          "on {}, which was held out, the fit leaves a larger rms, {:.3f} hPa, than the coefficients of the "
+          "file, {:.3f} hPa",
+          flight.flight, flight.after.rms, flight.before.rms);
+    }
+  }
+  return "";
+}
+
+std::vector<std::string> fit_warnings(FitFlights& flights, const RefitResult& result,
+                                      const Eigen::VectorXd& values) {
+  std::vector<std::string> warnings;
+  if (result.r_squared < 0.0) {
+    warnings.push_back(
+        fmt::format("the residuals vary more than the delta-p that the reference asks for (R2 {:.2f}): a "
+                    "constant would describe it better than this model does",
+                    result.r_squared));
+  }
+  std::vector<Run> runs(flights.count());
+  flights.visit([&](std::size_t number, std::size_t, FitFlight& fit) {
+    if (!fit.kept().empty()) runs[number] = longest_run(fit, values);
+  });
+  const Run longest = *std::max_element(
+      runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.end - a.begin < b.end - b.begin; });
+  if (longest.end - longest.begin >= longest_chance) {
+    warnings.push_back(fmt::format(
+        "{}: from {} to {} {} samples in a row are off by {:+.2f} hPa in the mean, each beyond {:.1f} "
+        "deviations of the noise, so they are no outliers: the model lacks what happened there, or a sensor "
+        "failed",
+        longest.flight, utc_text(longest.begin, "%H:%M:%S"), utc_text(longest.end, "%H:%M:%S"),
+        longest.samples, longest.mean, tukey_width));
+  }
+  const double share = static_cast<double>(result.outliers) / static_cast<double>(result.samples);
+  if (share > many_outliers) {
+    warnings.push_back(
+        fmt::format("{:.0f} % of the samples count as outliers, and the fit does not look at them: the loss "
+                    "may hide what "
+                    "the model lacks; --loss none fits all of them",
+                    100.0 * share));
+  }
+  return warnings;
+}
+
+std::vector<std::string> error_notes(const RefitResult& result, std::size_t flights, bool stands_still) {
+  constexpr double too_small = 1.6;  // the jackknife of twenty parts knows an error to 16 %
+  constexpr double too_large = 0.5;
+  std::vector<std::string> notes;
+  if (!stands_still) {
+    notes.emplace_back(
+        "the stages of the fit did not come to rest: what one finds moves the other again and again; fit the "
+        "coefficients together, without stages");
+  }
+  std::string apart;
+  for (const FittedParameter& parameter : result.parameters) {
+    const double ratio = parameter.jackknife_error / parameter.standard_error;
+    if (!(ratio > too_small || ratio < too_large)) continue;
+    apart += fmt::format("{}{} ({:.2g} against {:.2g})", apart.empty() ? "" : ", ", parameter.name,
+                         parameter.jackknife_error, parameter.standard_error);
+  }
+  if (!apart.empty()) {
+    notes.push_back(fmt::format(
+        "the standard errors are not borne out by leaving out one {} after another, for {}: the noise is not "
+        "what the fit takes it for, or a few minutes decide; believe the larger one",
+        flights >= 8 ? "flight" : "part of the flights", apart));
+  }
+  return notes;
+}
+
+}  // namespace pcor::internal

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fit/fit_flights.hpp"
+
+namespace pcor::internal {
+
+/// Why the fit's own numbers call it worse than the coefficients of the file, a sentence without full stop:
+/// its residuals are larger by more than 2 %, on what was fitted (rms and robust deviation both, since a
+/// robust fit may leave outliers more) or on a part that was held out. Empty where they are not.
+/// @param bulk_rms_before robust deviation with the coefficients of the file, hPa
+std::string why_worse(const RefitResult& result, double bulk_rms_before);
+
+/// Why a fit should not be trusted, a sentence each: its residuals vary more than delta-p itself; samples
+/// that count as outliers come in a row, which outliers do not; or outliers are so many that the loss hides
+/// what the model lacks.
+std::vector<std::string> fit_warnings(FitFlights& flights, const RefitResult& result,
+                                      const Eigen::VectorXd& values);
+
+/// In words: where the jackknife does not bear out the stated errors, and stages that do not come to rest.
+std::vector<std::string> error_notes(const RefitResult& result, std::size_t flights, bool stands_still);
+
+}  // namespace pcor::internal

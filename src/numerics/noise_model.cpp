@@ -1,0 +1,232 @@
+#include "numerics/noise_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <nlopt.hpp>
+
+#include "numerics/decompositions.hpp"
+#include "numerics/local_noise.hpp"
+#include "numerics/triangular_factor.hpp"
+#include "numerics/whitening.hpp"
+
+namespace pcor::internal {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr std::size_t most_shapes = 48;
+constexpr double shortest_period = 300.0;  // s
+constexpr std::size_t fewest_innovations = 20;
+/// Twice the logarithm of the likelihood that a slow part has to be worth.
+constexpr double worth_of_a_part = 1.0;
+
+Eigen::VectorXd without_drift(const Binning& bins, const Eigen::VectorXd& residual) {
+  const Eigen::MatrixXd shapes = drift_shapes(bins);
+  if (shapes.cols() == 0) return residual;
+  const Eigen::MatrixXd normal = shapes.transpose() * shapes;
+  const double ridge = 1e-9 * normal.trace();
+  const Eigen::MatrixXd conditioned =
+      normal + ridge * Eigen::MatrixXd::Identity(normal.rows(), normal.cols());
+  return residual - shapes * symmetric_solution(conditioned, shapes.transpose() * residual);
+}
+
+}  // namespace
+
+Eigen::MatrixXd drift_shapes(const Binning& bins) {
+  if (bins.size() < 2) return Eigen::MatrixXd(as_index(bins.size()), 0);
+  const double begin = bins.time().front();
+  const double length = bins.time().back() - begin;
+  const auto by_period = static_cast<std::size_t>(2.0 * length / shortest_period);
+  const std::size_t count = std::min({most_shapes, by_period, bins.size() / 15});
+  Eigen::MatrixXd shapes(as_index(bins.size()), as_index(count));
+  for (std::size_t k = 1; k <= count; ++k) {
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+      const double phase = pi * static_cast<double>(k) * (bins.time()[i] - begin) / length;
+      shapes(as_index(i), as_index(k - 1)) = std::cos(phase) / static_cast<double>(k);
+    }
+  }
+  return shapes;
+}
+
+NoiseModel estimate_noise(const std::vector<Binning>& bins, const std::vector<Eigen::VectorXd>& residuals) {
+  NoiseModel noise;
+  std::vector<double> all;
+  std::vector<Stretch> stretches;
+  std::vector<Eigen::VectorXd> fast;
+  for (std::size_t f = 0; f < bins.size(); ++f) {
+    fast.push_back(without_drift(bins[f], residuals[f]));
+    for (const Stretch& stretch : bins[f].stretches())
+      stretches.push_back({all.size() + stretch.first, stretch.count});
+    all.insert(all.end(), fast[f].data(), fast[f].data() + fast[f].size());
+    noise.level.emplace_back(Eigen::VectorXd::Ones(fast[f].size()));
+  }
+  constexpr int rounds = 2;
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<double> scaled;
+    scaled.reserve(all.size());
+    for (std::size_t f = 0; f < bins.size(); ++f) {
+      const Eigen::VectorXd ratio = fast[f].cwiseQuotient(noise.level[f]);
+      scaled.insert(scaled.end(), ratio.data(), ratio.data() + ratio.size());
+    }
+    noise.coefficients = autoregression(scaled, stretches).coefficients;
+    // The level of the innovations: first without a level of its own for each time.
+    for (Eigen::VectorXd& level : noise.level) level.setOnes();
+    std::vector<Eigen::VectorXd> innovations;
+    std::vector<double> whole;
+    for (std::size_t f = 0; f < bins.size(); ++f) {
+      innovations.emplace_back(whitened(fast[f], bins[f], noise, f));
+      whole.insert(whole.end(), innovations[f].data(), innovations[f].data() + innovations[f].size());
+    }
+    const double common = robust_deviation(whole);
+    for (std::size_t f = 0; f < bins.size(); ++f) {
+      const std::vector<double>& time = bins[f].time();
+      for (std::size_t first = 0; first < time.size();) {
+        std::size_t last = first;
+        while (last < time.size() && time[last] < time[first] + local_noise_time) ++last;
+        const double* const begin = innovations[f].data() + first;
+        const double* const end = innovations[f].data() + last;
+        double here = common;
+        if (last - first >= fewest_innovations) here = robust_deviation({begin, end});
+        const double level = local_noise_level(here, common);
+        noise.level[f]
+            .segment(as_index(first), as_index(last - first))
+            .setConstant(level > 0.0 ? level : 1.0);
+        first = last;
+      }
+    }
+  }
+  return noise;
+}
+
+namespace {
+
+/// The restricted likelihood of residuals after columns, as the noise model changes.
+class RestrictedLikelihood {
+ public:
+  RestrictedLikelihood(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
+                       const std::vector<Eigen::VectorXd>& residuals,
+                       const std::vector<std::size_t>& flights) {
+    for (const std::size_t f : flights) {
+      bins_.push_back(&bins[f]);
+      Eigen::MatrixXd& all = rows_.emplace_back(columns[f].rows(), columns[f].cols() + 1);
+      all << columns[f], residuals[f];
+      count_ += all.rows();
+    }
+    white_.resize(count_, rows_.front().cols());
+  }
+
+  /// Minus twice its logarithm, without constants. @param variance becomes that of the innovations, robustly
+  double operator()(const NoiseModel& noise, double& variance) {
+    double determinant = 0.0;
+    Eigen::Index first = 0;
+    for (std::size_t f = 0; f < bins_.size(); ++f) {
+      const Whitening whitening(*bins_[f], noise, f);
+      white_.middleRows(first, rows_[f].rows()) = whitening(rows_[f]);
+      first += rows_[f].rows();
+      determinant += whitening.log_determinant();
+    }
+    const Eigen::Index width = white_.cols() - 1;
+    Eigen::VectorXd innovation = white_.col(width);
+    if (width > 0) {
+      const Eigen::MatrixXd information = white_.leftCols(width).transpose() * white_.leftCols(width);
+      innovation -= white_.leftCols(width) *
+                    pseudo_solution(information, white_.leftCols(width).transpose() * innovation, 1e-11);
+      const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt();
+      const Eigen::VectorXd inverse = scale.cwiseInverse();
+      determinant += 2.0 * scale.array().log().sum() +
+                     symmetric_eigenvalues(inverse.asDiagonal() * information * inverse.asDiagonal())
+                         .cwiseMax(1e-11)
+                         .array()
+                         .log()
+                         .sum();
+    }
+    const double deviation = robust_deviation({innovation.data(), innovation.data() + innovation.size()});
+    const double limit = 9.0 * deviation * deviation;
+    const auto freedom = static_cast<double>(count_ - width);
+    variance = innovation.array().square().min(limit).sum() / (clipped_variance * freedom);
+    return determinant + freedom * std::log(variance);
+  }
+
+ private:
+  static constexpr double clipped_variance = 0.9950;  // of a normal variable, squares cut off at nine
+
+  std::vector<const Binning*> bins_;
+  std::vector<Eigen::MatrixXd> rows_;
+  Eigen::Index count_ = 0;
+  Eigen::MatrixXd white_;
+};
+
+using Cost = std::function<double(const std::vector<double>&)>;
+
+/// The sizes of the slow parts, of the rms of the residuals, with the least cost.
+std::vector<double> least_of(const Cost& cost) {
+  constexpr double most = 5.0;
+  nlopt::opt search(nlopt::LN_BOBYQA, static_cast<unsigned>(slow_times.size()));
+  search.set_lower_bounds(0.0);
+  search.set_upper_bounds(most);
+  Cost own = cost;
+  search.set_min_objective([](const std::vector<double>& x, std::vector<double>&,
+                              void* data) { return (*static_cast<Cost*>(data))(x); },
+                           &own);
+  search.set_initial_step(0.2);
+  search.set_xtol_abs(0.01);
+  search.set_maxeval(120);
+  std::vector<double> sizes(slow_times.size(), 0.25);
+  double least = 0.0;
+  try {
+    search.optimize(sizes, least);
+  } catch (const nlopt::roundoff_limited&) {
+    // What was found by then is what counts.
+  }
+  return sizes;
+}
+
+}  // namespace
+
+NoiseModel find_noise(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
+                      const std::vector<Eigen::VectorXd>& residuals) {
+  NoiseModel whole = estimate_noise(bins, residuals);
+  NoiseModel noise;  // of the flights that take part
+  noise.coefficients = whole.coefficients;
+  std::vector<std::size_t> part;
+  std::vector<double> all;
+  for (std::size_t f = 0; f < bins.size(); ++f) {
+    if (columns[f].rows() == 0) continue;
+    part.push_back(f);
+    noise.level.push_back(whole.level[f]);
+    all.insert(all.end(), residuals[f].data(), residuals[f].data() + residuals[f].size());
+  }
+  const double rms = robust_deviation(all);
+  if (!(rms > 0.0)) return whole;
+  RestrictedLikelihood likelihood(bins, columns, residuals, part);
+  const auto cost = [&](const std::vector<double>& sizes) {
+    for (std::size_t k = 0; k < sizes.size(); ++k) noise.slow[k] = sizes[k] * rms;
+    double variance = 1.0;
+    return likelihood(noise, variance);
+  };
+  std::vector<double> sizes = least_of(cost);
+  // A part that is worth nothing is left out, the slowest first: it is what a flight tells least of.
+  double least = cost(sizes);
+  for (std::size_t k = sizes.size(); k-- > 0;) {
+    std::vector<double> without = sizes;
+    without[k] = 0.0;
+    const double left = cost(without);
+    if (!(left < least + worth_of_a_part)) continue;
+    sizes = without;
+    least = left;
+  }
+  double variance = 1.0;
+  for (std::size_t k = 0; k < sizes.size(); ++k) noise.slow[k] = sizes[k] * rms;
+  likelihood(noise, variance);
+  const double scale = std::sqrt(variance);
+  for (Eigen::VectorXd& level : whole.level) level *= scale;
+  for (std::size_t k = 0; k < sizes.size(); ++k) whole.slow[k] = scale * noise.slow[k];
+  return whole;
+}
+
+Eigen::MatrixXd whitened(const Eigen::Ref<const Eigen::MatrixXd>& columns, const Binning& bins,
+                         const NoiseModel& noise, std::size_t flight) {
+  return Whitening(bins, noise, flight)(columns);
+}
+
+}  // namespace pcor::internal

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <vector>
+
+#include "numerics/binning.hpp"
+
+namespace pcor::internal {
+
+/// For how long each slow part of the noise remembers itself, s: a factor of four apart, so that their sum
+/// follows a drift of any such time, a random walk, or 1/f noise, within a tenth of its power.
+inline constexpr std::array<double, 4> slow_times{50.0, 200.0, 800.0, 3200.0};
+
+/// The noise of a series of binned residuals: an autoregression whose level changes every five minutes, and
+/// beside it slow parts, first-order processes of fixed times.
+struct NoiseModel {
+  std::vector<double> coefficients{};            ///< of the autoregression, from bin to bin
+  std::vector<Eigen::VectorXd> level{};          ///< of each flight's bins: rms of the innovations, hPa
+  std::array<double, slow_times.size()> slow{};  ///< rms of each slow part, hPa
+  double drift = 0.0;  ///< the drift is drift * sum over k of z_k cos(pi k t/T)/k, z_k normal, hPa
+};
+
+/// Estimates autoregression and level from residuals that hold no effect any more. Slow drift is taken off
+/// before, so that it does not pass for memory of the noise.
+///
+/// @param residuals of each flight, in bins, hPa
+NoiseModel estimate_noise(const std::vector<Binning>& bins, const std::vector<Eigen::VectorXd>& residuals);
+
+/// The whole of the noise of residuals that columns are fitted to: autoregression and levels by
+/// `estimate_noise`, then the slow parts, and the scale of all parts, that are most likely for what the
+/// columns leave: by restricted likelihood, which knows that columns take up some of a drift (Patterson and
+/// Thompson 1971, Biometrika 58, 545). Innovations beyond three deviations count as if they were at that
+/// limit.
+///
+/// @param columns of each flight, in bins: of all that is fitted. Flights without columns do not take part in
+///        the search for slow parts.
+/// @param residuals of each flight, in bins, after the fit, hPa
+NoiseModel find_noise(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
+                      const std::vector<Eigen::VectorXd>& residuals);
+
+/// The columns in units of the noise and without its memory: each row is scaled by the level and what the
+/// rows before predict is taken off; exact at the beginning of stretches.
+Eigen::MatrixXd whitened(const Eigen::Ref<const Eigen::MatrixXd>& columns, const Binning& bins,
+                         const NoiseModel& noise, std::size_t flight);
+
+/// The shapes of slow drift over a flight, cos(pi k t/T)/k: periods down to five minutes, at most 48.
+Eigen::MatrixXd drift_shapes(const Binning& bins);
+
+}  // namespace pcor::internal

@@ -1,0 +1,133 @@
+#include <gtest/gtest.h>
+#include <pcor/fit/refit.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "support/made_samples.hpp"
+#include "support/many_seeds.hpp"
+
+// Scores of refitted coefficients, (estimate - truth) / stated error, over flights whose noise is slower and
+// less tidy than an autoregression: their rms is near one.
+
+namespace {
+
+using Flights = std::vector<std::shared_ptr<const pcor::FlightSamples>>;
+
+const std::map<std::string, double> truth{
+    {"static-constant.a0", 0.004127875}, {"static-alpha.a1", 0.021279816}, {"static-qp.a2", 0.030849643}};
+
+/// What is added to the reference pressure beside noise of 0.3 hPa that remembers itself for 3 s.
+struct Nuisance {
+  double drift = 0.0;       ///< hPa
+  double drift_time = 1.0;  ///< s
+  double flicker = 0.0;     ///< rms of 1/f noise in a decade of frequency, hPa
+  bool bursts = false;      ///< half a minute with five times the noise, every ten minutes
+  bool stuck = false;       ///< the reference stands still for a minute
+};
+
+void add_process(std::vector<double>& series, std::mt19937_64& engine, double rms, double memory) {
+  std::normal_distribution<double> normal;
+  const double keep = std::exp(-1.0 / memory);
+  double value = rms * normal(engine);
+  for (double& each : series) {
+    each += value;
+    value = keep * value + std::sqrt(1.0 - keep * keep) * rms * normal(engine);
+  }
+}
+
+std::shared_ptr<const pcor::FlightSamples> flight(unsigned seed, const Nuisance& nuisance) {
+  made::Plan plan;
+  plan.seed = seed;
+  plan.samples = 7200;
+  plan.defect = made::equation_18;
+  pcor::FlightSamples samples = made::flight(plan);
+  std::vector<double>& reference = made::reference_pressure(samples);
+  std::mt19937_64 engine(seed + 100000);
+  std::normal_distribution<double> normal;
+  if (nuisance.drift > 0.0) add_process(reference, engine, nuisance.drift, nuisance.drift_time);
+  // Processes an octave apart of equal rms have a spectrum of 1/f between them; 3.3 octaves are a decade.
+  for (double memory = 2.0; nuisance.flicker > 0.0 && memory < 8000.0; memory *= 2.0)
+    add_process(reference, engine, nuisance.flicker / std::sqrt(3.3), memory);
+  for (std::size_t i = 0; i < reference.size(); ++i) {
+    if (nuisance.bursts && i % 600 < 30) reference[i] += 1.5 * normal(engine);
+    if (nuisance.stuck && i > 3000 && i < 3060) reference[i] = reference[3000];
+  }
+  pcor::Interval manoeuvre;
+  manoeuvre.regime = pcor::Regime::pitch_manoeuvre;
+  for (const std::size_t begin : {1000U, 3500U, 6000U}) {
+    manoeuvre.begin = samples.time[begin];
+    manoeuvre.end = samples.time[begin + 300];
+    samples.intervals.push_back(manoeuvre);
+  }
+  return std::make_shared<const pcor::FlightSamples>(samples);
+}
+
+/// Rms of the scores of each coefficient over many fits.
+std::map<std::string, double> scores_of(const Nuisance& nuisance, std::size_t seeds, std::size_t flights,
+                                        const pcor::RefitOptions& options = {}) {
+  std::map<std::string, double> squares;
+  for (std::size_t s = 0; s < seeds; ++s) {
+    Flights all;
+    for (std::size_t f = 0; f < flights; ++f)
+      all.push_back(flight(static_cast<unsigned>(1000 + s * flights + f), nuisance));
+    pcor::ModelFile model = made::model({"static-constant", "static-alpha", "static-qp"});
+    // A start that is two times wrong: what the first stage holds must not stay in the others.
+    model.model.effects[2].parameters = {2.0 * truth.at("static-qp.a2")};
+    for (const pcor::FittedParameter& parameter :
+         pcor::refit(all, model, made::pressure_reference(), options).parameters) {
+      const double score = (parameter.value - truth.at(parameter.name)) / parameter.standard_error;
+      squares[parameter.name] += score * score / static_cast<double>(seeds);
+    }
+  }
+  for (auto& [name, value] : squares) value = std::sqrt(value);
+  return squares;
+}
+
+/// The rms of n scores of a right error scatters by 1/sqrt(2n); three of these either side. Beside that
+/// stands what a right method may be off by: the strength of a drift is found from the flight itself.
+void expect_right(const std::map<std::string, double>& scores, std::size_t seeds, const std::string& what) {
+  const double chance = 3.0 / std::sqrt(2.0 * static_cast<double>(seeds));
+  for (const auto& [name, score] : scores) {
+    EXPECT_GT(score, 0.9 - chance) << what << " " << name;
+    EXPECT_LT(score, 1.15 + chance) << what << " " << name;
+  }
+}
+
+const std::size_t seeds = pcor::test::number_of_seeds();
+
+}  // namespace
+
+TEST(StatedErrors, HoldWithoutDrift) { expect_right(scores_of({}, seeds, 1), seeds, "nothing"); }
+
+TEST(StatedErrors, HoldUnderDrift) {
+  expect_right(scores_of({0.06, 600.0}, seeds, 1), seeds, "0.06 hPa, 600 s");
+  expect_right(scores_of({0.15, 900.0}, seeds, 1), seeds, "0.15 hPa, 900 s");
+}
+
+TEST(StatedErrors, HoldUnderFlickerNoise) {
+  expect_right(scores_of({0.0, 1.0, 0.05}, seeds, 1), seeds, "1/f");
+}
+
+TEST(StatedErrors, HoldWithBurstsAndStuckValues) {
+  expect_right(scores_of({0.0, 1.0, 0.0, true}, seeds, 1), seeds, "bursts");
+  expect_right(scores_of({0.0, 1.0, 0.0, false, true}, seeds, 1), seeds, "stuck");
+}
+
+TEST(StatedErrors, HoldForEightFlights) {
+  const std::size_t fits = std::max<std::size_t>(seeds / 5, 6);
+  expect_right(scores_of({0.15, 900.0}, fits, 8), fits, "eight flights, 0.15 hPa, 900 s");
+}
+
+// A stage of an earlier fit held what the others had wrong: its errors were 5.7 times too small.
+TEST(StatedErrors, HoldInStagesFromAWrongStart) {
+  pcor::RefitOptions options;
+  options.stages = {{{pcor::Regime::pitch_manoeuvre}, {"static-alpha"}}};
+  expect_right(scores_of({}, seeds, 1, options), seeds, "stages");
+  expect_right(scores_of({0.15, 900.0}, seeds, 1, options), seeds, "stages, 0.15 hPa, 900 s");
+}
