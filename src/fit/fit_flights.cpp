@@ -391,12 +391,19 @@ void FitFlights::measure_noise(const Eigen::VectorXd& parameters, const Eigen::V
     if (number % every == 0) columns[number] = rows.leftCols(as_index(setup_.wanted.size()));
   });
   auto found = std::make_shared<FitNoise>();
-  found->model = find_noise(bins, columns, residuals);
+  found->model = task_.options.drift ? find_noise(bins, columns, residuals) : estimate_noise(bins, residuals);
   for (const Binning& each : bins) found->time.push_back(each.time());
   noise_ = std::move(found);
   visit([&](std::size_t number, std::size_t, FitFlight& fit) {
     if (cache_[number]) fit.set_noise(*noise_, number);
   });
+}
+
+double FitFlights::drift_rms() const {
+  double squares = 0.0;
+  for (std::size_t k = 0; noise_ && k < slow_times.size(); ++k)
+    squares += noise_->model.slow[k] * noise_->model.slow[k];
+  return std::sqrt(squares);
 }
 
 double FitFlights::deviation(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) {

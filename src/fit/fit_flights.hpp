@@ -174,6 +174,9 @@ class FitFlights {
   /// `share_noise`.
   void measure_noise(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets);
 
+  /// Of the slow parts of the noise together, hPa; zero before it was measured.
+  double drift_rms() const;
+
   /// The noise of other samples of the same flights.
   void share_noise(const FitFlights& others) {
     noise_ = others.noise_;

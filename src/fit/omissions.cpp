@@ -5,6 +5,7 @@
 #include "fit/loss_function.hpp"
 #include "fit/prior.hpp"
 #include "numerics/bounded_least_squares.hpp"
+#include "numerics/missing.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -27,6 +28,12 @@ double SquaredResiduals::at(const Eigen::VectorXd& values) const {
   Eigen::VectorXd step = Eigen::VectorXd::Ones(as_index(wanted.size()) + 1);
   step.head(as_index(wanted.size())) = values(wanted) - solution_.values(wanted);
   return (factor_ * step).squaredNorm();
+}
+
+double SquaredResiduals::least() const {
+  if (!is_linear_) return nan;
+  const double left = factor_(factor_.rows() - 1, factor_.cols() - 1);
+  return left * left;
 }
 
 std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, const FitSums& sums,

@@ -12,6 +12,8 @@ class SquaredResiduals {
 
   bool is_linear() const { return is_linear_; }
   double at(const Eigen::VectorXd& values) const;
+  /// The least that any coefficients leave; NaN where the residual is not linear.
+  double least() const;
 
  private:
   FitFlights& flights_;

@@ -123,10 +123,14 @@ void repeat_stages(Fitted& fitted, const Sources& sources, const FitTask& task,
   }
   // Every stage at the coefficients that all of them found.
   for (FitEquations& each : fitted.equations) {
-    if (each.parameters.empty()) continue;
-    each.flights->prepare(solution.values, each.solution.offsets);
+    if (each.parameters.empty()) {
+      each.flights->share_noise(*fitted.flights);
+      each.solution = solution;
+      each.solution.offsets = Eigen::VectorXd();
+    }
     each.solution.values = solution.values;
     each.solution.at_bound = solution.at_bound;
+    each.flights->prepare(solution.values, each.solution.offsets);
   }
 }
 
@@ -194,7 +198,7 @@ std::vector<std::string> notes_of(const RefitResult& result, const FitTask& task
   };
   add(identifiability_notes(task, fitted.solution, covariance, fitted.parameters, result.condition_number,
                             compared.flown));
-  add(error_notes(result, fitted.flights->count(), fitted.stands_still));
+  add(error_notes(result, fitted.flights->count(), fitted.stands_still, task.uses_prior()));
   add(compared.notes);
   add(bound_notes(task, fitted.solution, result.condition_number));
   if (task.uses_prior()) {
@@ -242,7 +246,7 @@ RefitResult fit(const Sources& sources, const ModelFile& model, const Reference&
   result.flights = std::move(compared.flights);
   list_coefficients(result, task, fitted, covariance);
   result.worse = why_worse(result, before.rms_of(before.bulk_squares));
-  result.warnings = fit_warnings(flights, result, solution.values);
+  result.warnings = fit_warnings(flights, result, solution.values, sums.rms_of(squares.least()));
   result.notes = notes_of(result, task, fitted, covariance.matrix, compared);
   result.model = fitted_model(model, 0, result, options.loss);
   if (options.fit_reference) {

@@ -13,6 +13,7 @@ namespace pcor::internal {
 namespace {
 
 constexpr double larger = 1.02;
+constexpr double much_larger = 1.1;
 constexpr double longest_chance = 30.0;  // s of outliers in a row; spikes and gusts are shorter
 constexpr double many_outliers = 0.05;   // of all samples
 
@@ -71,7 +72,7 @@ std::string why_worse(const RefitResult& result, double bulk_rms_before) {
 }
 
 std::vector<std::string> fit_warnings(FitFlights& flights, const RefitResult& result,
-                                      const Eigen::VectorXd& values) {
+                                      const Eigen::VectorXd& values, double least_rms) {
   std::vector<std::string> warnings;
   if (result.r_squared < 0.0) {
     warnings.push_back(
@@ -101,10 +102,20 @@ std::vector<std::string> fit_warnings(FitFlights& flights, const RefitResult& re
                     "the model lacks; --loss none fits all of them",
                     100.0 * share));
   }
+  const double drift = flights.drift_rms();
+  if (drift > 0.0 && result.rms > much_larger * least_rms) {
+    warnings.push_back(fmt::format(
+        "slow changes of the residuals, of {:.2f} hPa, were taken for drift of the sensors and not followed; "
+        "coefficients that follow them leave an rms of {:.3f} hPa instead of {:.3f}. If they are what the "
+        "model "
+        "lacks, pcor diagnose tells; --no-drift follows them",
+        drift, least_rms, result.rms));
+  }
   return warnings;
 }
 
-std::vector<std::string> error_notes(const RefitResult& result, std::size_t flights, bool stands_still) {
+std::vector<std::string> error_notes(const RefitResult& result, std::size_t flights, bool stands_still,
+                                     bool with_prior) {
   constexpr double too_small = 1.6;  // the jackknife of twenty parts knows an error to 16 %
   constexpr double too_large = 0.5;
   std::vector<std::string> notes;
@@ -116,7 +127,8 @@ std::vector<std::string> error_notes(const RefitResult& result, std::size_t flig
   std::string apart;
   for (const FittedParameter& parameter : result.parameters) {
     const double ratio = parameter.jackknife_error / parameter.standard_error;
-    if (!(ratio > too_small || ratio < too_large)) continue;
+    // The error of a prior is no noise, which a jackknife could see.
+    if (!(ratio > too_small || (ratio < too_large && !with_prior))) continue;
     apart += fmt::format("{}{} ({:.2g} against {:.2g})", apart.empty() ? "" : ", ", parameter.name,
                          parameter.jackknife_error, parameter.standard_error);
   }

@@ -31,6 +31,7 @@ struct Options {
   double memory_mib = 512.0;
   bool prior = false;
   bool search = false;
+  bool no_drift = false;
   bool force = false;
 };
 
@@ -75,6 +76,7 @@ RefitOptions refit_options(const Options& options) {
   refit.fit_reference = !options.reference_output.empty();
   refit.use_prior = options.prior;
   refit.search = options.search;
+  refit.drift = !options.no_drift;
   refit.training_share = options.training_share;
   refit.holdout.assign(options.holdout.begin(), options.holdout.end());
   refit.memory = static_cast<std::size_t>(options.memory_mib * 1048576.0);
@@ -171,9 +173,11 @@ void print_result(const RefitResult& result) {
       result.rms, result.rms_over_pressure, result.rms_before, result.bulk_rms, result.noise_rms,
       result.outliers);
   fmt::print(
-      "R2 {:.4f}; condition number {:.0f}\nthe residuals are correlated in time: {:.1f} samples count as one "
-      "independent one, and the standard errors allow for it\n",
-      result.r_squared, result.condition_number, result.samples_per_independent);
+      "R2 {:.4f}; condition number {:.0f}\nthe noise remembers itself and drifts: of a mean, {} samples tell "
+      "as "
+      "much as {:.0f} independent ones, and the standard errors allow for it\n",
+      result.r_squared, result.condition_number, result.samples,
+      static_cast<double>(result.samples) / result.samples_per_independent);
   if (result.omissions.size() > 1) {
     fmt::print("\n{:<36} {:>10} {:>10}\n", "left out, the others refitted", "rms, hPa", "R2");
     for (const Omission& omission : result.omissions)

@@ -29,6 +29,10 @@ struct RefitOptions {
   std::vector<std::string> fix{};   ///< parameters, or effects, held besides those that the file fixes
   std::vector<std::string> free{};  ///< parameters, or effects, fitted although the file fixes them
   std::vector<FitStage> stages{};
+  /// Slow changes of the residuals that the model does not follow count as drift of the sensors, which is
+  /// found from the flights. False: they count in full, as least squares has it, and the stated errors do not
+  /// know them.
+  bool drift = true;
   /// The model of a static system that is the reference is fitted together with the model.
   bool fit_reference = false;
   /// Every coefficient is drawn to its starting value, as if that were measured: with the covariance that its
