@@ -56,10 +56,15 @@ FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask
   linear_ = task.reference.model() != nullptr ||
             std::all_of(setup.wanted.begin(), setup.wanted.end(),
                         [this](std::size_t parameter) { return residuals_.is_linear()[parameter]; });
-  prepare(setup.values, Eigen::VectorXd::Zero(as_index(offset_count_)));
 }
 
 void FitFlight::prepare(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) {
+  const auto same = [](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+    return a.size() == b.size() && a == b;
+  };
+  if (same(parameters, prepared_parameters_) && same(offsets, prepared_offsets_)) return;
+  prepared_parameters_ = parameters;
+  prepared_offsets_ = offsets;
   const FlightSamples& flight = residuals_.samples();
   std::vector<double> residual(kept_.size());
   for (std::size_t first = 0; first < kept_.size(); first += samples_per_chunk) {
@@ -153,7 +158,6 @@ Eigen::MatrixXd FitFlight::columns(const Eigen::VectorXd& parameters, const std:
 void FitFlight::keep_rows(const Eigen::VectorXd& parameters) {
   const Eigen::Index fitted = as_index(setup_->wanted.size());
   const Eigen::MatrixXd recorded = binned(residuals_, parameters, setup_->wanted);
-  kept_parameters_ = parameters;
   kept_rows_ = Eigen::MatrixXd::Zero(recorded.rows(), fitted + as_index(offset_count_) + 1);
   kept_rows_.leftCols(fitted) = columns(parameters, setup_->wanted, recorded);
   kept_rows_.rightCols(1) = recorded.rightCols(1);
@@ -169,7 +173,7 @@ Eigen::MatrixXd FitFlight::rows(const Eigen::VectorXd& parameters, const Eigen::
   Eigen::MatrixXd result;
   if (linear_) {
     result = kept_rows_;
-    result.rightCols(1) += kept_rows_.leftCols(fitted) * (parameters - kept_parameters_)(setup_->wanted);
+    result.rightCols(1) += kept_rows_.leftCols(fitted) * (parameters - prepared_parameters_)(setup_->wanted);
   } else {
     const Eigen::MatrixXd now = binned(residuals_, parameters, setup_->wanted);
     result = Eigen::MatrixXd::Zero(now.rows(), fitted + own + 1);
@@ -190,7 +194,8 @@ Eigen::MatrixXd FitFlight::white_rows(const Eigen::VectorXd& parameters,
   const Eigen::Index fitted = as_index(setup_->wanted.size());
   const Eigen::Index own = as_index(offset_count_);
   Eigen::MatrixXd result = kept_white_rows_;
-  result.rightCols(1) += kept_white_rows_.leftCols(fitted) * (parameters - kept_parameters_)(setup_->wanted);
+  result.rightCols(1) +=
+      kept_white_rows_.leftCols(fitted) * (parameters - prepared_parameters_)(setup_->wanted);
   if (own > 0) result.rightCols(1) += kept_white_rows_.middleCols(fitted, own) * offsets;
   return result;
 }
@@ -264,8 +269,11 @@ std::shared_ptr<FitFlight> FitFlights::made(std::size_t number,
   if (cache_[number]) return cache_[number];
   const std::size_t own_bytes = sources_[number].samples ? 0 : bytes_of(*samples);
   auto fit = std::make_shared<FitFlight>(std::move(samples), task_, setup_);
-  if (noise_parameters_.size() > 0)
+  if (noise_parameters_.size() > 0) {
     fit->prepare(noise_parameters_, own(noise_offsets_, first_offset_[number], *fit));
+  } else {
+    fit->prepare(setup_.values, Eigen::VectorXd::Zero(as_index(fit->offsets())));
+  }
   if (noise_) fit->set_noise(*noise_, number);
   const std::size_t bytes =
       own_bytes + (2 * fit->bins().size() * (setup_.wanted.size() + 1) + fit->kept().size()) * sizeof(double);
@@ -375,7 +383,8 @@ void FitFlights::prepare(const Eigen::VectorXd& parameters, const Eigen::VectorX
   });
 }
 
-void FitFlights::measure_noise(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) {
+void FitFlights::measure_noise(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets,
+                               bool drift) {
   prepare(parameters, offsets);
   if (shares_noise_) return;
   // How slow the noise is, is found from a few of many flights.
@@ -391,7 +400,7 @@ void FitFlights::measure_noise(const Eigen::VectorXd& parameters, const Eigen::V
     if (number % every == 0) columns[number] = rows.leftCols(as_index(setup_.wanted.size()));
   });
   auto found = std::make_shared<FitNoise>();
-  found->model = task_.options.drift ? find_noise(bins, columns, residuals) : estimate_noise(bins, residuals);
+  found->model = drift ? find_noise(bins, columns, residuals) : estimate_noise(bins, residuals);
   for (const Binning& each : bins) found->time.push_back(each.time());
   noise_ = std::move(found);
   visit([&](std::size_t number, std::size_t, FitFlight& fit) {

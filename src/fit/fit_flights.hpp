@@ -113,11 +113,13 @@ class FitFlight {
   std::vector<Eigen::Index> bin_;  // of each kept sample; -1 for those that are left out
   Eigen::VectorXd in_bin_;         // samples in each bin
   bool linear_ = false;
+  Eigen::VectorXd prepared_parameters_;
+  Eigen::VectorXd prepared_offsets_;
   std::optional<Whitening> whitening_;
-  // Where the residual counts as linear in all that is wanted: rows at `kept_parameters_` without offsets.
+  // Where the residual counts as linear in all that is wanted: rows at `prepared_parameters_` without
+  // offsets.
   Eigen::MatrixXd kept_rows_;
   Eigen::MatrixXd kept_white_rows_;
-  Eigen::VectorXd kept_parameters_;
 };
 
 /// What a pass over all flights gives.
@@ -170,9 +172,9 @@ class FitFlights {
   /// Prepares every flight at these parameters; the noise stays.
   void prepare(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets);
 
-  /// Prepares every flight, and finds the noise, which weights the bins from now on; or keeps that of
-  /// `share_noise`.
-  void measure_noise(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets);
+  /// Prepares every flight, and finds the noise, with its slow parts or without, which weights the bins from
+  /// now on; or keeps that of `share_noise`.
+  void measure_noise(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets, bool drift);
 
   /// Of the slow parts of the noise together, hPa; zero before it was measured.
   double drift_rms() const;
@@ -182,6 +184,8 @@ class FitFlights {
     noise_ = others.noise_;
     shares_noise_ = true;
   }
+
+  bool shares_noise() const { return shares_noise_; }
 
   /// The robust deviation of the innovations; 1 where the noise is right.
   double deviation(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets);

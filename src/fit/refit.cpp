@@ -104,7 +104,7 @@ void repeat_stages(Fitted& fitted, const Sources& sources, const FitTask& task,
   for (int round = 0; round < most_rounds && !fitted.stands_still; ++round) {
     const Eigen::VectorXd before = solution.values;
     // The noise hardly changes after the first rounds.
-    if (round < 2) fitted.flights->measure_noise(solution.values, Eigen::VectorXd());
+    if (round < 2) fitted.flights->measure_noise(solution.values, Eigen::VectorXd(), task.options.drift);
     for (FitEquations& each : fitted.equations) {
       if (each.parameters.empty()) continue;
       each.flights->share_noise(*fitted.flights);
@@ -150,11 +150,13 @@ Fitted fit_in_stages(const Sources& sources, const FitTask& task) {
   solution.values = task.start;
   fitted.flights = std::make_unique<FitFlights>(sources, task, FitSetup{solution.values, fitted.parameters});
   solution = solve(*fitted.flights, std::move(solution));
-  if (stages.size() > 1) repeat_stages(fitted, sources, task, stages);
-  // What comes now, errors, what can be told apart, and what each effect does, is of all samples.
-  solution.offsets = Eigen::VectorXd();
-  fitted.flights->measure_noise(solution.values, solution.offsets);
-  solution.deviation = fitted.flights->deviation(solution.values, solution.offsets);
+  if (stages.size() > 1) {
+    repeat_stages(fitted, sources, task, stages);
+    // What comes now, errors, what can be told apart, and what each effect does, is of all samples.
+    solution.offsets = Eigen::VectorXd();
+    fitted.flights->measure_noise(solution.values, solution.offsets, task.options.drift);
+    solution.deviation = fitted.flights->deviation(solution.values, solution.offsets);
+  }
   if (fitted.equations.empty())
     fitted.equations.push_back({fitted.flights.get(), fitted.parameters, solution});
   return fitted;

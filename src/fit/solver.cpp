@@ -73,12 +73,15 @@ class Solver {
       spread();
     }
     flights_.prepare(solution_.values, solution_.offsets);
-    linear_step(nullptr);
-    measure();
     const Loss loss = task_.options.loss;
-    // The solution of a convex loss is unique; from Huber's the others find the minimum of the bulk.
-    settles_with(loss == Loss::none ? loss : Loss::huber);
-    measure();
+    // Where the noise is that of others, this is a stage that begins at a solution.
+    if (!flights_.shares_noise()) {
+      linear_step(nullptr);
+      measure(false);
+      // The solution of a convex loss is unique; from Huber's the others find the minimum of the bulk.
+      settles_with(loss == Loss::none ? loss : Loss::huber);
+    }
+    measure(task_.options.drift);
     constexpr int rounds = 10;
     for (int round = 0; round < rounds; ++round) {
       const Eigen::VectorXd before = unknowns_;
@@ -101,8 +104,8 @@ class Solver {
     solution_.offsets = unknowns_.tail(unknowns_.size() - fitted_);
   }
 
-  void measure() {
-    flights_.measure_noise(solution_.values, solution_.offsets);
+  void measure(bool drift) {
+    flights_.measure_noise(solution_.values, solution_.offsets, drift);
     solution_.deviation = flights_.deviation(solution_.values, solution_.offsets);
   }
 
