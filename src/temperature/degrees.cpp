@@ -47,7 +47,8 @@ Degrees::Degrees(const std::vector<HeightEquations>& flights, std::size_t most) 
       HeightEquations others = all;
       others.information -= one.information;
       others.right -= one.right;
-      gains.push_back(one.deviance_at(others.best(n)) - one.deviance(0));
+      gains.push_back(one.deviance_of_heights(others.best_unknowns(n)) -
+                      one.deviance_of_heights(others.best_unknowns(0)));
     }
     const Sum sum = sum_of(gains);
     choice.held_out = sum.value;

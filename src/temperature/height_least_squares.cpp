@@ -1,6 +1,7 @@
 #include "temperature/height_least_squares.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 #include "numerics/decompositions.hpp"
@@ -37,6 +38,32 @@ std::vector<double> height_differences(const HeightRecord& record, const std::ve
     for (std::size_t i = first; i < end; ++i) result[i] -= sum / count;
   });
   return result;
+}
+
+double samples_as_one(const std::vector<HeightRecord>& records, const std::vector<double>& coefficients) {
+  std::vector<std::vector<double>> left;
+  double squares = 0.0;
+  double blocks = 0.0;
+  double samples = 0.0;
+  std::size_t longest = 0;
+  for (const HeightRecord& record : records) {
+    left.push_back(height_differences(record, coefficients));
+    for (const double height : left.back()) squares += height * height;
+    for (const HeightBlock& block : record.blocks) samples += static_cast<double>(block.samples);
+    blocks += static_cast<double>(record.blocks.size());
+    longest = std::max(longest, record.blocks.size());
+  }
+  // To the first lag without correlation: heights about their mean have negative ones beyond.
+  double as_one = 1.0;
+  for (std::size_t lag = 1; lag < longest; ++lag) {
+    double products = 0.0;
+    for (const std::vector<double>& heights : left) {
+      for (std::size_t i = lag; i < heights.size(); ++i) products += heights[i] * heights[i - lag];
+    }
+    if (!(products > 0.0)) break;
+    as_one += 2.0 * products / squares;
+  }
+  return as_one * samples / blocks;
 }
 
 TemperatureFit fit_height_by_least_squares(const std::vector<HeightRecord>& records, std::size_t terms) {

@@ -16,10 +16,11 @@ namespace pcor::internal {
 namespace {
 
 // The states, in their order.
-enum State : Eigen::Index { drift, wander, slope_east, slope_north, pressure_error, state_count };
+enum State : Eigen::Index { drift, wander, slope_east, slope_north, state_count };
 
-// What is filtered: the height, the columns of the coefficients, and the trace of a pressure error.
-constexpr Eigen::Index filtered = 2 + static_cast<Eigen::Index>(calibration_terms);
+// What is filtered: the height, and the columns of the unknowns.
+constexpr Eigen::Index unknowns = HeightEquations::unknowns;
+constexpr Eigen::Index filtered = 1 + unknowns;
 using Covariance = Eigen::Matrix<double, state_count, state_count>;
 using Vector = Eigen::Matrix<double, state_count, 1>;
 using Means = Eigen::Matrix<double, state_count, filtered>;
@@ -56,7 +57,6 @@ void filter(const HeightRecord& record, const HeightNoise& noise, const HeightPr
   p(wander, wander) = noise.wander * noise.wander;
   const double slope = prior.slope * record.slope_left;
   p(slope_east, slope_east) = p(slope_north, slope_north) = slope * slope;
-  p(pressure_error, pressure_error) = prior.pressure * prior.pressure;
   const bool has_slopes = slope > 0.0;
   const double walk = noise.walk * noise.walk;
   const HeightBlock* before = nullptr;
@@ -92,16 +92,15 @@ void filter(const HeightRecord& record, const HeightNoise& noise, const HeightPr
     before = &block;
 
     const BlockMean slow(noise.wander, noise.wander_time, block.length);
-    // Where the static pressure is too high the integral is too low, and the rest too high.
     Vector seen = Vector::Zero();
     seen(drift) = 1.0;
     seen(wander) = slow.kept;
-    seen(pressure_error) = block.pressure_error;
     Vector reached = p * seen;
     const double variance = seen.dot(reached) + slow.of_mean + walk * block.length / 3.0 +
                             noise.white * noise.white / static_cast<double>(block.samples);
     Row measured;
-    measured << block.excess, block.columns[0], block.columns[1], block.columns[2], block.pressure_error;
+    measured << block.excess, Eigen::Map<const Eigen::RowVector3d>(block.columns.data()),
+        Eigen::Map<const Eigen::Matrix<double, 1, pressure_errors>>(block.errors.data());
     const Row innovation = measured - seen.transpose() * x;
     see(block, innovation, variance);
 
@@ -252,42 +251,98 @@ double objective(const std::vector<double>& x, std::vector<double>&, void* funct
   return (*static_cast<std::function<double(const std::vector<double>&)>*>(function))(x);
 }
 
+/// Which unknowns there are: the coefficients of the first `terms` powers, and errors that have a size.
+std::vector<Eigen::Index> free_unknowns(const std::array<double, pressure_errors>& sizes,
+                                        Eigen::Index terms) {
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index k = 0; k < terms; ++k) free.push_back(k);
+  for (std::size_t k = 0; k < pressure_errors; ++k) {
+    if (sizes[k] > 0.0) free.push_back(as_index(calibration_terms + k));
+  }
+  return free;
+}
+
+HeightEquations::Matrix with_prior(HeightEquations::Matrix information,
+                                   const std::array<double, pressure_errors>& sizes) {
+  for (std::size_t k = 0; k < pressure_errors; ++k) {
+    const Eigen::Index at = as_index(calibration_terms + k);
+    if (sizes[k] > 0.0) information(at, at) += 1.0 / (sizes[k] * sizes[k]);
+  }
+  return information;
+}
+
+/// How far errors of the pressure are from none, by what is known beforehand.
+double sum_of_prior(const HeightEquations::Vector& all, const std::array<double, pressure_errors>& sizes) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < pressure_errors; ++k) {
+    const double error = all[as_index(calibration_terms + k)];
+    if (sizes[k] > 0.0) sum += error * error / (sizes[k] * sizes[k]);
+  }
+  return sum;
+}
+
+/// The inverse of an information matrix whose unknowns have different units.
+Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& information) {
+  if (information.size() == 0) return information;
+  const Eigen::VectorXd scale =
+      information.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  const Eigen::MatrixXd inverse = scale.asDiagonal() * inverse_of(scaled) * scale.asDiagonal();
+  return 0.5 * (inverse + inverse.transpose());
+}
+
 }  // namespace
 
 HeightEquations& HeightEquations::operator+=(const HeightEquations& other) {
   information += other.information;
   right += other.right;
+  sizes = other.sizes;
   squares += other.squares;
   log_determinant += other.log_determinant;
-  pressure_error += other.pressure_error;
   blocks += other.blocks;
   return *this;
 }
 
-Eigen::MatrixXd HeightEquations::covariance(Eigen::Index terms) const {
-  if (terms == 0) return {};
-  const Eigen::VectorXd scale = information.diagonal()
-                                    .head(terms)
-                                    .cwiseMax(std::numeric_limits<double>::min())
-                                    .cwiseSqrt()
-                                    .cwiseInverse();
-  const Eigen::MatrixXd scaled =
-      scale.asDiagonal() * information.topLeftCorner(terms, terms) * scale.asDiagonal();
-  const Eigen::MatrixXd inverse = scale.asDiagonal() * inverse_of(scaled) * scale.asDiagonal();
-  return 0.5 * (inverse + inverse.transpose());
+HeightEquations::Matrix HeightEquations::covariance_of_unknowns(Eigen::Index terms) const {
+  const std::vector<Eigen::Index> free = free_unknowns(sizes, terms);
+  const Eigen::MatrixXd inverse = scaled_inverse(with_prior(information, sizes)(free, free));
+  Matrix result = Matrix::Zero();
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    for (std::size_t j = 0; j < free.size(); ++j)
+      result(free[i], free[j]) = inverse(as_index(i), as_index(j));
+  }
+  return result;
 }
 
-Eigen::VectorXd HeightEquations::best(Eigen::Index terms) const {
-  return covariance(terms) * right.head(terms);
+HeightEquations::Vector HeightEquations::best_unknowns(Eigen::Index terms) const {
+  return covariance_of_unknowns(terms) * right;
 }
+
+Eigen::MatrixXd HeightEquations::covariance(Eigen::Index terms) const {
+  return covariance_of_unknowns(terms).topLeftCorner(terms, terms);
+}
+
+Eigen::VectorXd HeightEquations::best(Eigen::Index terms) const { return best_unknowns(terms).head(terms); }
 
 double HeightEquations::log_information(Eigen::Index terms) const {
-  return terms == 0 ? 0.0 : -std::log(covariance(terms).determinant());
+  const std::vector<Eigen::Index> free = free_unknowns(sizes, terms);
+  if (free.empty()) return 0.0;
+  return -std::log(scaled_inverse(with_prior(information, sizes)(free, free)).determinant());
+}
+
+double HeightEquations::deviance_of_heights(const Vector& all) const {
+  return log_determinant + squares - 2.0 * all.dot(right) + all.dot(information * all);
 }
 
 double HeightEquations::deviance_at(const Eigen::VectorXd& a) const {
-  const Eigen::Index n = a.size();
-  return log_determinant + squares - 2.0 * a.dot(right.head(n)) + a.dot(information.topLeftCorner(n, n) * a);
+  // The errors of the pressure are at their best for what these coefficients leave.
+  Vector all = Vector::Zero();
+  all.head(a.size()) = a;
+  HeightEquations left = *this;
+  left.right -= information * all;
+  const Vector errors = left.best_unknowns(0);
+  all += errors;
+  return deviance_of_heights(all) + sum_of_prior(errors, sizes);
 }
 
 double HeightEquations::deviance(Eigen::Index terms) const { return deviance_at(best(terms)); }
@@ -295,14 +350,14 @@ double HeightEquations::deviance(Eigen::Index terms) const { return deviance_at(
 HeightEquations height_equations(const HeightRecord& record, const HeightNoise& noise,
                                  const HeightPrior& prior) {
   HeightEquations result;
+  result.sizes = prior.pressure;
   filter(record, noise, prior, [&](const HeightBlock& block, const Row& innovation, double variance) {
     if (block.starts_stretch) return;  // it says what the unknown height is, and nothing else
     const double weight = 1.0 / variance;
-    const Eigen::Vector3d columns = innovation.segment<3>(1).transpose();
+    const HeightEquations::Vector columns = innovation.tail<unknowns>().transpose();
     result.information.noalias() += weight * columns * columns.transpose();
     result.right += weight * innovation(0) * columns;
     result.squares += weight * innovation(0) * innovation(0);
-    result.pressure_error += weight * innovation(4) * columns;
     result.log_determinant += std::log(variance);
     ++result.blocks;
   });
@@ -310,13 +365,22 @@ HeightEquations height_equations(const HeightRecord& record, const HeightNoise& 
 }
 
 std::vector<double> height_innovations(const HeightRecord& record, const HeightNoise& noise,
-                                       const HeightPrior& prior, const Eigen::Vector3d& coefficients) {
+                                       const HeightPrior& prior, const HeightEquations::Vector& all) {
   std::vector<double> result;
   filter(record, noise, prior, [&](const HeightBlock& block, const Row& innovation, double variance) {
-    const double left = innovation(0) - innovation.segment<3>(1).dot(coefficients);
+    const double left = innovation(0) - innovation.tail<unknowns>().dot(all);
     result.push_back(block.starts_stretch ? nan : left / std::sqrt(variance));
   });
   return result;
+}
+
+HeightRecord without_unknowns(HeightRecord record, const HeightEquations::Vector& all) {
+  for (HeightBlock& block : record.blocks) {
+    for (std::size_t k = 0; k < calibration_terms; ++k) block.excess -= all[as_index(k)] * block.columns[k];
+    for (std::size_t k = 0; k < pressure_errors; ++k)
+      block.excess -= all[as_index(calibration_terms + k)] * block.errors[k];
+  }
+  return record;
 }
 
 HeightEquations height_equations(const std::vector<HeightRecord>& records, const HeightNoise& noise,
@@ -333,6 +397,7 @@ HeightEquations height_equations(const std::vector<HeightRecord>& records, const
   fill(0);
   for (std::future<void>& other : others) other.get();
   HeightEquations sum;
+  sum.sizes = prior.pressure;
   for (const HeightEquations& one : each) sum += one;
   return sum;
 }
@@ -351,7 +416,7 @@ MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::
     } else {
       // The other coefficients follow the held one.
       const Eigen::MatrixXd covariance = equations.covariance(terms);
-      Eigen::VectorXd a = covariance * equations.right.head(terms);
+      Eigen::VectorXd a = equations.best(terms);
       a += covariance.col(held->term) * ((held->value - a[held->term]) / covariance(held->term, held->term));
       // What is left to explain the heights are the others: their information is all without the held one's.
       value = equations.deviance_at(a) + equations.log_information(terms) +

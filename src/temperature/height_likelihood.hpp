@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -27,44 +28,62 @@ struct HeightPrior {
   /// Usual slope of the isobars at the start, each direction; of it is in a flight what
   /// `HeightRecord::slope_left` says. 0: they are level.
   double slope = 1e-4;
-  double pressure = 0.0;  ///< of a constant error of the static pressure in each flight, hPa
+  /// Usual size of each error of the static pressure that a law leaves, the same in all flights: hPa, of the
+  /// static and of the dynamic pressure, of the angle of attack times the static pressure. 0: there is none,
+  /// or it is not asked.
+  std::array<double, pressure_errors> pressure{};
 };
 
 /// The Gaussian likelihood of heights, reduced to what the coefficients need: up to a constant,
 ///
-///     -2 ln L = log_determinant + squares - 2 a' right + a' information a
+///     -2 ln L = log_determinant + squares - 2 c' right + c' information c + sum (b/size)^2
+///
+/// where c = (a, b): coefficients a of the temperature, of which there may be fewer, and errors b of the
+/// static pressure, which have a size beforehand. Those of size 0 are none.
 struct HeightEquations {
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  static constexpr Eigen::Index unknowns = calibration_terms + pressure_errors;
+  using Matrix = Eigen::Matrix<double, unknowns, unknowns>;
+  using Vector = Eigen::Matrix<double, unknowns, 1>;
+
+  Matrix information = Matrix::Zero();
+  Vector right = Vector::Zero();
+  std::array<double, pressure_errors> sizes{};
   double squares = 0.0;
   double log_determinant = 0.0;
-  /// What an error of the static pressure of 1 hPa in all flights would add to `right`.
-  Eigen::Vector3d pressure_error = Eigen::Vector3d::Zero();
   std::size_t blocks = 0;
 
   HeightEquations& operator+=(const HeightEquations& other);
   /// -2 ln L at the best coefficients of the first `terms` powers, the others zero.
   double deviance(Eigen::Index terms) const;
-  /// The best coefficients of the first `terms` powers, and their covariance.
+  /// The best coefficients of the first `terms` powers, and their covariance: with the errors of the pressure
+  /// at their best, and not known.
   Eigen::VectorXd best(Eigen::Index terms) const;
   Eigen::MatrixXd covariance(Eigen::Index terms) const;
-  /// ln det of the information on the first `terms` coefficients.
+  /// All unknowns at their best with the first `terms` powers, the others zero, and their covariance.
+  Vector best_unknowns(Eigen::Index terms) const;
+  Matrix covariance_of_unknowns(Eigen::Index terms) const;
+  /// ln det of the information on the first `terms` coefficients and the errors of the pressure.
   double log_information(Eigen::Index terms) const;
-  /// -2 ln L at given coefficients.
+  /// -2 ln L at given coefficients of the first powers, the errors of the pressure at their best.
   double deviance_at(const Eigen::VectorXd& coefficients) const;
+  /// What the heights alone say of all unknowns, not what is known beforehand: -2 ln L without the last sum.
+  double deviance_of_heights(const Vector& all) const;
 };
 
 /// One pass of a Kalman filter over a flight: states are the drift of the integral, the slow GPS noise, the
-/// two slopes of the isobars, and an error of the static pressure. The integral of every stretch starts at an
-/// unknown height. Coefficients enter as columns that are filtered like the data, so one pass serves all
-/// values of them. Time grows with the number of blocks.
+/// two slopes of the isobars. The integral of every stretch starts at an unknown height. Coefficients and
+/// errors of the pressure enter as columns that are filtered like the data, so one pass serves all values of
+/// them. Time grows with the number of blocks.
 HeightEquations height_equations(const HeightRecord& record, const HeightNoise& noise,
                                  const HeightPrior& prior);
 
 /// The innovations of that filter at given coefficients, in standard deviations: white with variance 1 where
 /// the noise is as described. NaN at the start of a stretch.
 std::vector<double> height_innovations(const HeightRecord& record, const HeightNoise& noise,
-                                       const HeightPrior& prior, const Eigen::Vector3d& coefficients);
+                                       const HeightPrior& prior, const HeightEquations::Vector& unknowns);
+
+/// The record with the unknowns taken off its heights.
+HeightRecord without_unknowns(HeightRecord record, const HeightEquations::Vector& unknowns);
 
 /// The sum over flights, several at a time: the same to the last bit for any number of threads.
 HeightEquations height_equations(const std::vector<HeightRecord>& records, const HeightNoise& noise,

@@ -17,8 +17,10 @@ namespace pcor::internal {
 namespace {
 
 constexpr double least_height_range = 300.0;  // m
+constexpr double kappa = 2.0 / 7.0;           // R/cp of dry air
 
 using Powers = std::array<double, calibration_terms>;
+using Errors = std::array<double, pressure_errors>;
 
 /// The integral at a sample that takes part.
 struct Point {
@@ -26,14 +28,17 @@ struct Point {
   bool starts_stretch = false;
   double excess = 0.0;  // m
   Powers columns{};
-  double pressure_error = 0.0;  // m/hPa
+  Errors errors{};
 };
 
 /// The integral along a flight, sample by sample.
 class Integration {
  public:
   Integration(const FlightAir& air, const std::vector<double>& steps, const HeightRecordOptions& options)
-      : air_(air), steps_(steps), options_(options) {}
+      : air_(air),
+        steps_(steps),
+        options_(options),
+        attack_(options.has_radome ? air.attack_ratio : air.attack) {}
 
   std::vector<Point> run(HeightRecord& record) {
     const std::vector<RegimeSet> regimes = regimes_of_samples(air_.time(), air_.samples->intervals);
@@ -51,7 +56,7 @@ class Integration {
         ++record.missing_heights;
         continue;
       }
-      points.push_back({i, starts_, air_.geopotential_height[i] - height_, columns_, pressure_error_});
+      points.push_back({i, starts_, air_.geopotential_height[i] - height_, columns_, errors_});
       starts_ = false;
     }
     return points;
@@ -78,8 +83,7 @@ class Integration {
         const double here = air_.temperature[i] - constants::ice_point;
         const double mean = 0.5 * (before + here) + constants::ice_point;
         height_ += step * mean;
-        pressure_error_ += air_.gas_constant[i] * mean / constants::standard_gravity *
-                           (1.0 / air_.pressure[i] - 1.0 / air_.pressure[last_]);
+        add_errors(shares_at(i), step, mean, air_.gas_constant[i] * mean / constants::standard_gravity);
         double power_before = 1.0;
         double power_here = 1.0;
         for (double& column : columns_) {
@@ -94,9 +98,30 @@ class Integration {
       starts_ = true;
       height_ = 0.0;
       columns_ = {};
-      pressure_error_ = 0.0;
+      errors_ = {};
+      last_shares_ = shares_at(i);
     }
     last_ = i;
+  }
+
+  /// The part of the static pressure that each error of one unit is. Where no angle is recorded, or none just
+  /// now, it is as it was.
+  Errors shares_at(std::size_t i) const {
+    const auto known = [](double share, double else_share) { return std::isnan(share) ? else_share : share; };
+    return {1.0 / air_.pressure[i], 1.0,
+            known(air_.dynamic[i] / air_.pressure[i], last_shares_[with_dynamic]),
+            attack_.empty() ? 0.0 : known(attack_[i], last_shares_[with_attack])};
+  }
+
+  void add_errors(const Errors& shares, double step, double temperature, double scale_height) {
+    for (std::size_t k = 0; k < pressure_errors; ++k)
+      errors_[k] += scale_height * (shares[k] - last_shares_[k]);
+    // A law takes from the dynamic pressure what it adds to the static one, and with it from the heating.
+    if (options_.recovers) {
+      for (const PressureError k : {with_static, with_dynamic, with_attack})
+        errors_[k] -= step * temperature * kappa * 0.5 * (shares[k] + last_shares_[k]);
+    }
+    last_shares_ = shares;
   }
 
   double step_between(std::size_t before, std::size_t here) const {
@@ -112,12 +137,14 @@ class Integration {
   const FlightAir& air_;
   const std::vector<double>& steps_;
   const HeightRecordOptions& options_;
+  const std::vector<double>& attack_;
   bool going_ = false;
   bool starts_ = false;
   std::size_t last_ = 0;
   double height_ = 0.0;
   Powers columns_{};
-  double pressure_error_ = 0.0;
+  Errors errors_{};
+  Errors last_shares_{};
 };
 
 /// Marks what the GPS does that no air does: a spike is left out, at a step the integral starts anew.
@@ -207,7 +234,7 @@ class BlockMeans {
     block_.time += air_.time()[i] - air_.time()[first_];
     block_.excess += point.excess;
     for (std::size_t k = 0; k < calibration_terms; ++k) block_.columns[k] += point.columns[k];
-    block_.pressure_error += point.pressure_error;
+    for (std::size_t k = 0; k < pressure_errors; ++k) block_.errors[k] += point.errors[k];
     block_.east += way_.east[i];
     block_.north += way_.north[i];
     block_.height += air_.geopotential_height[i];
@@ -224,11 +251,11 @@ class BlockMeans {
   HeightBlock take() {
     HeightBlock result = block_;
     const auto n = static_cast<double>(block_.samples);
-    for (double* value :
-         {&result.time, &result.excess, &result.east, &result.north, &result.height, &result.pressure,
-          &result.pressure_error, &result.temperature, &result.slope_east, &result.slope_north})
+    for (double* value : {&result.time, &result.excess, &result.east, &result.north, &result.height,
+                          &result.pressure, &result.temperature, &result.slope_east, &result.slope_north})
       *value /= n;
     for (double& column : result.columns) column /= n;
+    for (double& error : result.errors) error /= n;
     result.time += air_.time()[first_];
     result.length = n * air_.step();
     const double kelvin = result.temperature + constants::ice_point;

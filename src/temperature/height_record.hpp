@@ -12,6 +12,11 @@ namespace pcor::internal {
 /// How many powers of the temperature a calibration may have: a0 + a1 t + a2 t^2.
 inline constexpr std::size_t calibration_terms = 3;
 
+/// Errors that a law leaves of the static pressure: one that lasts (hPa), and those in proportion to the
+/// static pressure (static-constant), the dynamic pressure (static-qp), and the angle of attack times the
+/// static pressure (static-alpha, static-attack). The second moves no height but by the temperature.
+enum PressureError : std::size_t { lasting, with_static, with_dynamic, with_attack, pressure_errors };
+
 /// Means over some seconds of a flight: the height by GPS against the integral of the hydrostatic equation
 /// from the start of the stretch.
 struct HeightBlock {
@@ -27,8 +32,11 @@ struct HeightBlock {
   double pressure = 0.0;        ///< corrected static pressure, hPa
   double temperature = 0.0;     ///< uncorrected, degC
   double metres_per_hpa = 0.0;  ///< R_a T/(g p): thickness of a layer of 1 hPa, m/hPa
-  double pressure_error = 0.0;  ///< what 1 hPa too much of static pressure would add to `excess`, m/hPa
-  double climb = 0.0;           ///< m/s
+  /// What one unit more of each error of the static pressure adds to `excess`: m/hPa; m for an error as large
+  /// as the static pressure, and as the dynamic pressure; m for one of the radome ratio, or 1 deg, times the
+  /// static pressure.
+  std::array<double, pressure_errors> errors{};
+  double climb = 0.0;       ///< m/s
   double slope_east = 0.0;  ///< of isobaric surfaces by the geostrophic wind, 1; NaN where there is no wind
   double slope_north = 0.0;
   std::size_t samples = 0;
@@ -63,7 +71,12 @@ struct HeightRecord {
 struct HeightRecordOptions {
   double block = 10.0;            ///< s
   double least_climb_rate = 0.0;  ///< m/s; slower blocks are left out, and each climb is a stretch
-  double longest_bridge = 10.0;   ///< s without pressure or temperature that the integral crosses in one step
+  /// The temperature is that of a thermometer less the heating by the flow, for which it has to know the Mach
+  /// number: where delta-p is too large by a part x of the pressure, that is x R/cp of the temperature too
+  /// much, (p/(p + q))^(R/cp) being their ratio where all of the heating is recovered.
+  bool recovers = false;
+  bool has_radome = true;        ///< errors with the angle of attack go by the radome ratio, else by degrees
+  double longest_bridge = 10.0;  ///< s without pressure or temperature that the integral crosses in one step
 };
 
 /// Integrates the hydrostatic equation along a flight (memo eq. 24 in its exact form, geopotential height),

@@ -82,7 +82,7 @@ CalibrationInTurn calibrate_in_turn(const std::vector<std::filesystem::path>& fl
   result.temperature.degrees = std::move(degrees);
   if (result.rounds.size() > 1) {
     std::vector<std::string>& notes = result.temperature.notes;
-    const bool has_graver = !result.temperature.no_better.empty();
+    const bool has_graver = !result.temperature.worse.empty();
     notes.insert(notes.begin() + (has_graver ? 1 : 0), notes_on_degree.begin(), notes_on_degree.end());
     result.temperature.notes_on_degree = std::move(notes_on_degree);
   }

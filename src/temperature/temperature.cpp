@@ -11,13 +11,19 @@
 #include <thread>
 #include <utility>
 
+#include <pcor/effects/psfd_bias.hpp>
+#include <pcor/effects/static_alpha.hpp>
+#include <pcor/effects/static_attack.hpp>
+#include <pcor/effects/static_qp.hpp>
 #include <pcor/effects/temp_calibration.hpp>
 #include <pcor/flight/same_aircraft.hpp>
 #include <pcor/words/error.hpp>
 #include "laws/archived_model.hpp"
 #include "laws/calibration.hpp"
+#include "numerics/decompositions.hpp"
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
+#include "numerics/triangular_factor.hpp"
 #include "residuals/flight_air.hpp"
 #include "roles/recorded_model.hpp"
 #include "temperature/archived_steps.hpp"
@@ -25,12 +31,17 @@
 #include "temperature/height_least_squares.hpp"
 #include "temperature/height_likelihood.hpp"
 #include "temperature/isobar_slope.hpp"
+#include "temperature/parts.hpp"
 
 namespace pcor {
 
 using namespace internal;
 
 namespace {
+
+/// What is met in practice of an effect with one coefficient.
+template <class Effect>
+constexpr double usual_size = Effect::facts().parameters[0].typical;
 
 constexpr double much_noise = 3.0;  // m, of the GPS height
 constexpr double much_drift = 1.0;  // m in a minute; a usual slope of isobars, 10 m in 100 km, makes 0.7
@@ -44,6 +55,11 @@ constexpr std::array<std::pair<IsobarSlope, std::string_view>, 6> slope_names{{
     {IsobarSlope::geostrophic, "geostrophic"},
 }};
 
+constexpr double lasting_default = 0.3;                    // hPa, the rms of the memo's eq. 18
+constexpr double seen = 3.0;                               // standard errors that chance does not make
+constexpr double matters = usual_size<effects::PsfdBias>;  // hPa
+constexpr double told = 2.6;  // standard errors, which chance makes once in 100 times
+
 class TemperatureCalibration {
  public:
   TemperatureCalibration(const ModelFile& model, const TemperatureOptions& options)
@@ -51,7 +67,9 @@ class TemperatureCalibration {
     threads_ =
         options.threads > 0 ? options.threads : std::max<std::size_t>(1, std::thread::hardware_concurrency());
     prior_.slope = options.slope == IsobarSlope::none ? 0.0 : options.slope_size;
-    prior_.pressure = options.pressure_error;
+    has_radome_ = model.variables.count(Quantity::attack_differential_pressure) > 0;
+    prior_.pressure = {0.0, 0.0, usual_size<effects::StaticQp>,
+                       has_radome_ ? usual_size<effects::StaticAlpha> : usual_size<effects::StaticAttack>};
   }
 
   TemperatureResult run(const std::vector<std::filesystem::path>& paths) {
@@ -112,6 +130,8 @@ class TemperatureCalibration {
   HeightRecord read_record(const Flight& flight) const {
     HeightRecordOptions record_options;
     record_options.least_climb_rate = options_.least_climb_rate;
+    record_options.has_radome = has_radome_;
+    record_options.recovers = model_.variables.count(Quantity::recovery_temperature) > 0;
     FlightAir air;
     std::vector<double> steps;
     if (options_.archived) {
@@ -191,33 +211,123 @@ class TemperatureCalibration {
     const auto n = static_cast<Eigen::Index>(terms_);
     const HeightEquations& equations = likeliest_.equations;
     const Eigen::VectorXd best = equations.best(n);
-    const Eigen::MatrixXd covariance = covariance_over_noise(records_, n, prior_, likeliest_, threads_);
-    const Eigen::VectorXd per_hpa = equations.covariance(n) * equations.pressure_error.head(n);
+    Eigen::MatrixXd covariance = covariance_over_noise(records_, n, prior_, likeliest_, threads_);
+    const Eigen::MatrixXd moved_by =
+        equations.covariance_of_unknowns(n) * equations.information.rightCols<pressure_errors>();
+    const Eigen::VectorXd per_hpa = moved_by.col(lasting).head(n);
+    const Eigen::VectorXd per_part = moved_by.col(with_static).head(n);
+    find_parts();
+    find_law_error<effects::StaticQp>(with_dynamic);
+    if (has_radome_) {
+      find_law_error<effects::StaticAlpha>(with_attack);
+    } else {
+      find_law_error<effects::StaticAttack>(with_attack);
+    }
+    result_.pressure_error = lasting_error();
+    const Eigen::MatrixXd unseen = covariance_of_unseen(per_hpa, per_part / mean_pressure());
     const HeightNoise& noise = likeliest_.noise;
     result_.likelihood.sigma = std::hypot(noise.white, noise.wander);
     for (Eigen::Index k = 0; k < n; ++k) {
       result_.likelihood.coefficients.push_back(best[k]);
-      result_.likelihood.standard_errors.push_back(std::sqrt(covariance(k, k)));
+      result_.likelihood.standard_errors.push_back(std::sqrt(covariance(k, k) + unseen(k, k)));
       result_.per_hpa.push_back(per_hpa[k]);
       std::vector<double>& row = result_.covariance.emplace_back();
-      for (Eigen::Index j = 0; j < n; ++j) row.push_back(covariance(k, j));
-      result_.profile.push_back(profile_interval(k));
+      for (Eigen::Index j = 0; j < n; ++j) row.push_back(covariance(k, j) + unseen(k, j));
+      result_.profile.push_back(profile_interval(k, std::sqrt(covariance(k, k)), unseen(k, k)));
     }
     result_.gps_noise = noise.white;
     result_.gps_wander = noise.wander;
     result_.gps_wander_time = noise.wander_time;
     result_.drift = noise.walk * std::sqrt(60.0);
-    result_.pressure_error = prior_.pressure;
     result_.least_squares = fit_height_by_least_squares(levelled_, terms_);
+    compare_with_least_squares();
     find_corrections();
   }
 
+  double mean_pressure() const {
+    double sum = 0.0;
+    double count = 0.0;
+    for (const HeightRecord& record : records_) {
+      for (const HeightBlock& block : record.blocks) sum += block.pressure;
+      count += static_cast<double>(record.blocks.size());
+    }
+    return sum / count;
+  }
+
+  /// An error of the static pressure that lasts, hPa: of the law, and three usual zeros of its transducer;
+  /// where the heights see that the law is wrong by some hPa over the flights, as much may last.
+  double lasting_error() const {
+    if (options_.pressure_error) return *options_.pressure_error;
+    double square = std::pow(model_.law.rms_hpa.value_or(lasting_default), 2) +
+                    std::pow(3.0 * usual_size<effects::PsfdBias>, 2);
+    for (const LawError& error : result_.law_errors) {
+      if (is_seen(error)) square += error.range * error.range;
+    }
+    return std::sqrt(square);
+  }
+
+  static bool is_seen(const LawError& error) {
+    return std::abs(error.change) > seen * error.standard_error && error.range > matters;
+  }
+
+  /// What the likelihood cannot see. An error of the pressure that lasts: in hPa, of which the shape of the
+  /// heights would tell only if that of the thermometer's error were known, or as a part of the pressure,
+  /// which moves the temperature alone. And a correction serves any flight, in climbs and descents, no better
+  /// than these agree.
+  Eigen::MatrixXd covariance_of_unseen(const Eigen::VectorXd& per_hpa,
+                                       const Eigen::VectorXd& per_hpa_in_proportion) const {
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(per_hpa.size(), per_hpa.size());
+    for (const Eigen::VectorXd& moved : {per_hpa, per_hpa_in_proportion})
+      covariance += (result_.pressure_error * moved) * (result_.pressure_error * moved).transpose();
+    covariance(0, 0) += result_.spread_of_flights * result_.spread_of_flights +
+                        result_.spread_of_climbs * result_.spread_of_climbs;
+    return covariance;
+  }
+
+  void find_parts() {
+    const HeightEquations::Vector unknowns = likeliest_.equations.best_unknowns(as_index(terms_));
+    result_.parts_by_flight = corrections_of_flights(records_, likeliest_.noise, prior_, unknowns);
+    result_.parts_by_climb =
+        corrections_of_climbs_and_descents(records_, likeliest_.noise, prior_, unknowns, threads_);
+    result_.spread_of_flights = disagreement_of(result_.parts_by_flight).spread;
+    result_.spread_of_climbs = disagreement_of(result_.parts_by_climb).spread;
+  }
+
+  /// The range of the static pressure over the stretches by an error of one unit, hPa.
+  double range_of(PressureError error) const {
+    double range = 0.0;
+    double least = 0.0;
+    double greatest = 0.0;
+    for (const HeightRecord& record : records_) {
+      for (const HeightBlock& block : record.blocks) {
+        const double pressure = block.errors[error] / block.metres_per_hpa;
+        if (block.starts_stretch) least = greatest = pressure;
+        least = std::min(least, pressure);
+        greatest = std::max(greatest, pressure);
+        range = std::max(range, greatest - least);
+      }
+    }
+    return range;
+  }
+
+  template <class Effect>
+  void find_law_error(PressureError error) {
+    const Eigen::Index n = as_index(terms_);
+    const Eigen::Index at = as_index(calibration_terms + error);
+    LawError found;
+    found.effect = Effect::facts().id;
+    found.parameter = Effect::facts().parameters[0].name;
+    // A pressure that is too high needs a correction that is lower.
+    found.change = -likeliest_.equations.best_unknowns(n)[at];
+    found.standard_error = std::sqrt(likeliest_.equations.covariance_of_unknowns(n)(at, at));
+    found.range = std::abs(found.change) * range_of(error);
+    if (likeliest_.equations.information(at, at) > 0.0) result_.law_errors.push_back(std::move(found));
+  }
+
   /// Where -2 ln L, with the noise and the other coefficients at their best, is 1 above its least, below and
-  /// above.
-  std::array<double, 2> profile_interval(Eigen::Index term) const {
-    const auto k = static_cast<std::size_t>(term);
-    const double best = result_.likelihood.coefficients[k];
-    const double error = result_.likelihood.standard_errors[k];
+  /// above; and the variance that the likelihood cannot see.
+  std::array<double, 2> profile_interval(Eigen::Index term, double error, double unseen) const {
+    const double best = result_.likelihood.coefficients[static_cast<std::size_t>(term)];
     const auto deviance_at = [&](double value) {
       const HeldCoefficient held{term, value};
       return maximise_likelihood(records_, static_cast<Eigen::Index>(terms_), prior_, likeliest_.noise,
@@ -233,9 +343,20 @@ class TemperatureCalibration {
         reach /= std::sqrt(rise);
         if (std::abs(rise - 1.0) < 0.02) break;
       }
-      return best + side * reach;
+      return best + side * std::sqrt(reach * reach + unseen);
     };
     return {limit(-1.0), limit(1.0)};
+  }
+
+  /// What least squares would add to the correction, once the errors of the law are taken off too.
+  void compare_with_least_squares() {
+    const HeightEquations::Vector unknowns = likeliest_.equations.best_unknowns(as_index(terms_));
+    std::vector<HeightRecord> left;
+    for (const HeightRecord& record : levelled_) left.push_back(without_unknowns(record, unknowns));
+    const TemperatureFit constant = fit_height_by_least_squares(left, 1);
+    result_.least_squares_add = constant.coefficients[0];
+    result_.least_squares_add_error =
+        constant.standard_errors[0] * std::sqrt(samples_as_one(left, constant.coefficients));
   }
 
   void find_corrections() {
@@ -261,9 +382,8 @@ class TemperatureCalibration {
   }
 
   void describe_flights() {
-    Eigen::Vector3d coefficients = Eigen::Vector3d::Zero();
-    for (std::size_t k = 0; k < terms_; ++k)
-      coefficients[static_cast<Eigen::Index>(k)] = result_.likelihood.coefficients[k];
+    const HeightEquations::Vector unknowns =
+        likeliest_.equations.best_unknowns(static_cast<Eigen::Index>(terms_));
     double squares = 0.0;
     double products = 0.0;
     double count = 0.0;
@@ -284,7 +404,7 @@ class TemperatureCalibration {
       flight.after = height_differences(*levelled, result_.likelihood.coefficients);
       flight.rms_before = rms(flight.before);
       flight.rms_after = rms(flight.after);
-      flight.innovation = height_innovations(*record, likeliest_.noise, prior_, coefficients);
+      flight.innovation = height_innovations(*record, likeliest_.noise, prior_, unknowns);
       for (std::size_t i = 1; i < flight.innovation.size(); ++i) {
         const double product = flight.innovation[i] * flight.innovation[i - 1];
         if (std::isnan(product)) continue;
@@ -306,36 +426,104 @@ class TemperatureCalibration {
     return std::sqrt(squares / static_cast<double>(values.size()));
   }
 
-  /// Looks whether the correction explains the heights better than none does.
+  /// Where the correction is furthest from none, in its errors.
+  const TemperatureCorrection& surest() const {
+    return *std::max_element(result_.corrections.begin(), result_.corrections.end(),
+                             [](const TemperatureCorrection& one, const TemperatureCorrection& other) {
+                               return std::abs(one.correction) * other.standard_error <
+                                      std::abs(other.correction) * one.standard_error;
+                             });
+  }
+
+  static std::string saying(const PartCorrection& part) {
+    return fmt::format("{} says {} K", part.part, with_error(part.correction, part.standard_error));
+  }
+
+  /// Looks whether the correction is better than none.
   void compare_with_none() {
-    const double gain = result_.degrees.front().deviance - result_.degrees[terms_].deviance;
     double before = 0.0;
     double after = 0.0;
+    double count = 0.0;
     for (const FlightHeights& flight : result_.flights) {
-      const auto count = static_cast<double>(flight.time.size());
-      before += count * flight.rms_before * flight.rms_before;
-      after += count * flight.rms_after * flight.rms_after;
+      const auto n = static_cast<double>(flight.time.size());
+      before += n * flight.rms_before * flight.rms_before;
+      after += n * flight.rms_after * flight.rms_after;
+      count += n;
     }
-    const TemperatureCorrection& middle = result_.corrections[result_.corrections.size() / 2];
+    const TemperatureCorrection& at = surest();
+    const double gain = result_.degrees.front().deviance - result_.degrees[terms_].deviance;
     if (gain < worthwhile_gain) {
-      result_.no_better =
-          fmt::format("these flights do not tell the correction from none: at {:.0f} C it is {} K",
-                      middle.temperature, with_error(middle.correction, middle.standard_error));
-    } else if (after > before) {
-      const auto count = static_cast<double>(std::accumulate(
-          result_.flights.begin(), result_.flights.end(), std::size_t{0},
-          [](std::size_t sum, const FlightHeights& flight) { return sum + flight.time.size(); }));
-      result_.no_better = fmt::format(
+      result_.worse = fmt::format(
+          "these flights do not tell the correction from none: -2 ln L falls by {:.1f}, and {:g} are asked",
+          gain, worthwhile_gain);
+      return;
+    }
+    if (std::abs(at.correction) < told * at.standard_error) {
+      result_.worse = fmt::format(
+          "these flights do not tell the correction from none: where they know it best, at {:.0f} C, it is "
+          "{} "
+          "K, and {:g} standard errors, which chance makes once in a hundred times, are asked",
+          at.temperature, with_error(at.correction, at.standard_error), told);
+      return;
+    }
+    if (after > before) {
+      result_.worse = fmt::format(
           "heights keep less close to the integral with the correction than without (rms {:.2f} m and {:.2f} "
           "m), though it is likelier",
           std::sqrt(after / count), std::sqrt(before / count));
+      return;
+    }
+    if (std::abs(result_.least_squares_add) > seen * result_.least_squares_add_error) {
+      result_.worse = fmt::format(
+          "least squares on height contradicts the likelihood: it would add {} K to the correction, more "
+          "than "
+          "{:g} standard errors",
+          with_error(result_.least_squares_add, result_.least_squares_add_error), seen);
+      return;
+    }
+    for (const std::vector<PartCorrection>* parts : {&result_.parts_by_flight, &result_.parts_by_climb}) {
+      for (const PartCorrection& part : *parts) {
+        if (!is_made_worse(part)) continue;
+        result_.worse = fmt::format(
+            "by itself {}, where the correction is {:+.2f} K: it makes that worse than none does by more "
+            "than "
+            "three standard errors",
+            saying(part), part.common);
+        return;
+      }
+    }
+  }
+
+  void write_warnings() {
+    const auto differ = [this](const std::vector<PartCorrection>& parts, double spread, const char* who) {
+      if (!(spread > 0.0)) return;
+      std::vector<std::string> sayings;
+      for (const PartCorrection& part : parts) sayings.push_back(saying(part));
+      const Disagreement apart = disagreement_of(parts);
+      result_.warnings.push_back(fmt::format(
+          "{} differ: {}; chance makes a chi-squared of {:.1f} of {} with a probability of {:.1g}, and the "
+          "limit is 0.01; the standard deviation between them, {:.2g} K, is in the errors",
+          who, fmt::join(sayings, ", "), apart.chi_squared, parts.size(), apart.chance, spread));
+    };
+    differ(result_.parts_by_flight, result_.spread_of_flights, "the thermometers of the flights");
+    differ(result_.parts_by_climb, result_.spread_of_climbs, "climbs and descents");
+    for (const LawError& error : result_.law_errors) {
+      if (!is_seen(error)) continue;
+      result_.warnings.push_back(fmt::format(
+          "the heights see an error of the law of the static pressure: {} of {} lacks {}, a range of {:.2f} "
+          "hPa "
+          "over the flights; it is not taken for the thermometer's, but as much may last unseen: refit the "
+          "law "
+          "first",
+          error.parameter, error.effect, with_error(error.change, error.standard_error), error.range));
     }
   }
 
   void write_notes() {
     std::vector<std::string>& notes = result_.notes;
     compare_with_none();
-    if (!result_.no_better.empty()) notes.push_back(result_.no_better);
+    write_warnings();
+    if (!result_.worse.empty()) notes.push_back(result_.worse);
     if (!options_.degree && records_.size() < fewest_for_choice) {
       result_.notes_on_degree.push_back(
           fmt::format("with {} flight{} none can be held out: the degree is chosen by what these flights "
@@ -350,6 +538,12 @@ class TemperatureCalibration {
                       "in climbs, looks like it; the layers of pcor check say whether the pressure lags "
                       "behind the height",
                       std::max(result_.gps_noise, result_.gps_wander), result_.drift));
+    }
+    if (prior_.pressure[with_attack] > 0.0 && result_.law_errors.size() < 2) {
+      notes.emplace_back(
+          "the angle of attack is not known: an error of the law in proportion to it, which changes in a "
+          "climb, "
+          "is not taken off and may look like the thermometer's");
     }
     if (options_.slope == IsobarSlope::none ||
         (options_.slope == IsobarSlope::fitted && options_.slope_size == 0.0)) {
@@ -424,6 +618,7 @@ class TemperatureCalibration {
   ModelFile bare_;  // without a correction of the temperature
   const TemperatureOptions& options_;
   std::size_t threads_ = 1;
+  bool has_radome_ = false;
   HeightPrior prior_;
   std::vector<HeightRecord> records_;
   std::vector<HeightRecord> levelled_;  // with an estimate of the slope of isobars taken off

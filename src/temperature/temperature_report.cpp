@@ -84,6 +84,38 @@ ReportTable flight_table(const TemperatureResult& result) {
   return table;
 }
 
+ReportTable part_table(const TemperatureResult& result) {
+  ReportTable table;
+  table.title = "Parts by themselves";
+  table.caption =
+      "What every flight says by itself, and climbs and descents: the common correction with a constant of "
+      "its "
+      "own, with the error of the noise alone. Where they differ by more than chance makes once in 100 "
+      "times, "
+      "the standard deviation between them is in the errors of the coefficients.";
+  table.headers = {"part", "at, °C", "by itself, K", "std. error, K", "of all, K"};
+  for (const std::vector<PartCorrection>* parts : {&result.parts_by_flight, &result.parts_by_climb}) {
+    for (const PartCorrection& part : *parts)
+      table.rows.push_back({part.part, fmt::format("{:.1f}", part.temperature),
+                            fmt::format("{:+.3f}", part.correction),
+                            fmt::format("{:.2g}", part.standard_error), fmt::format("{:+.3f}", part.common)});
+  }
+  return table;
+}
+
+ReportTable law_table(const TemperatureResult& result) {
+  ReportTable table;
+  table.title = "Errors of the law";
+  table.caption =
+      "What coefficients of the static pressure lack by the heights, found with those of the temperature and "
+      "taken off.";
+  table.headers = {"effect", "coefficient", "lacks", "std. error", "range over the flights, hPa"};
+  for (const LawError& error : result.law_errors)
+    table.rows.push_back({error.effect, error.parameter, fmt::format("{:+.4g}", error.change),
+                          fmt::format("{:.2g}", error.standard_error), fmt::format("{:.2f}", error.range)});
+  return table;
+}
+
 BarPanel correction_bars(const TemperatureResult& result) {
   BarPanel panel;
   panel.title = "The correction";
@@ -116,8 +148,10 @@ std::string with_error(double value, double error, std::string_view plus_minus) 
 
 std::string pressure_error_text(const TemperatureResult& result) {
   if (result.pressure_error > 0.0) {
-    return fmt::format("Errors have in them one of the static pressure of {:g} hPa that lasts for a flight",
-                       result.pressure_error);
+    return fmt::format(
+        "Errors have in them one of the static pressure of {:.2g} hPa that lasts (--pressure-error "
+        "sets it)",
+        result.pressure_error);
   }
   constexpr double usual = 0.3;  // hPa, the rms of the memo's eq. 18
   std::string moved;
@@ -127,7 +161,7 @@ std::string pressure_error_text(const TemperatureResult& result) {
   }
   return fmt::format(
       "Errors are those of the noise only: one of the static pressure of {:g} hPa in all flights, as the "
-      "fits of laws have, would move {}; --pressure-error {:g} takes one of each flight into the errors",
+      "fits of laws have, would move {}; --pressure-error {:g} takes it into the errors",
       usual, moved, usual);
 }
 
@@ -146,6 +180,7 @@ Report temperature_report(const TemperatureResult& result) {
   report.summary.push_back(fmt::format("At {:.0f} °C the temperature is corrected by {} K.",
                                        middle.temperature,
                                        with_error(middle.correction, middle.standard_error, "±")));
+  for (const std::string& warning : result.warnings) report.summary.push_back("Warning: " + warning + ".");
   for (const std::string& note : result.notes) report.summary.push_back("Note: " + note + ".");
   report.facts = {
       {"Samples", std::to_string(result.samples)},
@@ -191,6 +226,8 @@ Report temperature_report(const TemperatureResult& result) {
   binned.y = {"innovation"};
   binned.x_choices = {"temperature", "height"};
   report.items.emplace_back(binned);
+  report.items.emplace_back(part_table(result));
+  report.items.emplace_back(law_table(result));
   report.items.emplace_back(degree_table(result));
   report.items.emplace_back(flight_table(result));
   return report;

@@ -67,7 +67,6 @@ Eigen::MatrixXd dense_covariance(const HeightRecord& record, const HeightNoise& 
                            : part(i) * part(j) * std::exp(-between / noise.wander_time));
       const double walked = std::min(at(i).time, at(j).time) - begin - (i == j ? at(i).length / 6.0 : 0.0);
       sum += noise.walk * noise.walk * walked;
-      sum += prior.pressure * prior.pressure * at(i).pressure_error * at(j).pressure_error;
       if (i == j) sum += noise.white * noise.white / static_cast<double>(at(i).samples);
       for (Eigen::Index k = 0; k < std::min(i, j); ++k) {
         const double across = k == 0 ? 0.0 : at(k).time - at(k - 1).time;
@@ -90,16 +89,17 @@ TEST(HeightLikelihood, FilterIsGeneralisedLeastSquaresWrittenOut) {
   noise.wander_time = 90.0;
   noise.walk = 0.02;
   noise.slope_change = 3e-7;
-  HeightPrior prior;
-  prior.pressure = 0.1;
+  const HeightPrior prior;
   const HeightEquations found = height_equations(record, noise, prior);
 
   const Eigen::MatrixXd covariance = dense_covariance(record, noise, prior);
   const auto n = covariance.rows();
-  Eigen::MatrixXd rows(n, 4);
+  constexpr Eigen::Index unknowns = HeightEquations::unknowns;
+  Eigen::MatrixXd rows(n, unknowns + 1);
   for (Eigen::Index i = 0; i < n; ++i) {
     const HeightBlock& block = record.blocks[static_cast<std::size_t>(i)];
-    rows.row(i) << block.columns[0], block.columns[1], block.columns[2], block.excess;
+    rows.row(i) << block.columns[0], block.columns[1], block.columns[2], block.errors[0], block.errors[1],
+        block.errors[2], block.errors[3], block.excess;
   }
   // The unknown height at the start: project a constant off.
   const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
@@ -109,12 +109,14 @@ TEST(HeightLikelihood, FilterIsGeneralisedLeastSquaresWrittenOut) {
   const Eigen::MatrixXd projected = inverse - inverse * ones * ones.transpose() * inverse / weight;
   const Eigen::MatrixXd wanted = rows.transpose() * projected * rows;
   // The unknown height has a variance of 1e8 m2 in the filter: relative errors of 1e-8 times the condition.
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    for (Eigen::Index j = 0; j < 3; ++j)
-      EXPECT_NEAR(found.information(i, j) / wanted(i, j), 1.0, 1e-5) << i << " " << j;
-    EXPECT_NEAR(found.right(i), wanted(i, 3), 1e-5 * std::sqrt(wanted(i, i) * wanted(3, 3)));
+  for (Eigen::Index i = 0; i < unknowns; ++i) {
+    for (Eigen::Index j = 0; j < unknowns; ++j)
+      EXPECT_NEAR(found.information(i, j), wanted(i, j), 1e-5 * std::sqrt(wanted(i, i) * wanted(j, j)))
+          << i << " " << j;
+    EXPECT_NEAR(found.right(i), wanted(i, unknowns),
+                1e-5 * std::sqrt(wanted(i, i) * wanted(unknowns, unknowns)));
   }
-  EXPECT_NEAR(found.squares / wanted(3, 3), 1.0, 1e-5);
+  EXPECT_NEAR(found.squares / wanted(unknowns, unknowns), 1.0, 1e-5);
   // ln det of the contrasts: that of the whole plus ln of the weight of a constant.
   const double determinant = 2.0 * factor.matrixLLT().diagonal().array().log().sum() + std::log(weight);
   EXPECT_NEAR(found.log_determinant, determinant, 1e-4);
@@ -177,8 +179,7 @@ TEST(HeightLikelihood, FindsTheNoiseThatThereIs) {
   double products = 0.0;
   double count = 0.0;
   for (const HeightRecord& record : records) {
-    Eigen::Vector3d a = Eigen::Vector3d::Zero();
-    a.head(2) = found.equations.best(2);
+    const HeightEquations::Vector a = found.equations.best_unknowns(2);
     const std::vector<double> innovations = height_innovations(record, found.noise, HeightPrior{}, a);
     for (std::size_t i = 2; i < innovations.size(); ++i) {
       squares += innovations[i] * innovations[i];
@@ -298,8 +299,8 @@ TEST(HeightLikelihood, AnUnknownSlopeOfIsobarsIsFound) {
   noise.wander = 0.3;
   noise.walk = 1e-4;
   noise.slope_change = 1e-9;
-  const HeightEquations fitted = height_equations(record_of(plan), noise, {1e-4, 0.0});
-  const HeightEquations level = height_equations(record_of(plan), noise, {0.0, 0.0});
+  const HeightEquations fitted = height_equations(record_of(plan), noise, {1e-4, {}});
+  const HeightEquations level = height_equations(record_of(plan), noise, {0.0, {}});
   EXPECT_NEAR(fitted.best(1)[0], -0.5, 3.0 * std::sqrt(fitted.covariance(1)(0, 0)));
   // Taken for level, the slope goes into the temperature, and by more than the noise.
   EXPECT_GT(std::abs(level.best(1)[0] + 0.5), 5.0 * std::sqrt(level.covariance(1)(0, 0)));
@@ -332,7 +333,7 @@ TEST(HeightLeastSquares, ErrorsAreTooSmallWhereNoiseRemembersItself) {
     plan.gps_memory = 120.0;
     const HeightRecord record = record_of(plan);
     const pcor::TemperatureFit least = pcor::internal::fit_height_by_least_squares({record}, 1);
-    const HeightEquations likely = height_equations(record, noise, {0.0, 0.0});
+    const HeightEquations likely = height_equations(record, noise, {0.0, {}});
     squares_least += std::pow(least.coefficients[0] / least.standard_errors[0], 2);
     squares_likely += std::pow(likely.best(1)[0], 2) / likely.covariance(1)(0, 0);
   }

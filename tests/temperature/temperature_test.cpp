@@ -71,9 +71,11 @@ Scenario no_climb() {
 /// The law that the scenario flies with, and the laser.
 ModelFile model() { return read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
 
+/// Errors are those of the noise: the pressures of the simulator have no error that lasts.
 TemperatureOptions of_degree(int degree) {
   TemperatureOptions options;
   options.degree = degree;
+  options.pressure_error = 0.0;
   return options;
 }
 
@@ -284,7 +286,9 @@ TEST_F(Temperature, ArchivedFlightsGiveTheSame) {
     for (const ModelFile& with : {model(), curved}) {
       const fs::path archive = processed(flight, with, "archived.nc");
       const TemperatureResult archived = fit_temperature({archive}, model(), options);
-      EXPECT_LT(apart(raw.likelihood, archived.likelihood), search_stops) << rate << " Hz";
+      // They have no angle of attack, so that an error of the law with it is not taken off. That makes errors
+      // 4 % smaller here, and coefficients move by sqrt(1.04^2 - 1), 0.3 of the error.
+      EXPECT_LT(apart(raw.likelihood, archived.likelihood), 0.3) << rate << " Hz";
       EXPECT_NEAR(raw.flights[0].rms_after, archived.flights[0].rms_after, 0.01) << rate << " Hz";
       EXPECT_NEAR(static_cast<double>(archived.samples), static_cast<double>(raw.samples), 2.0);
     }

@@ -8,7 +8,9 @@ in 100 km. Faults are written into copies of them. Random numbers are fixed, so 
 run.
 """
 
+import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -124,12 +126,13 @@ class TemperatureTest(ComparisonTest):
         return path
 
     def temperature(self, *arguments, flights=(ONE,), model=PUBLISHED, output=None):
+        """The numbers, whatever they say of themselves: without need --force changes nothing."""
         output = output or self.path / "out.toml"
-        return self.json_of("temperature", *flights, "-m", model, "-o", output, *arguments)
+        return self.json_of("temperature", *flights, "-m", model, "-o", output, "--force", *arguments)
 
     def text_of(self, *arguments, flights=(ONE,), model=PUBLISHED):
         output = self.path / "out.toml"
-        return self.done("temperature", *flights, "-m", model, "-o", output, *arguments).stdout
+        return self.done("temperature", *flights, "-m", model, "-o", output, "--force", *arguments).stdout
 
     def refuse(self, *arguments, words, flights=(ONE,), model=PUBLISHED, status=1, **options):
         output = () if "-o" in arguments else ("-o", self.path / "out.toml")
@@ -204,7 +207,8 @@ class Fit(TemperatureTest):
 
     def test_more_flights_make_smaller_errors(self):
         """As one over the square root of their number, to a quarter: the noise is found anew."""
-        one, three = self.temperature(), self.temperature(flights=(ONE, TWO, THREE))
+        one, three = (self.temperature("--pressure-error", "0", flights=flights)
+                      for flights in ((ONE,), (ONE, TWO, THREE)))
         ratio = one["stderr"]["a0"] / three["stderr"]["a0"]
         self.assertAlmostEqual(ratio / 3**0.5, 1.0, delta=0.25)
 
@@ -214,10 +218,10 @@ class Fit(TemperatureTest):
         self.assertAlmostEqual(self.temperature()["sigma_m"] / 0.3, 1.0, delta=0.24)
 
     def test_an_error_of_the_pressure_makes_it_less_sure(self):
-        sure, unsure = self.temperature(), self.temperature("--pressure-error", "0.1")
+        sure, unsure = (self.temperature("--pressure-error", size) for size in ("0", "0.1"))
         expected = (sure["stderr"]["a0"] ** 2 + (0.1 * sure["per_hpa"]["a0"]) ** 2) ** 0.5
         self.assertGreater(unsure["stderr"]["a0"], 2.0 * sure["stderr"]["a0"])
-        # The likelihood sees a little of the error of the pressure itself, so a fifth.
+        # An error in proportion to the pressure moves the temperature by a quarter as much, so a fifth is enough.
         self.assertAlmostEqual(unsure["stderr"]["a0"] / expected, 1.0, delta=0.2)
 
     def test_what_an_error_of_the_pressure_does(self):
@@ -237,17 +241,18 @@ class Fit(TemperatureTest):
 
     def test_says_what_errors_leave_out(self):
         """An error of the static pressure that lasts is many times the noise: 0.3 hPa are some 0.1 K."""
-        text = self.text_of()
+        text = self.text_of("--pressure-error", "0")
         self.assertIn("std. error, noise only", text)
         per_hpa = self.temperature()["per_hpa"]["a0"]
         self.assertRegex(text, f"0.3 hPa .* a0 by {0.3 * abs(per_hpa):.2g} K.* --pressure-error 0.3 ")
         with_it = self.text_of("--pressure-error", "0.3")
         self.assertNotIn("noise only", with_it)
         self.assertIn("Errors have in them one of the static pressure of 0.3 hPa", with_it)
-        for arguments, value in (((), 0.0), (("--pressure-error", "0.3"), 0.3)):
-            self.assertEqual(self.temperature(*arguments)["pressure_error_hpa"], value)
+        # Without the option: the 0.3 hPa that the law states, and three zeros of a transducer of 0.1 hPa.
+        for arguments, value in (((), 0.18**0.5), (("--pressure-error", "0"), 0.0), (("--pressure-error", "0.3"), 0.3)):
+            self.assertAlmostEqual(self.temperature(*arguments)["pressure_error_hpa"], value, delta=1e-12)
             provenance = tomllib.loads((self.path / "out.toml").read_text())["provenance"]["temperature"]
-            self.assertEqual(provenance["pressure_error_hpa"], value)
+            self.assertAlmostEqual(provenance["pressure_error_hpa"], value, delta=1e-12)
 
     def test_a_good_thermometer_needs_no_correction(self):
         flight = self.simulated(GOOD_THERMOMETER)
@@ -259,11 +264,11 @@ class Fit(TemperatureTest):
     def test_a_correction_that_makes_it_worse(self):
         """With isobars taken for level their slope goes into the correction of a good thermometer."""
         flight = self.simulated(GOOD_THERMOMETER)
-        one = self.temperature("--slope", "none", flights=(flight,))["flights"][0]
+        arguments = ("--slope", "none", "--pressure-error", "0")
+        one = self.temperature(*arguments, flights=(flight,))["flights"][0]
         self.assertGreater(one["rms_after_m"], one["rms_before_m"])
-        text = self.text_of("--slope", "none", flights=(flight,))
-        self.assertIn("heights keep less close to the integral", text)
-        self.assertNotIn("To apply it", text)
+        self.assertNotIn("To apply it", self.text_of(*arguments, flights=(flight,)))
+        self.refuse(*arguments, "--quiet", flights=(flight,), words=["nothing was written", "--force"])
 
     def test_a_lag_is_not_taken_for_noise_in_silence(self):
         lag = '\n[[effect]]\nid = "static-lag"\ntau = 3.0\n\n[[leg]]'
@@ -297,6 +302,108 @@ class Fit(TemperatureTest):
         self.assertEqual(addresses_in(text), set())
         for words in ("one.nc", "two.nc", "Coefficients", "std. error", "least squares"):
             self.assertIn(words, text)
+
+
+class Refusal(TemperatureTest):
+    """What the numbers of a calibration call no better than none is not written."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.good = Path(cls.folder.name) / "good.nc"
+        scenario = Path(cls.folder.name) / "good.toml"
+        scenario.write_text(GOOD_THERMOMETER)
+        subprocess.run([TOOL, "simulate", scenario, "-o", cls.good, "--seed", "5", "--quiet"], check=True)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def law(self, name, coefficient, hpa, per_hpa):
+        """The law of the flights, wrong by so many hPa in one term."""
+        value = float(re.search(rf"{coefficient} = (\S+) ", PUBLISHED.read_text()).group(1)) + hpa * per_hpa
+        return self.write(f"{name}.toml",
+                          replace(rf"{coefficient} = \S+ ", f"{coefficient} = {value} ")(PUBLISHED.read_text()))
+
+    def test_a_wrong_law_is_not_taken_for_a_thermometer(self):
+        """Wrong in the constant, with the attack and with q, by 0.3 and 1 hPa at 700 hPa, q = 80 hPa and a range of the
+        radome ratio of 0.12; a thermometer that is right. Not written is as good as right."""
+        terms = {"a0": 1.0 / 700.0, "a1": 1.0 / (700.0 * 0.12), "a2": 1.0 / 80.0}
+        for term, hpa in [("a0", 0.0)] + [(term, hpa) for term in terms for hpa in (0.3, -0.3, 1.0, -1.0)]:
+            with self.subTest(f"{term} {hpa:+}"):
+                model = self.law("wrong", term, hpa, terms[term])
+                output, numbers = self.path / "out.toml", self.path / "out.json"
+                result = self.run_tool("temperature", self.good, "-m", model, "-o", output, "--json", numbers, "--quiet")
+                written = output.exists()
+                self.assertEqual(result.returncode, 0 if written else 1)
+                self.assertEqual(json.loads(numbers.read_text())["worse"] == "", written)
+                for at in json.loads(numbers.read_text())["corrections"]:
+                    if written:
+                        self.assertLess(abs(at["correction_k"]), max(0.1, 2.0 * at["stderr_k"]))
+                    # The joint fit knows an error with q or the attack from that of the thermometer; one in
+                    # proportion to the pressure moves the temperature, by 0.11 K for 1 hPa.
+                    self.assertLess(abs(at["correction_k"]), 0.15)
+                output.unlink(missing_ok=True)
+
+    def test_a_wrong_law_is_named(self):
+        model = self.law("wrong", "a2", 1.0, 1.0 / 80.0)
+        result = self.temperature(flights=(self.good,), model=model)
+        error = next(each for each in result["law_errors"] if each["effect"] == "static-qp")
+        self.assertAlmostEqual(error["change"], -1.0 / 80.0, delta=3.0 * error["stderr"])
+        self.assertIn("a2 of static-qp", " ".join(result["warnings"]))
+        self.assertGreater(result["pressure_error_hpa"], self.temperature()["pressure_error_hpa"])
+        text = self.text_of(flights=(self.good,), model=model)
+        self.assertTrue(text.startswith("Warning: the heights see an error of the law"), text[:200])
+
+    def test_a_law_that_lacks_an_effect(self):
+        """The defect grows with the torque of the engines, which the law does not know."""
+        flights = []
+        for seed in ("101", "102"):
+            flights.append(self.path / f"torque{seed}.nc")
+            self.done("simulate", SOURCE / "data/scenarios/c130-hidden.toml", "-o", flights[-1], "--seed", seed, "--quiet")
+        self.refuse("--quiet", flights=flights, words=["nothing was written", "--force"])
+        result = self.temperature(flights=flights)
+        for at in result["corrections"]:
+            self.assertLess(abs(at["correction_k"]), 2.0 * at["stderr_k"])
+
+    def test_force(self):
+        output = self.path / "out.toml"
+        self.temperature(flights=(self.good,))
+        self.assertIn("do not tell the correction from none",
+                      tomllib.loads(output.read_text())["provenance"]["forced"])
+        self.temperature()
+        forced = output.read_bytes()
+        self.assertNotIn("forced", tomllib.loads(forced.decode())["provenance"])
+        self.done("temperature", ONE, "-m", PUBLISHED, "-o", output, "--quiet")
+        self.assertEqual(output.read_bytes(), forced)
+
+    def test_numbers_are_printed_all_the_same(self):
+        report = self.path / "out.html"
+        result = self.run_tool("temperature", self.good, "-m", PUBLISHED, "-o", self.path / "out.toml", "--report", report)
+        self.assertEqual(result.returncode, 1)
+        self.assertEqual(result.stderr.count("\n"), 1)
+        self.assertIn("likelihood", result.stdout)
+        self.assertNotIn("wrote", result.stdout)
+        self.assertTrue(report.exists())
+        self.assertFalse((self.path / "out.toml").exists())
+
+    def test_thermometers_that_differ(self):
+        """One reads 0.55 K and 1 % too high, the other is right: the correction of one harms the other."""
+        self.refuse("--quiet", flights=(ONE, self.good), words=["nothing was written"])
+        result = self.temperature(flights=(ONE, self.good))
+        parts = {part["part"]: part["correction_k"] for part in result["parts"]["flights"]}
+        self.assertAlmostEqual(parts["good.nc"] - parts["one.nc"], 0.5, delta=0.1)  # 0.55 K less 1 % of some -5 C
+        self.assertGreater(result["parts"]["spread_of_flights_k"], 0.2)
+        self.assertGreater(result["stderr"]["a0"], self.temperature()["stderr"]["a0"])
+        text = self.text_of(flights=(ONE, self.good))
+        self.assertRegex(text.splitlines()[0], "thermometers of the flights differ: one.nc says .* good.nc says .* 0.01")
+
+    def test_thermometers_that_agree(self):
+        result = self.temperature(flights=(ONE, TWO, THREE))
+        self.assertEqual(result["parts"]["spread_of_flights_k"], 0.0)
+        self.assertEqual(result["warnings"], [])
+        self.assertEqual(result["worse"], "")
+        self.assert_is_truth(result)
 
 
 class Model(TemperatureTest):
@@ -519,7 +626,8 @@ class Options(TemperatureTest):
         """In a wind in balance all but `none` take the slope of 10 m in 100 km off, within three stated errors."""
         for slope in SLOPES:
             with self.subTest(slope):
-                result = self.temperature("--slope", slope, "--degree", "1", flights=(BALANCED,))
+                result = self.temperature("--slope", slope, "--degree", "1", "--pressure-error", "0",
+                                          flights=(BALANCED,))
                 if slope == "none":
                     self.assertGreater(abs(result["coefficients"]["a0"] - truth()["a0"]), 0.1)
                     self.assertIn("--slope fitted", " ".join(result["notes"]))
@@ -679,9 +787,10 @@ class BadInput(TemperatureTest):
                 self.assert_is_truth(result)
 
     def test_neither_way_nor_heading(self):
-        result = self.temperature(flights=(self.edited(without("GGSPD"), without("THDG")),))
+        flight = self.edited(without("GGSPD"), without("THDG"))
+        result, whole = (self.temperature("--pressure-error", "0", flights=(each,)) for each in (flight, ONE))
         self.assertIn("one direction", " ".join(result["notes"]))
-        self.assertGreater(result["stderr"]["a0"], 5.0 * self.temperature()["stderr"]["a0"])
+        self.assertGreater(result["stderr"]["a0"], 5.0 * whole["stderr"]["a0"])
 
     def test_no_thermometer_in_the_model(self):
         model = self.write("model.toml", replace("^recovery_temperature.*\n", "")(PUBLISHED.read_text()))

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <pcor/words/error.hpp>
 #include "comparison.hpp"
 #include "progress.hpp"
+#include "refusal.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -22,7 +24,8 @@ struct Options {
   std::string degree = "auto";
   std::string slope = "fitted";
   double slope_size = TemperatureOptions{}.slope_size * 1e5;  // m in 100 km
-  double pressure_error = 0.0;
+  std::optional<double> pressure_error;
+  bool force = false;
   double least_climb_rate = 0.0;
   bool skip_returning = false;
   bool archived = false;
@@ -46,6 +49,17 @@ TemperatureOptions temperature_options(const Options& options) {
 nlohmann::ordered_json by_name(const std::vector<double>& values) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   for (std::size_t k = 0; k < values.size(); ++k) json[fmt::format("a{}", k)] = values[k];
+  return json;
+}
+
+nlohmann::ordered_json as_json(const std::vector<PartCorrection>& parts) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const PartCorrection& part : parts)
+    json.push_back({{"part", part.part},
+                    {"temperature_degc", part.temperature},
+                    {"correction_k", part.correction},
+                    {"stderr_k", part.standard_error},
+                    {"common_k", part.common}});
   return json;
 }
 
@@ -74,7 +88,9 @@ nlohmann::ordered_json as_json(const TemperatureResult& result) {
   }
   json["least_squares"] = {{"coefficients", by_name(result.least_squares.coefficients)},
                            {"stderr", by_name(result.least_squares.standard_errors)},
-                           {"sigma_m", result.least_squares.sigma}};
+                           {"sigma_m", result.least_squares.sigma},
+                           {"would_add_k", result.least_squares_add},
+                           {"would_add_stderr_k", result.least_squares_add_error}};
   json["corrections"] = nlohmann::ordered_json::array();
   for (const TemperatureCorrection& at : result.corrections)
     json["corrections"].push_back({{"temperature_degc", at.temperature},
@@ -94,6 +110,19 @@ nlohmann::ordered_json as_json(const TemperatureResult& result) {
                    {"drift_m_per_minute", result.drift},
                    {"innovation_variance", result.innovation_variance},
                    {"innovation_correlation", result.innovation_correlation}};
+  json["law_errors"] = nlohmann::ordered_json::array();
+  for (const LawError& error : result.law_errors)
+    json["law_errors"].push_back({{"effect", error.effect},
+                                  {"parameter", error.parameter},
+                                  {"change", error.change},
+                                  {"stderr", error.standard_error},
+                                  {"range_hpa", error.range}});
+  json["parts"] = {{"flights", as_json(result.parts_by_flight)},
+                   {"climbs_and_descents", as_json(result.parts_by_climb)},
+                   {"spread_of_flights_k", result.spread_of_flights},
+                   {"spread_of_climbs_k", result.spread_of_climbs}};
+  json["worse"] = result.worse;
+  json["warnings"] = result.warnings;
   json["notes"] = result.notes;
   return json;
 }
@@ -122,7 +151,23 @@ void print_flights(const TemperatureResult& result) {
   }
 }
 
+void print_parts(const TemperatureResult& result) {
+  fmt::print("\n{:<28} {:>11} {:>20} {:>12}\n", "part", "temperature", "by itself", "of all");
+  for (const std::vector<PartCorrection>* parts : {&result.parts_by_flight, &result.parts_by_climb}) {
+    for (const PartCorrection& part : *parts)
+      fmt::print("{:<28} {:>9.1f} C {:>18} K {:>+10.3f} K\n", part.part, part.temperature,
+                 with_error(part.correction, part.standard_error), part.common);
+  }
+}
+
+void print_law_errors(const TemperatureResult& result) {
+  for (const LawError& error : result.law_errors)
+    fmt::print("By the heights {} of {} lacks {}, a range of {:.2f} hPa over the flights: it is taken off.\n",
+               error.parameter, error.effect, with_error(error.change, error.standard_error), error.range);
+}
+
 void print(const TemperatureResult& result) {
+  for (const std::string& warning : result.warnings) fmt::print("Warning: {}.\n\n", warning);
   print_flights(result);
   fmt::print("\nT corrected = T + a0 + a1 t + ..., t in degC\n");
   fmt::print("{:<4} {:>12} {:>22} {:>24} {:>27} {:>5}\n", "", "likelihood",
@@ -137,9 +182,13 @@ void print(const TemperatureResult& result) {
   }
   fmt::print("Least squares takes heights for independent: its standard errors are too small.\n{}.\n",
              pressure_error_text(result));
+  print_law_errors(result);
+  fmt::print("Least squares would add {} K, errors of the law taken off.\n",
+             with_error(result.least_squares_add, result.least_squares_add_error));
   fmt::print("\n{:>12} {:>22}\n", "temperature", "correction");
   for (const TemperatureCorrection& at : result.corrections)
     fmt::print("{:>10.1f} C {:>20} K\n", at.temperature, with_error(at.correction, at.standard_error));
+  print_parts(result);
   fmt::print(
       "\nnoise of the GPS height: {:.2f} m in a sample, {:.2f} m correlated over {:.0f} s; the hydrostatic "
       "height drifts by {:.3f} m in a minute\n",
@@ -202,7 +251,6 @@ void run(const Options& options) {
       result = fit_temperature(flight_paths(options.comparison), model, with);
     }
   }
-  save_model(result.model, options.output, inputs);
   if (!options.common.report.empty()) write_report(temperature_report(result), options.common.report);
   nlohmann::ordered_json all = as_json(result);
   if (options.iterate) {
@@ -210,18 +258,21 @@ void run(const Options& options) {
     all["converged"] = in_turn.converged;
   }
   json.write(all);
+  if (wants_text(options.common)) {
+    if (options.iterate) print(in_turn);
+    print(result);
+    if (!result.worse.empty())
+      fmt::print(
+          "\nIt is no better than none yet: add flights that climb and descend by 3 km and more, there and "
+          "back along the same way\n");
+  }
+  refuse_worse(result.worse, options.force, result.model);
+  save_model(result.model, options.output, inputs);
   if (!wants_text(options.common)) return;
-  if (options.iterate) print(in_turn);
-  print(result);
   fmt::print("\nwrote {}\n", options.output);
-  if (result.no_better.empty()) {
+  if (result.worse.empty())
     fmt::print("To apply it: pcor process {} -m {} -o OUT.nc\n", quoted(first_used(result, options)),
                quoted(options.output));
-  } else {
-    fmt::print(
-        "It is no better than none yet: add flights that climb and descend by 3 km and more, there and back "
-        "along the same way\n");
-  }
 }
 
 }  // namespace
@@ -253,10 +304,11 @@ std::function<void()> add_temperature(CLI::App& program) {
   command
       ->add_option(
           "--pressure-error", options->pressure_error,
-          "standard deviation of an error of the static pressure that lasts for a flight, hPa; it enters the "
-          "standard errors (after a fit to LAMS: 0.3)")
-      ->check(is_amount())
-      ->capture_default_str();
+          "standard deviation of an error of the static pressure that lasts, hPa; it enters the standard "
+          "errors (without it: the rms that the law states, 0.3 if none, 0.3 for the transducer, and what "
+          "the "
+          "heights see to be wrong with the law)")
+      ->check(is_amount());
   command
       ->add_option("--min-climb-rate", options->least_climb_rate,
                    "m/s; slower climbs and descents are left out")
@@ -269,6 +321,7 @@ std::function<void()> add_temperature(CLI::App& program) {
       "the flights were written by 'pcor process --hydrostatic': start from their HYDSTEP and ATX");
   command->add_flag("--iterate", options->iterate,
                     "refit the pressures and calibrate the temperature in turn until neither changes");
+  add_force_option(*command, options->force);
   add_common_options(*command, options->common);
   return [options] { run(*options); };
 }

@@ -38,10 +38,12 @@ struct TemperatureOptions {
   /// Usual slope of isobars, 1: 10 m in 100 km (memo, after eq. 24). The likelihood of `fitted` starts from
   /// it; what the other options but `none` take off leaves a third of it.
   double slope_size = 1e-4;
-  /// Usual error of the static pressure that lasts for a flight, hPa: an unknown of each flight. It makes the
-  /// coefficients less sure. At 0 errors are those of the noise only, and `pressure_error_text` says how much
-  /// such an error would move the coefficients.
-  double pressure_error = 0.0;
+  /// Usual error of the static pressure that lasts, hPa, the same in all flights. It makes the coefficients
+  /// less sure, and the heights do not tell it from the thermometer's. Absent: the rms that the law states,
+  /// else 0.3, three usual zeros of a transducer (psfd-bias), and the ranges of `LawError` that are beyond
+  /// three standard errors and 0.1 hPa, as the root of the sum of squares. At 0 errors do not know of it, and
+  /// `pressure_error_text` says how much it would move the coefficients.
+  std::optional<double> pressure_error{};
   double least_climb_rate = 0.0;  ///< m/s: slower parts take no part (memo i)
   bool skip_returning = false;    ///< flights that end where they began take no part (memo v)
   /// The flights were written by `pcor process --hydrostatic` with the same model, but for its correction of
@@ -75,6 +77,26 @@ struct TemperatureCorrection {
   double standard_error = 0.0;  ///< K
 };
 
+/// An error of the law of the static pressure that heights see in climbs, beside that of the thermometer. Its
+/// size beforehand is the usual one of the effect, whatever errors the law states of its coefficients: those
+/// know of the noise of a fit, not of an effect that it lacks.
+struct LawError {
+  std::string effect{};     ///< of the catalogue
+  std::string parameter{};  ///< its coefficient
+  double change = 0.0;      ///< what the law's coefficient lacks, in its unit
+  double standard_error = 0.0;
+  double range = 0.0;  ///< of the pressure over the flights by this error, hPa
+};
+
+/// What a part of the data says of the correction by itself: the common one with a constant of its own.
+struct PartCorrection {
+  std::string part{};           ///< a flight, "climbs" or "descents"
+  double temperature = 0.0;     ///< degC, the mean of what the part knows it by
+  double correction = 0.0;      ///< there, K
+  double standard_error = 0.0;  ///< of the noise alone, K
+  double common = 0.0;          ///< the correction of all data there, K
+};
+
 /// What is seen of one flight, as means over 10 s.
 struct FlightHeights {
   std::string flight{};
@@ -101,15 +123,28 @@ struct TemperatureResult {
   /// errors take heights for independent and are too small. Where the slope of isobars is fitted by the
   /// likelihood, here it is that of the whole flight (memo iv).
   TemperatureFit least_squares;
+  /// What least squares would add to the likelihood's correction as a constant, K, once the errors of the law
+  /// are taken off too; its error knows that heights remember each other. Beyond three of them the two
+  /// contradict each other, and the noise or the law is not as described.
+  double least_squares_add = 0.0;
+  double least_squares_add_error = 0.0;
   std::vector<std::vector<double>> covariance{};  ///< of the likelihood's coefficients
   /// Where the likelihood, with the noise at its best for each value, has fallen by e^(-1/2), lower and
-  /// upper: agrees with value -+ standard error where the likelihood is a parabola.
+  /// upper, with the errors that it cannot see: agrees with value -+ standard error where the likelihood is a
+  /// parabola.
   std::vector<std::array<double, 2>> profile{};
   std::vector<TemperatureCorrection> corrections{};  ///< over the range of temperatures of the flights
   std::vector<DegreeChoice> degrees{};
   /// What an error of the static pressure of 1 hPa in all flights would do to the coefficients.
   std::vector<double> per_hpa{};
-  double pressure_error = 0.0;          ///< hPa, as in the options: it is in all errors
+  double pressure_error = 0.0;         ///< size of an error that lasts, hPa: it is in all errors
+  std::vector<LawError> law_errors{};  ///< that the likelihood takes off
+  /// Every flight by itself, and climbs and descents: where they differ by more than chance, which happens
+  /// once in 100 times, the standard deviation between them is in all standard errors.
+  std::vector<PartCorrection> parts_by_flight{};
+  std::vector<PartCorrection> parts_by_climb{};
+  double spread_of_flights = 0.0;       ///< K; 0 where they agree
+  double spread_of_climbs = 0.0;        ///< of climbs and descents, K; 0 where they agree
   double gps_noise = 0.0;               ///< of a sample, without memory, m
   double gps_wander = 0.0;              ///< with memory, m
   double gps_wander_time = 0.0;         ///< s
@@ -118,9 +153,10 @@ struct TemperatureResult {
   double innovation_correlation = 0.0;  ///< from one 10 s to the next; 0 where the noise is as described
   std::size_t samples = 0;
   std::vector<FlightHeights> flights{};
-  /// Why the correction is no better than none; empty where it is better.
-  std::string no_better{};
-  std::vector<std::string> notes{};  ///< what a user should know, a sentence each, the gravest first
+  /// Why the correction is no better than none by its own numbers; empty where it is better.
+  std::string worse{};
+  std::vector<std::string> warnings{};  ///< that the numbers are not to be read without, a sentence each
+  std::vector<std::string> notes{};     ///< what a user should know, a sentence each, the gravest first
   std::vector<std::string> notes_on_degree{};  ///< those of the notes that say how the degree was chosen
 };
 
@@ -130,6 +166,11 @@ struct TemperatureResult {
 /// A correction that the model has already is taken off first, so the result takes its place. The flights
 /// need climbs or descents, GPS height, latitude, a thermometer and corrected pressures; where the height
 /// makes a step or something is missing the integral starts anew.
+///
+/// The law of the static pressure may be wrong, and differently so in climbs than level: an error in
+/// proportion to the dynamic pressure, and one to the angle of attack where the model knows it, are found
+/// with the coefficients, and taken off. One that lasts is in their errors. One in proportion to the static
+/// pressure moves no height.
 ///
 /// @throws Error if no flight can be used: the message says why for the first one.
 TemperatureResult fit_temperature(const std::vector<std::filesystem::path>& flights, const ModelFile& model,

@@ -1,0 +1,107 @@
+#include "temperature/parts.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "numerics/chi_squared.hpp"
+#include "numerics/triangular_factor.hpp"
+#include "temperature/degrees.hpp"
+
+namespace pcor::internal {
+namespace {
+
+constexpr double rare = 0.01;  // the probability below which a difference is no chance
+
+/// The correction of all at the mean temperature of what a column of a0 holds: a1's column over it.
+PartCorrection common_at(double temperature, const HeightEquations::Vector& unknowns) {
+  PartCorrection part;
+  part.temperature = temperature;
+  double power = 1.0;
+  for (Eigen::Index k = 0; k < as_index(calibration_terms); ++k, power *= temperature)
+    part.common += unknowns[k] * power;
+  return part;
+}
+
+/// Records of what the correction leaves, with the columns of a0 in climbs, a0 in descents, and both times
+/// the temperature.
+HeightRecord with_climbs_and_descents(const HeightRecord& whole, const HeightEquations::Vector& unknowns) {
+  HeightRecord record = without_unknowns(whole, unknowns);
+  double climbs = 0.0;
+  double descents = 0.0;
+  double before = 0.0;
+  for (HeightBlock& block : record.blocks) {
+    const double step = block.starts_stretch ? 0.0 : block.columns[0] - before;
+    before = block.columns[0];
+    (step > 0.0 ? climbs : descents) += step;
+    block.columns = {climbs, descents, block.columns[1]};
+  }
+  return record;
+}
+
+}  // namespace
+
+std::vector<PartCorrection> corrections_of_flights(const std::vector<HeightRecord>& records,
+                                                   const HeightNoise& noise, const HeightPrior& prior,
+                                                   const HeightEquations::Vector& unknowns) {
+  std::vector<PartCorrection> parts;
+  for (const HeightRecord& record : records) {
+    const HeightEquations one = height_equations(record, noise, prior);
+    PartCorrection part = common_at(one.information(0, 1) / one.information(0, 0), unknowns);
+    part.part = record.name;
+    part.correction =
+        part.common + (one.right[0] - one.information.row(0).dot(unknowns)) / one.information(0, 0);
+    part.standard_error = std::sqrt(1.0 / one.information(0, 0));
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+std::vector<PartCorrection> corrections_of_climbs_and_descents(const std::vector<HeightRecord>& records,
+                                                               const HeightNoise& noise,
+                                                               const HeightPrior& prior,
+                                                               const HeightEquations::Vector& unknowns,
+                                                               std::size_t threads) {
+  std::vector<HeightRecord> parted;
+  for (const HeightRecord& record : records) parted.push_back(with_climbs_and_descents(record, unknowns));
+  const HeightEquations equations = height_equations(parted, noise, prior, threads);
+  std::vector<PartCorrection> parts;
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    if (!(equations.information(k, k) > 0.0)) return {};
+    PartCorrection part = common_at(equations.information(k, 2) / equations.information(k, k), unknowns);
+    part.part = k == 0 ? "climbs" : "descents";
+    part.correction = part.common + equations.best(2)[k];
+    part.standard_error = std::sqrt(equations.covariance(2)(k, k));
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+Disagreement disagreement_of(const std::vector<PartCorrection>& parts) {
+  Disagreement result;
+  if (parts.size() < 2) return result;
+  double weights = 0.0;
+  double squared_weights = 0.0;
+  double mean = 0.0;
+  for (const PartCorrection& part : parts) {
+    const double weight = 1.0 / (part.standard_error * part.standard_error);
+    weights += weight;
+    squared_weights += weight * weight;
+    mean += weight * (part.correction - part.common);
+  }
+  mean /= weights;
+  for (const PartCorrection& part : parts)
+    result.chi_squared += std::pow((part.correction - part.common - mean) / part.standard_error, 2);
+  const auto freedom = static_cast<double>(parts.size() - 1);
+  result.chance = chi_squared_tail(result.chi_squared, freedom);
+  if (result.chance < rare)
+    result.spread = std::sqrt((result.chi_squared - freedom) / (weights - squared_weights / weights));
+  return result;
+}
+
+bool is_made_worse(const PartCorrection& part) {
+  const double from_none = part.correction / part.standard_error;
+  const double from_common = (part.correction - part.common) / part.standard_error;
+  return from_common * from_common - from_none * from_none > worthwhile_gain;
+}
+
+}  // namespace pcor::internal
