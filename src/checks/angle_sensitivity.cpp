@@ -239,19 +239,21 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
   result.ran = true;
   const Totals totals = totals_of(manoeuvres);
   const Witness witness = *witness_of(*manoeuvres.front().flown.flight, check.witnesses);
-  result.verdict = judge(totals.across, size_that_matters);
-  result.key = {totals.across.value, totals.across.error, size_that_matters, "hPa", "across the swing"};
+  std::vector<KeyNumber> numbers{judged(totals.across, size_that_matters, "hPa", "across the swing")};
   result.finding = fmt::format(
       "Over {} {}{} the residual against {} changes by {} of {}, {} from one end of the swing to the other.",
       manoeuvres.size(), facts_of(check.regime).name, manoeuvres.size() == 1 ? "" : "s", name_of(witness),
       with_error(totals.slope, "hPa/deg", 3), check.angle, with_error(totals.across, "hPa"));
   if (check.with_square) {
-    result.verdict = together(result.verdict, judge(totals.bent, size_that_matters));
+    numbers.push_back(
+        judged(totals.bent, size_that_matters, "hPa", "by the square, at the end of the swing"));
     result.finding += fmt::format(" With its square it changes by {}, {} at the end of the swing.",
                                   with_error(totals.bend, "hPa/deg2", 4), with_error(totals.bent, "hPa"));
   }
+  decide(std::move(numbers), result);
   if (witness == Witness::second_system && !manoeuvres.front().flown.flight->second_corrected) {
-    if (result.verdict == CheckVerdict::inconsistent) result.verdict = CheckVerdict::cannot_tell;
+    if (result.verdict == CheckVerdict::inconsistent)
+      withhold("the second system is as measured, and a slope may be its own", result);
     result.notes.push_back(
         fmt::format("{} is as measured, so a slope may be its own; --second OTHER.toml gives "
                     "its correction",
@@ -270,6 +272,8 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
   if (check.with_square) {
     result.numbers.emplace_back("square_hpa_deg2", totals.bend.value);
     result.numbers.emplace_back("square_stderr_hpa_deg2", totals.bend.error);
+    result.numbers.emplace_back("square_at_end_hpa", totals.bent.value);
+    result.numbers.emplace_back("square_at_end_stderr_hpa", totals.bent.error);
   }
   result.tables.push_back(table_of(manoeuvres, check));
   add_pictures(flights, manoeuvres, check, result);

@@ -155,7 +155,8 @@ Report check_report(const Checks& checks) {
     if (!result.ran) continue;
     ReportText text;
     text.title = fmt::format("{}: {}", heading(result.name), name_of(result.verdict));
-    text.paragraphs = {typeset(sentence(result.finding)), "What it cannot see: " + result.cannot_see};
+    text.paragraphs = {typeset(fmt::format("Decided by this number: {}.", result.decided)),
+                       typeset(sentence(result.finding)), "What it cannot see: " + result.cannot_see};
     for (const std::string& note : result.notes) text.paragraphs.push_back(typeset(sentence(note)));
     report.items.emplace_back(std::move(text));
     const Shows shows(result.columns);

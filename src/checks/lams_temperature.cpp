@@ -267,8 +267,7 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
   result.name = name;
   result.ran = true;
   const Estimated offset = outside.fit.coefficients[0];
-  result.verdict = judge(offset, size_that_matters);
-  result.key = {offset.value, offset.error, size_that_matters, "K", "between laser and thermometer"};
+  decide({judged(offset, size_that_matters, "K", "between laser and thermometer")}, result);
   const std::vector<double> clear_values = where(all, clear);
   const double noise =
       noise_floor(clear_values, stretches_of(clear_values, all.time, all.step), all.step).rms;

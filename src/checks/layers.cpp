@@ -154,8 +154,8 @@ CheckResult check_layers(const CheckedFlights& flights) {
 
   result.name = "layers";
   result.ran = true;
-  result.verdict = judge({fit.offset, fit.offset_error}, size_that_matters);
-  result.key = {fit.offset, fit.offset_error, size_that_matters, "K", "of the thermometer"};
+  std::vector<KeyNumber> numbers{
+      judged({fit.offset, fit.offset_error}, size_that_matters, "K", "of the thermometer")};
   result.finding =
       fmt::format("Over {} layer{} the hydrostatic equation asks for {} on the thermometer", fit.layers,
                   fit.layers == 1 ? "" : "s", with_error({fit.offset, fit.offset_error}, "K"));
@@ -174,8 +174,13 @@ CheckResult check_layers(const CheckedFlights& flights) {
         coldest - constants::ice_point, warmest - constants::ice_point);
   } else {
     const double range = warmest - coldest;
-    if (judge({fit.c1 * range, fit.c1_error * range}, size_that_matters) == CheckVerdict::inconsistent)
-      result.verdict = CheckVerdict::inconsistent;
+    // A range that is not sure leaves open what the mean has said.
+    KeyNumber change = judged({fit.c1 * range, fit.c1_error * range}, size_that_matters, "K",
+                              fmt::format("from {:.0f} to {:.0f} degC, by the slope with temperature",
+                                          coldest - constants::ice_point, warmest - constants::ice_point));
+    result.numbers = {{"change_over_range_k", change.value},
+                      {"change_over_range_stderr_k", change.standard_error}};
+    if (change.verdict == CheckVerdict::inconsistent) numbers.push_back(std::move(change));
     const Estimated slope{fit.c1, fit.c1_error};
     const Estimated at_freezing{fit.correction_at(constants::ice_point),
                                 fit.correction_error_at(constants::ice_point)};
@@ -194,6 +199,7 @@ CheckResult check_layers(const CheckedFlights& flights) {
                     with_error({absolute, fit.correction_error_at(0.0)}, "K"),
                     with_error({fit.c1, fit.c1_error}, "K/K", 4)));
   }
+  decide(std::move(numbers), result);
   if (fit.error_scale > 1.0) {
     result.notes.push_back(fmt::format(
         "the layers scatter {:.2f} times as much as their errors allow; the errors of the fit have been made "
@@ -207,13 +213,14 @@ CheckResult check_layers(const CheckedFlights& flights) {
       "the ends of a layer leave little, some tenths of a kelvin for 1 hPa. An offset of the thermometer, a "
       "wrong recovery factor, heat of de-icing and neglected humidity look alike. A thermometer or a static "
       "line that lags errs up and down with opposite signs.";
-  result.numbers = {{"offset_k", fit.offset},
-                    {"offset_stderr_k", fit.offset_error},
-                    {"offset_at_0_degc_k", fit.correction_at(constants::ice_point)},
-                    {"offset_at_0_degc_stderr_k", fit.correction_error_at(constants::ice_point)},
-                    {"slope", fit.c1},
-                    {"slope_stderr", fit.c1_error},
-                    {"layers", static_cast<double>(fit.layers)}};
+  result.numbers.insert(result.numbers.begin(),
+                        {{"offset_k", fit.offset},
+                         {"offset_stderr_k", fit.offset_error},
+                         {"offset_at_0_degc_k", fit.correction_at(constants::ice_point)},
+                         {"offset_at_0_degc_stderr_k", fit.correction_error_at(constants::ice_point)},
+                         {"slope", fit.c1},
+                         {"slope_stderr", fit.c1_error},
+                         {"layers", static_cast<double>(fit.layers)}});
   result.tables.push_back(layer_table(all));
   result.tables.push_back(error_table(all));
   add_pictures(flights, all, result);

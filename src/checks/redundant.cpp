@@ -100,6 +100,11 @@ std::string note_on_avionics() {
       fastest_of_avionics);
 }
 
+std::vector<KeyNumber> judged_of(const RedundantFit& fit, double size) {
+  return {judged(fit.difference, size, "hPa", "between the systems"),
+          judged(fit.across, size, "hPa", "from the least to the greatest pressure, by the slope")};
+}
+
 void add_numbers(const RedundantFit& fit, CheckResult& result) {
   result.numbers.insert(result.numbers.end(), {{"slope", fit.ordinary.slope},
                                                {"slope_stderr", fit.ordinary.slope_error},
@@ -108,6 +113,8 @@ void add_numbers(const RedundantFit& fit, CheckResult& result) {
                                                {"rms_hpa", fit.ordinary.rms},
                                                {"mean_difference_hpa", fit.difference.value},
                                                {"mean_difference_stderr_hpa", fit.difference.error},
+                                               {"across_hpa", fit.across.value},
+                                               {"across_stderr_hpa", fit.across.error},
                                                {"scatter_hpa", fit.scatter},
                                                {"orthogonal_slope", fit.orthogonal.slope},
                                                {"orthogonal_slope_stderr", fit.orthogonal.slope_error},

@@ -51,6 +51,9 @@ std::vector<bool> comparable(const CheckedFlight& flight);
 /// What is to be said where the avionics took part.
 std::string note_on_avionics();
 
+/// What is judged of a fit: the difference, and how it changes with the pressure.
+std::vector<KeyNumber> judged_of(const RedundantFit& fit, double size);
+
 /// The numbers of a fit for scripts, those of the interface first.
 void add_numbers(const RedundantFit& fit, CheckResult& result);
 

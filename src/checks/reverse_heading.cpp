@@ -258,8 +258,7 @@ CheckResult check_reverse_heading(const CheckedFlights& flights) {
   };
   const Estimated hpa = as_other(&LegPair::pressure_per_airspeed);
   const Estimated kelvin = as_other(&LegPair::temperature_per_airspeed);
-  result.verdict = judge(error, size_that_matters);
-  result.key = {error.value, error.error, size_that_matters, "m/s", "of airspeed"};
+  decide({judged(error, size_that_matters, "m/s", "of airspeed")}, result);
   result.finding = fmt::format(
       "Over {} pair{} the tail winds of both legs add up to {}, where the wind alone would give zero: the "
       "true airspeed is too {} by {:.2f} +- {:.2f} m/s, as if delta-p were off by {} or the temperature by "

@@ -211,8 +211,7 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
   CheckResult result;
   result.name = name;
   result.ran = true;
-  result.verdict = judge(floor, size_that_matters);
-  result.key = {floor.value, floor.error, size_that_matters, "hPa", "of white noise"};
+  decide({judged(floor, size_that_matters, "hPa", "of white noise")}, result);
   result.finding =
       fmt::format("At the highest frequencies {} has the power of white noise of {:.3f} +- {:.3f} hPa",
                   source->name, floor.value, floor.error);

@@ -40,17 +40,15 @@ CheckResult check_static_pressure(const CheckedFlights& flights) {
   CheckResult result;
   result.name = "static-pressure";
   result.ran = true;
-  result.key = {fit.difference.value, fit.difference.error, size_that_matters, "hPa", "between the systems"};
+  decide(judged_of(fit, size_that_matters), result);
   result.finding = fmt::format(
       "The static pressure of {} less that of the model is {} in the mean, with slope {:.6f} +- {:.6f} and "
       "rms {:.3f} hPa about the orthogonal line.",
       first->second_name, with_error(fit.difference, "hPa", 3), fit.orthogonal.slope,
       fit.orthogonal.slope_error, fit.orthogonal.rms);
-  if (first->second_corrected) {
-    result.verdict = together(judge(fit.difference, size_that_matters), judge(fit.across, size_that_matters));
-  } else {
+  if (!first->second_corrected) {
     // What its own defect is nobody said, so a difference is no fault of the model.
-    result.verdict = CheckVerdict::cannot_tell;
+    withhold("the second system is as measured, so it tells nothing of the model", result);
     result.finding += fmt::format(
         " The pressure of {} is as measured, so the difference is its own defect too: --second OTHER.toml "
         "gives its correction.",

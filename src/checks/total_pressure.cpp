@@ -54,8 +54,7 @@ CheckResult check_total_pressure(const CheckedFlights& flights) {
   CheckResult result;
   result.name = "total-pressure";
   result.ran = true;
-  result.verdict = together(judge(fit.difference, size_that_matters), judge(fit.across, size_that_matters));
-  result.key = {fit.difference.value, fit.difference.error, size_that_matters, "hPa", "between the systems"};
+  decide(judged_of(fit, size_that_matters), result);
   result.finding = fmt::format(
       "The total pressure of {} less that of {} is {} in the mean, with slope {:.6f} +- {:.6f} and rms "
       "{:.3f} hPa about the line, while the static pressures alone differ by {:+.2f} hPa with a scatter of "

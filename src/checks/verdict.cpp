@@ -3,12 +3,44 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 namespace pcor::internal {
 
+namespace {
+
+constexpr double significant = 3.0;  // standard errors
+constexpr double likely = 2.0;
+
+/// How large a number may be, in units of what matters: where it is inconsistent its error is no excuse.
+double reach_of(const KeyNumber& key) {
+  const double doubt = key.verdict == CheckVerdict::inconsistent ? 0.0 : likely * key.standard_error;
+  return (std::abs(key.value) + doubt) / key.matters;
+}
+
+/// How the verdict follows from the number.
+std::string reason_of(const KeyNumber& key) {
+  const double magnitude = std::abs(key.value);
+  std::string why;
+  if (key.verdict == CheckVerdict::inconsistent) {
+    why = fmt::format("beyond the {:g} {} that matter and beyond three standard errors, {:.3f}", key.matters,
+                      key.unit, significant * key.standard_error);
+  } else if (key.verdict == CheckVerdict::consistent) {
+    why = fmt::format("with two standard errors {:.3f}, within the {:g} {} that matter",
+                      magnitude + likely * key.standard_error, key.matters, key.unit);
+  } else if (magnitude > key.matters) {
+    why = fmt::format("beyond the {:g} {} that matter, but not beyond three standard errors, {:.3f}",
+                      key.matters, key.unit, significant * key.standard_error);
+  } else {
+    why = fmt::format("with two standard errors {:.3f}, not within the {:g} {} that matter",
+                      magnitude + likely * key.standard_error, key.matters, key.unit);
+  }
+  return fmt::format("{:+.3f} +- {:.3f} {} {} is {}", key.value, key.standard_error, key.unit, key.what, why);
+}
+
+}  // namespace
+
 CheckVerdict judge(const Estimated& number, double size) {
-  constexpr double significant = 3.0;  // standard errors
-  constexpr double likely = 2.0;
   const double magnitude = std::abs(number.value);
   if (magnitude > size && magnitude > significant * number.error) return CheckVerdict::inconsistent;
   if (magnitude + likely * number.error <= size) return CheckVerdict::consistent;
@@ -20,6 +52,28 @@ CheckVerdict together(CheckVerdict a, CheckVerdict b) {
     if (a == worst || b == worst) return worst;
   }
   return CheckVerdict::consistent;
+}
+
+KeyNumber judged(const Estimated& number, double size, std::string unit, std::string what) {
+  return {number.value, number.error, size, std::move(unit), std::move(what), judge(number, size)};
+}
+
+void decide(std::vector<KeyNumber> numbers, CheckResult& result) {
+  result.verdict = numbers.front().verdict;
+  for (const KeyNumber& number : numbers) result.verdict = together(result.verdict, number.verdict);
+  const KeyNumber* decisive = nullptr;
+  for (const KeyNumber& number : numbers) {
+    if (number.verdict != result.verdict) continue;
+    if (decisive == nullptr || reach_of(number) > reach_of(*decisive)) decisive = &number;
+  }
+  result.key = *decisive;
+  result.decided = reason_of(result.key);
+  result.judged = std::move(numbers);
+}
+
+void withhold(const std::string& reason, CheckResult& result) {
+  result.verdict = CheckVerdict::cannot_tell;
+  result.decided += ", but " + reason;
 }
 
 std::string with_error(const Estimated& number, const std::string& unit, int digits) {

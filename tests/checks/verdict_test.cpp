@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 using namespace pcor::internal;
 
@@ -24,6 +25,29 @@ TEST(Verdict, OneThatIsInconsistentIsEnough) {
   EXPECT_EQ(together(CheckVerdict::cannot_tell, CheckVerdict::inconsistent), CheckVerdict::inconsistent);
   EXPECT_EQ(together(CheckVerdict::consistent, CheckVerdict::cannot_tell), CheckVerdict::cannot_tell);
   EXPECT_EQ(together(CheckVerdict::consistent, CheckVerdict::consistent), CheckVerdict::consistent);
+}
+
+TEST(Verdict, SaysWhichNumberDecided) {
+  CheckResult result;
+  decide({judged({-0.9, 0.5}, 0.3, "K", "of the thermometer"), judged({2.8, 0.9}, 0.3, "K", "by the slope")},
+         result);
+  EXPECT_EQ(result.verdict, CheckVerdict::inconsistent);
+  EXPECT_EQ(result.key.what, "by the slope");
+  EXPECT_EQ(result.decided,
+            "+2.800 +- 0.900 K by the slope is beyond the 0.3 K that matter and beyond three standard "
+            "errors, 2.700");
+  ASSERT_EQ(result.judged.size(), 2U);
+  EXPECT_EQ(result.judged[0].verdict, CheckVerdict::cannot_tell);
+
+  decide({judged({0.01, 0.02}, 0.3, "hPa", "one"), judged({0.0, 0.1}, 0.3, "hPa", "other")}, result);
+  EXPECT_EQ(result.key.what, "other");  // it may be 0.2 hPa, the first one 0.05 hPa
+  EXPECT_EQ(result.decided,
+            "+0.000 +- 0.100 hPa other is with two standard errors 0.200, within the 0.3 hPa that matter");
+
+  decide({judged({0.5, 0.1}, 0.3, "hPa", "between")}, result);
+  withhold("the other one is as measured", result);
+  EXPECT_EQ(result.verdict, CheckVerdict::cannot_tell);
+  EXPECT_NE(result.decided.find(", but the other one is as measured"), std::string::npos);
 }
 
 }  // namespace

@@ -70,8 +70,8 @@ class Results(CheckTest):
         result = self.json_of("check", ONE, "-m", self.model(), "--second", OTHER_SYSTEM)
         self.assertEqual([each["name"] for each in result["checks"]], NAMES)
         for each in result["checks"]:
-            self.assertLessEqual({"name", "ran", "reason", "verdict", "numbers", "finding", "cannot_see", "tables",
-                                  "notes"}, set(each))
+            self.assertLessEqual({"name", "ran", "reason", "verdict", "key", "judged", "decided", "numbers", "finding",
+                                  "cannot_see", "tables", "notes"}, set(each))
             self.assertEqual(each["ran"], each["reason"] == "")
             if each["ran"]:
                 self.assertIn(each["verdict"], ("consistent", "inconsistent", "cannot tell"))
@@ -81,6 +81,27 @@ class Results(CheckTest):
             self.assertTrue(result["checks"][NAMES.index(name)]["ran"], name)
         for each in result["checks"][:2]:
             self.assertLessEqual({"slope", "offset_hpa", "rms_hpa"}, set(each["numbers"]))
+
+    def test_verdicts_follow_from_numbers_that_are_printed(self):
+        arguments = ("check", ONE, "-m", self.model())
+        text = self.done(*arguments).stdout
+        for check in self.json_of(*arguments)["checks"]:
+            if not check["ran"]:
+                continue
+            for number in check["judged"]:
+                for name in ("value", "stderr"):
+                    self.assertIn(number[name], check["numbers"].values(), check["name"])
+                size, error, limit = abs(number["value"]), number["stderr"], number["matters"]
+                expected = ("inconsistent" if size > limit and size > 3.0 * error else
+                            "consistent" if size + 2.0 * error <= limit else "cannot tell")
+                self.assertEqual(number["verdict"], expected, check["name"])
+            key = check["key"]
+            self.assertIn(key, check["judged"])
+            sentence = f"{key['value']:+.3f} +- {key['stderr']:.3f} {key['unit']} {key['what']} is "
+            self.assertTrue(check["decided"].startswith(sentence), check["decided"])
+            self.assertIn(f"  {check['verdict']}: {check['decided']}.\n", text)
+            if "as measured" not in check["decided"]:
+                self.assertEqual(check["verdict"], key["verdict"])
 
     def test_several_flights(self):
         both = self.check("-m", self.model(), flights=(ONE, TWO))

@@ -26,6 +26,12 @@ nlohmann::ordered_json as_json(const ReportTable& table) {
   return {{"title", table.title}, {"headers", table.headers}, {"rows", table.rows}};
 }
 
+nlohmann::ordered_json as_json(const KeyNumber& number) {
+  return {{"value", number.value},     {"stderr", number.standard_error},
+          {"matters", number.matters}, {"unit", number.unit},
+          {"what", number.what},       {"verdict", std::string(name_of(number.verdict))}};
+}
+
 nlohmann::ordered_json as_json(const CheckResult& result) {
   nlohmann::ordered_json numbers = nlohmann::ordered_json::object();
   for (const auto& [name, value] : result.numbers) numbers[name] = value;
@@ -34,12 +40,10 @@ nlohmann::ordered_json as_json(const CheckResult& result) {
   nlohmann::ordered_json entry{{"name", result.name}, {"ran", result.ran}, {"reason", result.reason}};
   entry["verdict"] =
       result.ran ? nlohmann::ordered_json(std::string(name_of(result.verdict))) : nlohmann::ordered_json();
-  entry["key"] = result.ran ? nlohmann::ordered_json{{"value", result.key.value},
-                                                     {"stderr", result.key.standard_error},
-                                                     {"matters", result.key.matters},
-                                                     {"unit", result.key.unit},
-                                                     {"what", result.key.what}}
-                            : nlohmann::ordered_json();
+  entry["key"] = result.ran ? as_json(result.key) : nlohmann::ordered_json();
+  entry["judged"] = nlohmann::ordered_json::array();
+  for (const KeyNumber& number : result.judged) entry["judged"].push_back(as_json(number));
+  entry["decided"] = result.decided;
   entry["numbers"] = std::move(numbers);
   entry["finding"] = result.finding;
   entry["cannot_see"] = result.cannot_see;
@@ -151,7 +155,10 @@ void print(const Checks& checks, const Options& options, bool has_laser) {
       "two standard errors\n");
   for (const CheckResult& result : checks.results) {
     fmt::print("\n{}: {}\n", result.name, result.ran ? result.finding : "not run: " + result.reason + ".");
-    if (result.ran) fmt::print("  cannot see: {}\n", result.cannot_see);
+    if (result.ran) {
+      fmt::print("  {}: {}.\n", name_of(result.verdict), result.decided);
+      fmt::print("  cannot see: {}\n", result.cannot_see);
+    }
     if (!result.tables.empty()) print(result.tables.front());
     for (const std::string& note : result.notes) {
       // The reason of a check that did not run says its first note already.

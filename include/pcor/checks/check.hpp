@@ -24,13 +24,14 @@ enum class CheckVerdict {
 /// "consistent", "inconsistent", "cannot tell".
 std::string_view name_of(CheckVerdict verdict);
 
-/// The number of a check that would be zero if all were well.
+/// A number of a check that would be zero if all were well, with what its size alone says.
 struct KeyNumber {
   double value = 0.0;
   double standard_error = 0.0;
   double matters = 0.0;  ///< the smallest value that matters
   std::string unit{};    ///< for example "hPa"
   std::string what{};    ///< in words, for example "from slow to fast"
+  CheckVerdict verdict = CheckVerdict::cannot_tell;
 };
 
 /// One independent test of the correction, on all flights together.
@@ -39,9 +40,11 @@ struct CheckResult {
   bool ran = false;      ///< else the flights do not allow it
   std::string reason{};  ///< why it did not run, and what it would need; empty where it ran
   CheckVerdict verdict = CheckVerdict::cannot_tell;
-  KeyNumber key{};           ///< what the verdict rests on first; some checks judge a second number too
-  std::string finding{};     ///< the verdict in a sentence with its numbers
-  std::string cannot_see{};  ///< which errors the check is blind to, a sentence
+  std::vector<KeyNumber> judged{};  ///< all numbers that were judged
+  KeyNumber key{};                  ///< the one of them that decided
+  std::string decided{};  ///< how it did: the number, its error and the limit, a sentence without full stop
+  std::string finding{};  ///< the verdict in a sentence with its numbers
+  std::string cannot_see{};                               ///< which errors the check is blind to, a sentence
   std::vector<std::pair<std::string, double>> numbers{};  ///< by name with the unit, like "offset_hpa"
   std::vector<ReportTable> tables{};                      ///< for example one row for each pair of legs
   std::vector<std::string> notes{};                       ///< what a user should know, a sentence each
