@@ -67,6 +67,10 @@ inline pcor::internal::FlightAir air(const AirPlan& plan) {
     air.flying.push_back(true);
     air.pressure.push_back(1000.0 * std::pow(temperature / plan.ground_temperature, exponent));
     air.temperature.push_back(shown);
+    // At 120 m/s and with an angle of attack that grows with the height, some 2 deg in a climb more than in a
+    // descent.
+    air.dynamic.push_back(0.5 * air.pressure.back() / (gas_constant * temperature) * 120.0 * 120.0);
+    air.attack_ratio.push_back(-0.2 + 1e-5 * height + 0.02 * std::cos(2.0 * M_PI * (t / plan.period - 0.25)));
     air.airspeed.push_back(120.0);
     air.gas_constant.push_back(gas_constant);
     air.latitude.push_back(plan.latitude);

@@ -85,6 +85,40 @@ TEST(HeightRecord, ErrorOfTheStaticPressureIsWhatItSays) {
   }
 }
 
+TEST(HeightRecord, ErrorsOfTheLawAreWhatTheySay) {
+  using pcor::internal::FlightAir;
+  const FlightAir right = made::air({});
+  HeightRecordOptions options;
+  options.recovers = true;
+  const HeightRecord truth = pcor::internal::height_record(right, {}, options);
+  // The error as a part of the pressure, for some 0.1 hPa each.
+  const auto part = [&right](pcor::internal::PressureError error, std::size_t i) {
+    if (error == pcor::internal::with_dynamic) return 1e-3 * right.dynamic[i] / right.pressure[i];
+    if (error == pcor::internal::with_attack) return 1e-3 * right.attack_ratio[i];
+    return 2e-4;
+  };
+  for (const auto& [error, size] : {std::pair{pcor::internal::with_static, 2e-4},
+                                    {pcor::internal::with_dynamic, 1e-3},
+                                    {pcor::internal::with_attack, 1e-3}}) {
+    FlightAir air = right;
+    for (std::size_t i = 0; i < air.size(); ++i) {
+      // What the law adds to the static pressure it takes from the dynamic one, the total pressure as it is;
+      // a thermometer that recovers all heating then shows the same for T (P/p)^(2/7).
+      air.pressure[i] *= 1.0 + part(error, i);
+      air.temperature[i] *= std::pow(1.0 + part(error, i), 2.0 / 7.0);
+    }
+    const HeightRecord wrong = pcor::internal::height_record(air, {}, options);
+    double largest = 0.0;
+    for (std::size_t i = 0; i < truth.blocks.size(); ++i) {
+      const double moved = wrong.blocks[i].excess - truth.blocks[i].excess;
+      // To first order in 2e-4, of at most 2 m.
+      EXPECT_NEAR(moved, size * truth.blocks[i].errors[error], 1e-3) << error;
+      largest = std::max(largest, std::abs(moved));
+    }
+    EXPECT_GT(largest, 0.04) << error;  // forty times what is allowed
+  }
+}
+
 TEST(HeightRecord, BeginsAnewAfterAGapAndCrossesAShortOne) {
   pcor::internal::FlightAir air = made::air({});
   for (std::size_t i = 1000; i < 1005; ++i) air.pressure[i] = nan;
