@@ -22,7 +22,7 @@ void add_stated(const ModelFile& file, const std::string& prefix, const std::vec
     for (std::size_t i = 0; i < names.size(); ++i) {
       const double error = file.fit(e, i).standard_error.value_or(0.0);
       const Eigen::Index place = place_of(file.model.effects[e].id + "." + names[i]);
-      covariance(place, place) = error * error;
+      if (place < covariance.rows()) covariance(place, place) = error * error;
     }
   }
   const std::vector<std::string>& names = file.covariance.parameters;
