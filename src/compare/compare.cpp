@@ -13,7 +13,7 @@
 #include <pcor/words/error.hpp>
 
 #include "numerics/missing.hpp"
-#include "residuals/residual_sums.hpp"
+#include "residuals/flight_statistics.hpp"
 
 namespace pcor {
 
@@ -72,39 +72,18 @@ class Gathering {
 
   ModelComparison result_;
   ResidualSums all_;
+  ResidualSums flaps_out_;
   double wanted_sum_ = 0.0;
   double wanted_squares_ = 0.0;
   std::array<ResidualSums, regime_count> regimes_{};
   std::array<std::map<long, ResidualSums>, bandings.size()> bands_{};
 };
 
-/// For how many samples one independent one stands: in the residual as it is, with what the model misses, or
-/// in the noise alone, whichever is more.
-double memory_of(const std::vector<double>& values, const FlightSamples& samples, const NoiseFloor& noise) {
-  std::vector<double> centred = values;
-  double sum = 0.0;
-  double squares = 0.0;
-  std::size_t count = 0;
-  for (const double value : values) {
-    if (std::isnan(value)) continue;
-    sum += value;
-    squares += value * value;
-    ++count;
-  }
-  const double mean = sum / static_cast<double>(count);
-  for (double& value : centred) value -= mean;
-  const Autoregression process = autoregression(centred, stretches_of(centred, samples.time, samples.step));
-  const double variance = squares / static_cast<double>(count) - mean * mean;
-  const double memory = process.samples_per_independent(std::sqrt(std::max(variance, 0.0)));
-  return std::isfinite(memory) ? std::max(memory, noise.samples_per_independent)
-                               : noise.samples_per_independent;
-}
-
 void Gathering::add(const FlightResiduals& flight, std::size_t model, const NoiseFloor& noise) {
   const std::vector<double>& values = flight.values[model];
   const std::vector<double>& wanted = flight.reference_defects[model];
   const FlightSamples& samples = *flight.samples;
-  const double memory = memory_of(values, samples, noise);
+  const double memory = memory_of_flight(samples, values, noise);
   const std::vector<RegimeSet> regimes = regimes_of_samples(samples.time, samples.intervals);
   ResidualSums own;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -124,6 +103,7 @@ void Gathering::add(const FlightResiduals& flight, std::size_t model, const Nois
   }
   result_.flights.push_back({samples.name, own.statistics()});
   add_worst(flight, values, noise, regimes);
+  if (has_value(flight.flaps_out[model])) flaps_out_.add(sums_of_flight(samples, flight.flaps_out[model]));
 }
 
 void Gathering::add_worst(const FlightResiduals& flight, const std::vector<double>& values,
@@ -154,6 +134,7 @@ void Gathering::add_worst(const FlightResiduals& flight, const std::vector<doubl
 
 ModelComparison Gathering::finish() {
   result_.all = all_.statistics();
+  result_.flaps_out = flaps_out_.statistics();
   const auto count = static_cast<double>(all_.samples);
   const double variation = wanted_squares_ - wanted_sum_ * wanted_sum_ / count;
   result_.r_squared = variation > count * smallest_variance ? 1.0 - all_.squares / variation : nan;
@@ -203,10 +184,9 @@ void fit_lines(Comparison& comparison) {
 
 /// The noise of a flight is one, whatever the models: where one of them fails quickly, another shows it.
 NoiseFloor lowest_noise(const FlightResiduals& flight) {
-  const FlightSamples& samples = *flight.samples;
   NoiseFloor lowest;
   for (const std::vector<double>& values : flight.values) {
-    NoiseFloor noise = noise_floor(values, stretches_of(values, samples.time, samples.step), samples.step);
+    NoiseFloor noise = noise_of_flight(*flight.samples, values);
     if (&values == &flight.values.front() || noise.rms < lowest.rms) lowest = std::move(noise);
   }
   return lowest;
@@ -243,9 +223,8 @@ FlightResiduals residuals_on(const Flight& flight, const std::vector<Contender>&
     }
   }
   for (std::vector<double>& values : result.values) {
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (result.mask[i] != Mask::none) values[i] = nan;
-    }
+    result.flaps_out.push_back(only_where(values, result.mask, Mask::flaps));
+    values = only_where(values, result.mask, Mask::none);
   }
   return result;
 }

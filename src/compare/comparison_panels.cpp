@@ -245,6 +245,8 @@ void ComparisonPanels::summarise() {
                              "{:.4f}, over {} samples",
                              model.name, model.all.bias, model.all.rms, model.all.rms_over_noise(),
                              model.all.noise_rms, model.r_squared, model.all.samples)));
+    if (const std::string text = flaps_out_text(model.flaps_out, "the comparison"); !text.empty())
+      report_.summary.push_back(sentence(text));
   }
   const ModelComparison& last = comparison_.models.back();
   const PartStatistics* worst = nullptr;

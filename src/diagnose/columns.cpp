@@ -14,6 +14,7 @@
 #include <pcor/words/error.hpp>
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
+#include "residuals/masks.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -116,17 +117,6 @@ void bridge(Eigen::Ref<Eigen::VectorXf> column, const std::vector<std::size_t>& 
   }
 }
 
-std::vector<std::size_t> used_samples(const std::vector<Mask>& mask, double first_part) {
-  std::vector<std::size_t> used;
-  for (std::size_t i = 0; i < mask.size(); ++i) {
-    if (mask[i] == Mask::none) used.push_back(i);
-  }
-  if (first_part < 1.0) {
-    used.resize(static_cast<std::size_t>(first_part * static_cast<double>(used.size())));
-  }
-  return used;
-}
-
 std::vector<Where> places_of(const CandidateSet& set) {
   std::vector<Where> places;
   for (const Candidate& candidate : set.candidates) {
@@ -174,6 +164,7 @@ FlightColumns find_columns(std::shared_ptr<const FlightSamples> extended, const 
   FlightColumns columns;
   columns.samples = extended;
   columns.mask = residuals.mask();
+  columns.exact = residuals.values(start.data());
   const std::vector<std::size_t> used = used_samples(columns.mask, first_part);
   std::vector<std::size_t> wanted = free_parameters(model);
   const std::size_t base_count = wanted.size();

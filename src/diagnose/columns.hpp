@@ -21,8 +21,10 @@ struct FlightColumns {
   std::vector<Mask> mask;
   std::vector<double> given;     ///< the residual with the coefficients of the model, hPa; NaN where not used
   std::vector<double> residual;  ///< the same; in the diagnosis outliers are replaced, hPa
-  Eigen::MatrixXf base;          ///< of the model's free coefficients, hPa per unit
-  Eigen::MatrixXf candidates;    ///< of the tested parameters of all candidates, one after another
+  /// The residual as it is, not measured at the sensor, of every sample, hPa.
+  std::vector<double> exact{};
+  Eigen::MatrixXf base;        ///< of the model's free coefficients, hPa per unit
+  Eigen::MatrixXf candidates;  ///< of the tested parameters of all candidates, one after another
   /// How the flight was flown, for smooth functions and pictures; NaN everywhere where not known.
   std::vector<std::pair<Quantity, std::vector<double>>> quantities{};
   std::vector<double> corrected_pressure{};  ///< static, hPa

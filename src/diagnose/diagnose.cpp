@@ -16,7 +16,10 @@
 #include "diagnose/findings.hpp"
 #include "diagnose/rms.hpp"
 #include "diagnose/unexplained.hpp"
+#include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
+#include "residuals/flight_statistics.hpp"
+#include "residuals/masks.hpp"
 
 namespace pcor {
 
@@ -123,20 +126,59 @@ std::vector<FlightDiagnosis> flights_of(const Analysis& analysis) {
   return flights;
 }
 
-double noise_of(const std::vector<FlightDiagnosis>& flights) {
-  double squares = 0.0;
-  double count = 0.0;
+double noise_with_findings(const std::vector<FlightDiagnosis>& flights) {
+  ResidualSums sums;
   for (const FlightDiagnosis& flight : flights) {
-    const FlightSamples& samples = *flight.samples;
-    const NoiseFloor floor =
-        noise_floor(flight.after, stretches_of(flight.after, samples.time, samples.step), samples.step);
-    const auto used = static_cast<double>(
-        std::count_if(flight.after.begin(), flight.after.end(), [](double x) { return !std::isnan(x); }));
-    if (!std::isfinite(floor.rms)) continue;
-    squares += floor.rms * floor.rms * used;
-    count += used;
+    const ResidualSums one = sums_of_flight(*flight.samples, flight.after);
+    if (std::isfinite(one.noise_squares)) sums.add(one);
   }
-  return std::sqrt(squares / count);
+  return sums.statistics().noise_rms;
+}
+
+/// What the model as it is given leaves: of the samples that are used, of the later parts of the flights, and
+/// of those with flaps out.
+void add_statistics(const std::vector<FlightColumns>& flights, double share, Diagnosis& diagnosis) {
+  ResidualSums used;
+  ResidualSums with_flaps;
+  std::vector<std::vector<double>> blocks;
+  std::vector<std::size_t> held_out_blocks;
+  for (const FlightColumns& flight : flights) {
+    const FlightSamples& samples = *flight.samples;
+    const std::vector<std::size_t> first = used_samples(flight.mask, share);
+    std::vector<std::size_t> later = used_samples(flight.mask);
+    later.erase(later.begin(), later.begin() + static_cast<std::ptrdiff_t>(first.size()));
+    const NoiseFloor noise = noise_of_flight(samples, only_where(flight.exact, flight.mask, Mask::none));
+    const std::vector<double> residual = only_at(flight.exact, first);
+    used.add(sums_of_flight(samples, residual, noise));
+    blocks.push_back(means_of_blocks(samples, residual));
+    const std::vector<double> out = only_where(flight.exact, flight.mask, Mask::flaps);
+    if (has_value(out)) with_flaps.add(sums_of_flight(samples, out));
+    if (later.empty()) continue;
+    const std::vector<double> held_out = only_at(flight.exact, later);
+    diagnosis.held_out.push_back({samples.name, sums_of_flight(samples, held_out, noise).statistics(), 0.0});
+    held_out_blocks.push_back(means_of_blocks(samples, held_out).size());
+  }
+  const Statistics statistics = used.statistics();
+  diagnosis.samples = statistics.samples;
+  diagnosis.rms_given = statistics.rms;
+  diagnosis.noise_rms = statistics.noise_rms;
+  diagnosis.flaps_out = with_flaps.statistics();
+  for (std::size_t i = 0; i < diagnosis.held_out.size(); ++i)
+    diagnosis.held_out[i].expected = expected_bias(blocks, held_out_blocks[i]);
+}
+
+/// A flap that matters is told, though its samples take no part.
+void judge_flaps(const CandidateSet& set, Diagnosis& diagnosis) {
+  constexpr double limit = 3.0;  // standard errors
+  const Statistics& out = diagnosis.flaps_out;
+  if (out.samples == 0 || !(std::abs(out.bias) > limit * out.bias_error)) return;
+  const bool can_be_added =
+      std::any_of(set.candidates.begin(), set.candidates.end(),
+                  [](const Candidate& candidate) { return candidate.effect.id == "flaps-gear"; });
+  diagnosis.notes.push_back(fmt::format(
+      "{}: flaps or gear, or the slow flight that goes with them, do what the model does not have{}",
+      flaps_out_text(diagnosis.flaps_out, "the diagnosis"),
+      can_be_added ? "; pcor add flaps-gear takes these samples into the fit and the diagnosis" : ""));
 }
 
 Verdict verdict_of(const Diagnosis& diagnosis, double explained, double left) {
@@ -185,6 +227,16 @@ std::string_view name_of(Verdict verdict) {
   return "";
 }
 
+void judge_held_out(Diagnosis& diagnosis) {
+  for (const HeldOutPart& part : diagnosis.held_out) {
+    if (!part.is_off()) continue;
+    const std::string text = part.text();
+    std::vector<std::string>& notes = diagnosis.notes;
+    if (std::find(notes.begin(), notes.end(), text) == notes.end()) notes.push_back(text);
+    if (diagnosis.verdict == Verdict::silent) diagnosis.verdict = Verdict::unexplained;
+  }
+}
+
 Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelFile& model,
                    const Reference& reference, const DiagnoseOptions& options) {
   if (paths.empty()) throw Error("nothing to diagnose; give at least one flight");
@@ -212,10 +264,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
     for (const Mask mask : columns.back().mask) ++diagnosis.masks[static_cast<std::size_t>(mask)];
     if (options.progress) options.progress(columns.size(), flights.size());
   }
-  for (const FlightColumns& flight : columns) {
-    diagnosis.samples += static_cast<std::size_t>(
-        std::count_if(flight.given.begin(), flight.given.end(), [](double x) { return !std::isnan(x); }));
-  }
+  add_statistics(columns, options.training_share, diagnosis);
   if (diagnosis.samples < diagnosis.masks[0]) {
     diagnosis.notes.push_back(fmt::format("{} samples of the later parts of the flights took no part",
                                           diagnosis.masks[0] - diagnosis.samples));
@@ -224,6 +273,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
     throw Error(fmt::format("{} samples are left to diagnose, and {} are the fewest that tell anything: {}",
                             diagnosis.samples, fewest_samples, mask_text(diagnosis.masks)));
   }
+  judge_flaps(set, diagnosis);
   drop_untestable(set, columns);
   diagnosis.candidates = static_cast<std::size_t>(
       std::count_if(set.candidates.begin(), set.candidates.end(),
@@ -238,15 +288,14 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
   diagnosis.limits = limits_of(analysis, set.candidates, diagnosis.findings);
   diagnosis.not_testable = std::move(set.not_testable);
   diagnosis.flights = flights_of(analysis);
-  diagnosis.rms_given = rms_of(analysis.flights(), &FlightColumns::given);
   diagnosis.residual_rms = rms_of(diagnosis.flights, &FlightDiagnosis::before);
   diagnosis.residual_rms_held_out = analysis.held_out_rms({});
-  diagnosis.noise_rms = noise_of(diagnosis.flights);
+  diagnosis.noise_rms_with_findings = noise_with_findings(diagnosis.flights);
   diagnosis.statistics_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   const double rms_after = rms_of(diagnosis.flights, &FlightDiagnosis::after);
-  UnexplainedStructure structure =
-      find_unexplained(analysis, files, model, reference, options, rms_after, diagnosis.noise_rms);
+  UnexplainedStructure structure = find_unexplained(analysis, files, model, reference, options, rms_after,
+                                                    diagnosis.noise_rms_with_findings);
   diagnosis.unexplained = std::move(structure.found);
   for (std::size_t f = 0; f < structure.traced.size(); ++f)
     diagnosis.flights[f].traced = std::move(structure.traced[f]);
@@ -254,6 +303,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
   double explained = 0.0;
   for (const Finding& finding : diagnosis.findings) explained += finding.chi2;
   diagnosis.verdict = verdict_of(diagnosis, explained, structure.left);
+  judge_held_out(diagnosis);
   std::sort(diagnosis.notes.begin(), diagnosis.notes.end());
   diagnosis.notes.erase(std::unique(diagnosis.notes.begin(), diagnosis.notes.end()), diagnosis.notes.end());
   return diagnosis;

@@ -35,9 +35,13 @@ std::string either(const Finding& finding) {
 }
 
 void summarise(Report& report, const Diagnosis& diagnosis) {
-  report.summary.push_back(fmt::format(
-      "With the model's own coefficients fitted again the residual is {} hPa rms; the noise is {} hPa.",
-      hpa(diagnosis.residual_rms), hpa(diagnosis.noise_rms)));
+  report.summary.push_back(
+      fmt::format("The residual is {} hPa rms, and {} hPa with the model's own coefficients fitted again; "
+                  "the noise is {} "
+                  "hPa.",
+                  hpa(diagnosis.rms_given), hpa(diagnosis.residual_rms), hpa(diagnosis.noise_rms)));
+  if (const std::string text = flaps_out_text(diagnosis.flaps_out, "the diagnosis"); !text.empty())
+    report.summary.push_back(sentence(text));
   for (const Finding& finding : diagnosis.findings) report.summary.push_back(finding_summary(finding));
   if (diagnosis.findings.empty()) {
     report.summary.push_back(
@@ -63,12 +67,14 @@ void summarise(Report& report, const Diagnosis& diagnosis) {
 }
 
 Facts numbers_of(const Diagnosis& diagnosis) {
-  return {{"Noise", hpa(diagnosis.noise_rms) + " hPa rms"},
-          {"Residual, coefficients as given", hpa(diagnosis.rms_given) + " hPa rms"},
-          {"Residual, refitted", hpa(diagnosis.residual_rms) + " hPa rms"},
-          {"Residual, parts not in the fit", hpa(diagnosis.residual_rms_held_out) + " hPa rms"},
-          {"Effects tested", std::to_string(diagnosis.candidates)},
-          {"Threshold", fmt::format("chi2 {:.1f}", diagnosis.threshold)}};
+  return {
+      {"Noise", hpa(diagnosis.noise_rms) + " hPa rms"},
+      {"Residual, coefficients as given", hpa(diagnosis.rms_given) + " hPa rms"},
+      {"Residual, refitted", hpa(diagnosis.residual_rms) + " hPa rms"},
+      {"Residual, parts not in the fit, without outliers", hpa(diagnosis.residual_rms_held_out) + " hPa rms"},
+      {"Noise with all findings", hpa(diagnosis.noise_rms_with_findings) + " hPa rms"},
+      {"Effects tested", std::to_string(diagnosis.candidates)},
+      {"Threshold", fmt::format("chi2 {:.1f}", diagnosis.threshold)}};
 }
 
 BarPanel ranking_bars(const Diagnosis& diagnosis) {
@@ -182,7 +188,9 @@ std::string verdict_text(const Diagnosis& diagnosis) {
     case Verdict::partial:
       return effects + "; structure is left that no effect explains";
     case Verdict::unexplained:
-      return "Structure is left that no effect explains";
+      return diagnosis.unexplained.significant
+                 ? "Structure is left that no effect explains"
+                 : "What was held out is off, by what no effect on the fitted flights explains";
     case Verdict::silent:
       break;
   }

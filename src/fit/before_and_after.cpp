@@ -2,41 +2,68 @@
 
 #include <cmath>
 
-#include "numerics/missing.hpp"
+#include "residuals/flight_statistics.hpp"
+#include "residuals/masks.hpp"
 
 namespace pcor::internal {
 namespace {
 
-/// A flight's part that was fitted, the first `training_share` of its samples, and the part that was held
-/// out.
-std::vector<FlightFit> parts_of(const Residuals& residuals, const FitTask& task,
-                                const Eigen::VectorXd& values, double training_share) {
+constexpr double minute = 60.0;  // s
+
+/// A flight before and after the fit.
+struct Compared {
+  std::vector<FlightFit> parts{};  ///< the part that was fitted, and the part that was held out
+  std::vector<double> fitted_blocks{};
+  std::size_t held_out_blocks = 0;
+  ResidualSums flaps_out{};
+  std::vector<std::string> notes{};
+  RegimeSet flown{};
+};
+
+/// By how much the squared residuals fall, and its error, from minute to minute.
+void find_gain(const FlightSamples& samples, const std::vector<double>& before,
+               const std::vector<double>& after, const NoiseFloor& noise, FlightFit& part) {
+  double squares = 0.0;
+  for (std::size_t i = 0; i < after.size();) {
+    const double end = samples.time[i] + minute;
+    double gain = 0.0;
+    for (; i < after.size() && samples.time[i] < end; ++i) {
+      if (!std::isnan(after[i]) && noise.local_rms[i] > 0.0)
+        gain += (before[i] * before[i] - after[i] * after[i]) / (noise.local_rms[i] * noise.local_rms[i]);
+    }
+    part.gain += gain;
+    squares += gain * gain;
+  }
+  part.gain_error = std::sqrt(squares);
+}
+
+Compared compared(const Residuals& residuals, const FitTask& task, const Eigen::VectorXd& values,
+                  double training_share) {
   const FlightSamples& samples = residuals.samples();
   const std::vector<double> before = residuals.values(task.start.data());
   const std::vector<double> after = residuals.values(values.data());
-  std::vector<std::size_t> used;
-  for (std::size_t i = 0; i < after.size(); ++i) {
-    if (residuals.mask()[i] == Mask::none) used.push_back(i);
-  }
-  const auto training =
-      static_cast<std::size_t>(std::llround(training_share * static_cast<double>(used.size())));
-  std::vector<bool> first(after.size(), false);
-  std::vector<bool> second(after.size(), false);
-  std::vector<double> series(after.size(), nan);
-  for (std::size_t i = 0; i < used.size(); ++i) {
-    (i < training ? first : second)[used[i]] = true;
-    series[used[i]] = after[used[i]];
-  }
-  const NoiseFloor noise =
-      noise_floor(series, stretches_of(series, samples.time, samples.step), samples.step);
-  std::vector<FlightFit> parts;
-  const auto add = [&](const std::vector<bool>& part, bool held) {
-    parts.push_back(
-        {samples.name, held, statistics_of(before, noise, part), statistics_of(after, noise, part)});
+  const std::vector<std::size_t> fitted = used_samples(residuals.mask(), training_share);
+  std::vector<std::size_t> held_out = used_samples(residuals.mask());
+  held_out.erase(held_out.begin(), held_out.begin() + static_cast<std::ptrdiff_t>(fitted.size()));
+  const NoiseFloor noise = noise_of_flight(samples, only_where(after, residuals.mask(), Mask::none));
+  Compared result;
+  const auto add = [&](const std::vector<std::size_t>& part, bool held) {
+    if (part.empty()) return;
+    const std::vector<double> was = only_at(before, part);
+    const std::vector<double> is = only_at(after, part);
+    result.parts.push_back({samples.name, held, sums_of_flight(samples, was, noise).statistics(),
+                            sums_of_flight(samples, is, noise).statistics()});
+    find_gain(samples, was, is, noise, result.parts.back());
+    const std::vector<double> means = means_of_blocks(samples, is);
+    if (held) {
+      result.held_out_blocks = means.size();
+    } else {
+      result.fitted_blocks = means;
+    }
   };
-  if (training > 0) add(first, false);
-  if (training < used.size()) add(second, true);
-  return parts;
+  add(fitted, false);
+  add(held_out, true);
+  return result;
 }
 
 }  // namespace
@@ -52,24 +79,41 @@ double BeforeAndAfter::noise_rms(std::size_t samples) const {
 
 BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& values) {
   const FitTask& task = flights.task();
-  std::vector<BeforeAndAfter> each(flights.count());
+  std::vector<Compared> each(flights.count());
   flights.visit([&](std::size_t number, std::size_t, FitFlight& fit) {
     const FlightSamples& samples = fit.residuals().samples();
-    each[number].flights = parts_of(fit.residuals(), task, values, task.options.training_share);
-    for (const std::string& note : samples.notes) each[number].notes.push_back(samples.name + ": " + note);
+    Compared& one = each[number];
+    one = compared(fit.residuals(), task, values, task.options.training_share);
+    one.flaps_out = flaps_out(fit.residuals(), values.data());
+    for (const std::string& note : samples.notes) one.notes.push_back(samples.name + ": " + note);
     for (const Interval& interval : samples.intervals)
-      each[number].flown.set(static_cast<std::size_t>(interval.regime));
+      one.flown.set(static_cast<std::size_t>(interval.regime));
   });
   for (const std::filesystem::path& path : task.options.holdout) {
     const Flight file(path, task.options.time_stamp);
     const auto samples = std::make_shared<const FlightSamples>(
         read_samples(file, task.model, task.reference, task.options.mask));
     const Residuals residuals(samples, task.model, task.reference, task.options.mask);
-    each.emplace_back().flights = parts_of(residuals, task, values, 0.0);
+    each.push_back(compared(residuals, task, values, 0.0));
+  }
+  std::vector<std::vector<double>> fitted;
+  ResidualSums with_flaps;
+  for (const Compared& one : each) {
+    fitted.push_back(one.fitted_blocks);
+    with_flaps.add(one.flaps_out);
   }
   BeforeAndAfter all;
-  for (const BeforeAndAfter& one : each) {
-    all.flights.insert(all.flights.end(), one.flights.begin(), one.flights.end());
+  all.flaps_out = with_flaps.statistics();
+  for (Compared& one : each) {
+    for (FlightFit& part : one.parts) {
+      if (!part.holdout) continue;
+      part.expected_bias = expected_bias(fitted, one.held_out_blocks);
+      const HeldOutPart judged{part.flight, part.after, part.expected_bias};
+      if (judged.is_off()) all.notes.push_back(judged.text());
+    }
+    all.flights.insert(all.flights.end(), one.parts.begin(), one.parts.end());
+  }
+  for (const Compared& one : each) {
     all.notes.insert(all.notes.end(), one.notes.begin(), one.notes.end());
     all.flown |= one.flown;
   }

@@ -13,6 +13,7 @@ struct BeforeAndAfter {
   std::vector<FlightFit> flights{};  ///< the parts that were fitted and those that were held out
   std::vector<std::string> notes{};  ///< of flights that took part
   RegimeSet flown{};                 ///< in flights that took part
+  Statistics flaps_out{};            ///< of flights that took part
 
   /// Over all samples that were fitted, hPa.
   double noise_rms(std::size_t samples) const;

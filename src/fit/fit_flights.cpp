@@ -12,6 +12,7 @@
 #include <pcor/words/error.hpp>
 #include "numerics/missing.hpp"
 #include "numerics/spikes.hpp"
+#include "residuals/masks.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -29,15 +30,9 @@ FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask
       residuals_(std::move(samples), task.model, task.reference, task.options.mask),
       static_pressure_(residuals_.samples().model.find(Quantity::static_pressure)) {
   const FlightSamples& flight = residuals_.samples();
-  const std::vector<Mask>& mask = residuals_.mask();
-  for (std::size_t i = 0; i < mask.size(); ++i) {
-    if (mask[i] == Mask::none) kept_.push_back(i);
-  }
-  const auto training =
-      static_cast<std::size_t>(std::llround(task.options.training_share * static_cast<double>(kept_.size())));
-  kept_.resize(training);
+  kept_ = used_samples(residuals_.mask(), task.options.training_share);
   if (!setup.regimes.empty()) {
-    std::vector<int> inside(mask.size(), -1);  // number of the interval; the first that holds a sample counts
+    std::vector<int> inside(residuals_.size(), -1);  // number of the interval; the first that holds a sample counts
     for (const Interval& interval : flight.intervals) {
       if (std::find(setup.regimes.begin(), setup.regimes.end(), interval.regime) == setup.regimes.end())
         continue;

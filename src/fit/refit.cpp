@@ -246,6 +246,7 @@ RefitResult fit(const Sources& sources, const ModelFile& model, const Reference&
   BeforeAndAfter compared = before_and_after(flights, solution.values);
   result.noise_rms = compared.noise_rms(result.samples);
   result.flights = std::move(compared.flights);
+  result.flaps_out = compared.flaps_out;
   list_coefficients(result, task, fitted, covariance);
   result.worse = why_worse(result, before.rms_of(before.bulk_squares));
   result.warnings = fit_warnings(flights, result, solution.values, sums.rms_of(squares.least()));

@@ -78,6 +78,8 @@ Report refit_report(const RefitResult& fit, const Comparison& comparison) {
   report.summary.push_back(fmt::format(
       "The fit brings the rms residual from {:.3f} to {:.3f} hPa over {} samples; the noise is {:.3f} hPa.",
       fit.rms_before, fit.rms, fit.samples, fit.noise_rms));
+  if (const std::string text = flaps_out_text(fit.flaps_out, "the fit"); !text.empty())
+    report.summary.push_back(sentence(text));
   for (const FlightFit& flight : fit.flights) {
     if (!flight.holdout) continue;
     report.summary.push_back(fmt::format(

@@ -20,10 +20,12 @@ using namespace internal;
 
 namespace {
 
-// An effect that is named stays unless the held-out rms gets worse than by the scatter of a good fit. One
-// that is not the cause, or not known to be, must earn its place.
-constexpr double named_limit = 1.005;
+// An effect that is named stays unless the held-out rms gets worse. One that is not the cause, or not known
+// to be, must earn its place.
+constexpr double named_limit = 1.0;
 constexpr double unnamed_limit = 0.99;
+// Of the fit, which weighs samples by their noise and outliers not at all, the rms may grow so much.
+constexpr double fit_limit = 1.005;
 
 /// An effect that the loop may add, and what has to come of it.
 struct Candidate {
@@ -92,16 +94,33 @@ Candidate candidate_of(const TracedVariable& variable, const std::string& flight
 
 std::string shown(double rms) { return fmt::format("{:.4f} hPa", rms); }
 
-/// The rms over all samples that took no part in a fit, hPa; NaN where there are none.
-double held_out_rms(const RefitResult& fit) {
-  double squares = 0.0;
-  std::size_t samples = 0;
+/// Some of the samples of a fit, before and after it.
+struct Judged {
+  double rms_before = nan;  ///< hPa; NaN where there are none
+  double rms_after = nan;
+  double gain = 0.0;  ///< fall of the squared residuals, in units of the noise
+  double gain_variance = 0.0;
+};
+
+/// Those that took no part in the fit, or those that did.
+Judged judged(const RefitResult& fit, bool held_out) {
+  Judged result;
+  double before = 0.0;
+  double after = 0.0;
+  double samples = 0.0;
   for (const FlightFit& flight : fit.flights) {
-    if (!flight.holdout || flight.after.samples == 0) continue;
-    squares += flight.after.rms * flight.after.rms * static_cast<double>(flight.after.samples);
-    samples += flight.after.samples;
+    if (flight.holdout != held_out || flight.after.samples == 0) continue;
+    const auto count = static_cast<double>(flight.after.samples);
+    before += flight.before.rms * flight.before.rms * count;
+    after += flight.after.rms * flight.after.rms * count;
+    samples += count;
+    result.gain += flight.gain;
+    result.gain_variance += flight.gain_error * flight.gain_error;
   }
-  return samples == 0 ? nan : std::sqrt(squares / static_cast<double>(samples));
+  if (samples == 0.0) return result;
+  result.rms_before = std::sqrt(before / samples);
+  result.rms_after = std::sqrt(after / samples);
+  return result;
 }
 
 /// "tau = 0.21 +- 0.02 s": the fitted coefficients of an effect.
@@ -140,15 +159,25 @@ class Climb {
 
   Improvement run() {
     while (result_.why_stopped.empty()) climb_on();
-    double floor = nan;
-    for (const ImproveStep& step : result_.steps) floor = std::fmin(floor, step.noise_rms);
-    for (ImproveStep& step : result_.steps) step.noise_rms = floor;
     result_.model = result_.fit.model;
+    result_.worse = why_worse();
     return std::move(result_);
   }
 
  private:
   const Diagnosis& diagnosis() const { return result_.steps.back().diagnosis; }
+
+  /// Whether the ladder as a whole made the residual worse: much, or surely.
+  std::string why_worse() const {
+    constexpr double much = 1.02;
+    constexpr double surely = 2.0;  // standard deviations
+    if (!(growth_ > much) && !(growth_ > 1.0 && gain_ < -surely * std::sqrt(gain_variance_))) return "";
+    return fmt::format(
+        "{} the rms of the best model is {:.4f} times that of the model as it was given, and its squared "
+        "residuals in units of the noise are more by {:.0f} +- {:.0f}",
+        loop_.has_holdout ? "on what was held out" : "on these flights", growth_, -gain_,
+        std::sqrt(gain_variance_));
+  }
 
   void climb_on() {
     Candidates candidates = candidates_now();
@@ -199,7 +228,7 @@ class Climb {
   static bool is_a_gamble(const Finding& finding, const Diagnosis& diagnosis) {
     constexpr double tolerable = 0.35;  // of the noise
     constexpr double leverage = 2.0;
-    const double limit = tolerable * diagnosis.noise_rms;
+    const double limit = tolerable * diagnosis.noise_rms_with_findings;
     if (finding.static_risk > limit) return true;
     if (diagnosis.verdict == Verdict::identified) return false;
     const double explained = std::sqrt(
@@ -209,11 +238,16 @@ class Climb {
 
   std::string why_nothing_is_added() const {
     const Diagnosis& now = diagnosis();
-    if (now.verdict == Verdict::silent) {
+    if (now.findings.empty() && !now.unexplained.significant) {
+      std::vector<std::string> off;
+      for (const HeldOutPart& part : now.held_out) {
+        if (part.is_off()) off.push_back(part.text());
+      }
       return fmt::format(
-          "nothing is missing that these flights could show: {} effects were tested, and the rms of {} is "
-          "left at a noise of {}",
-          now.candidates, shown(now.residual_rms), shown(now.noise_rms));
+          "nothing is missing that {} flights could show: {} effects were tested, and the rms of {} is "
+          "left at a noise of {}{}{}",
+          off.empty() ? "these" : "the fitted", now.candidates, shown(now.rms_given), shown(now.noise_rms),
+          off.empty() ? "" : "; but ", fmt::join(off, "; "));
     }
     for (const Finding& finding : now.findings) {
       if (!is_a_gamble(finding, now)) continue;
@@ -259,10 +293,17 @@ class Climb {
       return fmt::format("{} was tried, but cannot be fitted: {}", id, error.what());
     }
     measure(step, fit);
-    const double before = result_.steps.back().rms_holdout;
-    const double after = step.rms_holdout;
-    const double train = result_.steps.back().rms_train;
-    if (!loop_.has_holdout && step.rms_train > named_limit * train) {
+    double before = result_.steps.back().rms_holdout;
+    double train = result_.steps.back().rms_train;
+    double after = step.rms_holdout;
+    // Where the model describes more samples than before, those with flaps out, both are compared on these.
+    if (fit.samples != result_.fit.samples) {
+      const Judged same_samples = judged(fit, loop_.has_holdout);
+      train = fit.rms_before;
+      before = same_samples.rms_before;
+      after = same_samples.rms_after;
+    }
+    if (!loop_.has_holdout && step.rms_train > fit_limit * train) {
       return fmt::format("{} was tried and dropped: with it the rms of the fit is {}, without it {}", id,
                          shown(step.rms_train), shown(train));
     }
@@ -288,7 +329,7 @@ class Climb {
         std::count_if(fit.parameters.begin(), fit.parameters.end(),
                       [](const FittedParameter& parameter) { return parameter.fitted; }));
     if (loop_.has_holdout) {
-      step.rms_holdout = held_out_rms(fit);
+      step.rms_holdout = judged(fit, true).rms_after;
     } else {
       step.diagnosis = loop_.diagnose(fit.model);
       step.rms_holdout = step.diagnosis.residual_rms_held_out;
@@ -298,12 +339,26 @@ class Climb {
   /// A rung that was measured is part of the ladder, with what is still missing there.
   void take(ImproveStep step, RefitResult fit) {
     if (loop_.has_holdout) step.diagnosis = loop_.diagnose(fit.model);
+    std::vector<HeldOutPart>& held_out = step.diagnosis.held_out;
+    held_out.clear();
+    for (const FlightFit& flight : fit.flights) {
+      if (flight.holdout) held_out.push_back({flight.flight, flight.after, flight.expected_bias});
+    }
+    judge_held_out(step.diagnosis);
+    const Judged fitted = judged(fit, loop_.has_holdout);
+    if (fitted.rms_before > 0.0) growth_ *= fitted.rms_after / fitted.rms_before;
+    gain_ += fitted.gain;
+    gain_variance_ += fitted.gain_variance;
     result_.steps.push_back(std::move(step));
     result_.fit = std::move(fit);
   }
 
   const ImproveLoop& loop_;
   Improvement result_;
+  // Of the ladder as a whole, on what is held out, else on all samples.
+  double growth_ = 1.0;
+  double gain_ = 0.0;
+  double gain_variance_ = 0.0;
 };
 
 /// The variables that all the flights have.

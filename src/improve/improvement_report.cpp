@@ -75,6 +75,8 @@ void summarise(Report& report, const Improvement& improvement) {
       text += fmt::format(" These flights cannot tell it from {}.", list_text(step.aliases));
     report.summary.push_back(std::move(text));
   }
+  if (const std::string text = flaps_out_text(improvement.fit.flaps_out, "the fit"); !text.empty())
+    report.summary.push_back(sentence(text));
   if (!improvement.why_stopped.empty()) report.summary.push_back(sentence(improvement.why_stopped));
   std::string verdict = verdict_text(last.diagnosis);
   verdict.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(verdict.front())));

@@ -24,6 +24,8 @@ std::vector<bool> find_flying(const FlightSamples& samples, const MaskOptions& o
   std::vector<bool> flying(masks.size());
   for (std::size_t i = 0; i < flying.size(); ++i)
     flying[i] = masks[i] == Mask::none && samples.motion.airspeed[i] >= options.least_airspeed;
+  for (const FrozenSpan& span : samples.model.frozen)
+    std::fill_n(flying.begin() + static_cast<std::ptrdiff_t>(span.first), span.count, false);
   return flying;
 }
 

@@ -1,5 +1,4 @@
 #include "residuals/masks.hpp"
-#include "numerics/missing.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,6 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/model/formula.hpp>
+#include "numerics/missing.hpp"
+#include "residuals/reference_on_samples.hpp"
 
 namespace pcor {
 
@@ -16,11 +20,12 @@ const std::array<MaskFacts, mask_count> mask_facts{{
     {"missing", "without a value that the model needs"},
     {"ground", "on the ground"},
     {"low_speed", "slower than the least airspeed (--min-airspeed)"},
-    {"flaps", "with flaps out (--max-flaps)"},
     {"regime", "in a regime that is excluded (--exclude)"},
+    {"frozen", "with a frozen sensor"},
     {"reference_missing", "without a value of the reference"},
-    {"laser_unlocked", "with a laser airspeed far from that of the pressures"},
+    {"laser_unlocked", "with a laser airspeed far from what the pressures let expect"},
     {"impossible", "without a delta-p: impossible with these values and coefficients"},
+    {"flaps", "with flaps out (--max-flaps)"},
 }};
 
 std::string mask_text(const std::array<std::size_t, mask_count>& counts) {
@@ -43,18 +48,16 @@ double airspeed_at(const FlightSamples& samples, std::size_t sample) {
   return airspeed.empty() ? nan : airspeed[sample];
 }
 
+/// Flaps are not looked at.
 Mask mask_as_flown(const FlightSamples& samples, std::size_t sample, const RegimeSet& regimes,
                    const MaskOptions& options) {
   const auto in = [&regimes](Regime regime) { return regimes[static_cast<std::size_t>(regime)]; };
   if (in(Regime::ground)) return Mask::ground;
   if (airspeed_at(samples, sample) < options.least_airspeed) return Mask::low_speed;
-  if (!samples.flaps.empty() && samples.flaps[sample] > options.most_flaps) return Mask::flaps;
   return std::any_of(options.exclude.begin(), options.exclude.end(), in) ? Mask::regime : Mask::none;
 }
 
-}  // namespace
-
-std::vector<Mask> masks_as_flown(const FlightSamples& samples, const MaskOptions& options) {
+std::vector<Mask> masks_without_flaps(const FlightSamples& samples, const MaskOptions& options) {
   const std::vector<double>& time = samples.time;
   const std::vector<RegimeSet> regimes = regimes_of_samples(time, samples.intervals);
   std::vector<Mask> masks(time.size());
@@ -68,21 +71,80 @@ std::vector<Mask> masks_as_flown(const FlightSamples& samples, const MaskOptions
   return masks;
 }
 
-std::vector<Mask> find_masks(const FlightSamples& samples, const ReferenceOnSamples& reference,
-                             const std::vector<double>& residual, const MaskOptions& options) {
-  const std::vector<double>& p = *samples.model.find(Quantity::static_pressure);
-  const std::vector<double>& q = *samples.model.find(Quantity::dynamic_pressure);
-  std::vector<Mask> masks = masks_as_flown(samples, options);
-  for (std::size_t i = 0; i < masks.size(); ++i) {
-    if (masks[i] == Mask::excluded) continue;
-    if (std::isnan(p[i]) || std::isnan(q[i])) {
-      masks[i] = Mask::missing;
-    } else if (masks[i] == Mask::none) {
-      masks[i] = std::isnan(residual[i]) ? reference.why_missing(i)
-                                         : reference.why_not_believed(i, airspeed_at(samples, i), options);
+void mark_flaps(const FlightSamples& samples, double most, std::vector<Mask>& masks) {
+  for (std::size_t i = 0; i < samples.flaps.size(); ++i) {
+    if (masks[i] == Mask::none && samples.flaps[i] > most) masks[i] = Mask::flaps;
+  }
+}
+
+bool reads_flaps(const ModelEffect& effect, const std::string& variable) {
+  if (effect.is_formula()) {
+    const auto formula = Formula::parse(effect.formula, effect.parameter_names);
+    if (!formula) return false;
+    return std::any_of(
+        formula->variables().begin(), formula->variables().end(),
+        [&](const std::string& name) { return name == variable || quantity_named(name) == Quantity::flaps; });
+  }
+  const auto& needs = effect_facts[effect_named(effect.id)].needs;
+  return std::find(needs.begin(), needs.end(), Quantity::flaps) != needs.end();
+}
+
+/// Marks the samples at which something that is read stands still.
+void mark_frozen(const ModelSamples& samples, const std::vector<Batch::Input>& read,
+                 std::vector<Mask>& masks) {
+  const auto is_read = [&read](Quantity quantity) {
+    return std::any_of(read.begin(), read.end(), [quantity](const Batch::Input& column) {
+      return column.quantity == quantity || std::any_of(rates.begin(), rates.end(), [&](const Rate& each) {
+               return each.quantity == quantity && each.rate == column.quantity;
+             });
+    });
+  };
+  for (const FrozenSpan& span : samples.frozen) {
+    if (!is_read(span.quantity)) continue;
+    for (std::size_t i = span.first; i < span.first + span.count; ++i) {
+      if (masks[i] == Mask::none) masks[i] = Mask::frozen;
     }
   }
+}
+
+}  // namespace
+
+std::vector<Mask> masks_as_flown(const FlightSamples& samples, const MaskOptions& options) {
+  std::vector<Mask> masks = masks_without_flaps(samples, options);
+  mark_flaps(samples, options.most_flaps.value_or(flaps_in), masks);
   return masks;
+}
+
+std::vector<Mask> find_masks(const MaskedResidual& residual, const MaskOptions& options) {
+  const FlightSamples& samples = residual.samples;
+  const std::vector<double>& p = *samples.model.find(Quantity::static_pressure);
+  const std::vector<double>& q = *samples.model.find(Quantity::dynamic_pressure);
+  std::vector<Mask> masks = masks_without_flaps(samples, options);
+  for (std::size_t i = 0; i < masks.size(); ++i) {
+    if (masks[i] != Mask::excluded && (std::isnan(p[i]) || std::isnan(q[i]))) masks[i] = Mask::missing;
+  }
+  mark_frozen(samples.model, residual.model.columns(), masks);
+  mark_frozen(samples.reference, residual.reference.columns(), masks);
+  for (std::size_t i = 0; i < masks.size(); ++i) {
+    if (masks[i] == Mask::none && std::isnan(residual.values[i]))
+      masks[i] = residual.reference.why_missing(i);
+  }
+  residual.reference.mark_not_believed(masks, samples.motion.airspeed, options);
+  const std::vector<ModelEffect>& effects = residual.model.effects();
+  const bool describes_flaps = std::any_of(effects.begin(), effects.end(), [&](const ModelEffect& effect) {
+    return reads_flaps(effect, samples.flaps_variable);
+  });
+  mark_flaps(samples, options.most_flaps.value_or(describes_flaps ? infinity : flaps_in), masks);
+  return masks;
+}
+
+std::vector<std::size_t> used_samples(const std::vector<Mask>& masks, double share) {
+  std::vector<std::size_t> used;
+  for (std::size_t i = 0; i < masks.size(); ++i) {
+    if (masks[i] == Mask::none) used.push_back(i);
+  }
+  used.resize(static_cast<std::size_t>(std::llround(share * static_cast<double>(used.size()))));
+  return used;
 }
 
 }  // namespace internal

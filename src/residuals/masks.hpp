@@ -1,17 +1,31 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
-#include "residuals/reference_on_samples.hpp"
+#include <pcor/residuals/samples.hpp>
 
 namespace pcor::internal {
+
+class ModelOnSamples;
+class ReferenceOnSamples;
 
 /// The masks by how a flight was flown and what the user excluded, whatever the model: `excluded`, `ground`,
 /// `low_speed`, `flaps`, `regime`, or none.
 std::vector<Mask> masks_as_flown(const FlightSamples& samples, const MaskOptions& options);
 
-/// All masks. @param residual of every sample, with the parameters of the files
-std::vector<Mask> find_masks(const FlightSamples& samples, const ReferenceOnSamples& reference,
-                             const std::vector<double>& residual, const MaskOptions& options);
+/// What takes part where a model is held against a reference.
+struct MaskedResidual {
+  const FlightSamples& samples;
+  const ModelOnSamples& model;
+  const ReferenceOnSamples& reference;
+  const std::vector<double>& values;  ///< of every sample, with the parameters of the files
+};
+
+/// All masks.
+std::vector<Mask> find_masks(const MaskedResidual& residual, const MaskOptions& options);
+
+/// The samples that take part: the first `share` of them, rounded.
+std::vector<std::size_t> used_samples(const std::vector<Mask>& masks, double share = 1.0);
 
 }  // namespace pcor::internal

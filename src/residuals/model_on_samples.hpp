@@ -30,6 +30,7 @@ class ModelOnSamples {
   const Batch& batch() const { return batch_; }
   const Chain& chain() const { return batch_.chain(); }
   const std::vector<Batch::Input>& columns() const { return columns_; }
+  const std::vector<ModelEffect>& effects() const { return model_.effects; }
 
   /// As the file has them.
   const std::vector<double>& parameters() const { return chain().parameters(); }

@@ -52,9 +52,8 @@ ModelSamples Reference::read(const Flight&, const std::vector<double>&, std::vec
   return {};
 }
 
-Mask ReferenceOnSamples::why_not_believed(std::size_t, double, const MaskOptions&) const {
-  return Mask::none;
-}
+void ReferenceOnSamples::mark_not_believed(std::vector<Mask>&, const std::vector<double>&,
+                                           const MaskOptions&) const {}
 
 Pointer lams_reference() { return std::make_shared<LamsReference>(); }
 

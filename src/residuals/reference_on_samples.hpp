@@ -64,8 +64,10 @@ class ReferenceOnSamples {
   /// Why a sample has no residual, though the model has its pressures.
   virtual Mask why_missing(std::size_t sample) const = 0;
 
-  /// Whether it cannot be believed at a sample that has a residual. @param airspeed of the pressures, m/s
-  virtual Mask why_not_believed(std::size_t sample, double airspeed, const MaskOptions& options) const;
+  /// Marks the samples at which it cannot be believed, among those that have a residual and no other mask.
+  /// @param airspeed of the pressures, m/s
+  virtual void mark_not_believed(std::vector<Mask>& masks, const std::vector<double>& airspeed,
+                                 const MaskOptions& options) const;
 };
 
 }  // namespace pcor::internal

@@ -15,6 +15,7 @@ struct ResidualSums {
   double independent = 0.0;  ///< samples that count as independent
 
   void add(double residual, double noise, double samples_per_independent);
+  void add(const ResidualSums& other);
   Statistics statistics() const;
 };
 

@@ -70,8 +70,9 @@ struct Residuals::Implementation {
 Residuals::Residuals(std::shared_ptr<const FlightSamples> samples, const ModelFile& model,
                      const Reference& reference, const MaskOptions& options)
     : implementation_(std::make_unique<Implementation>(std::move(samples), model, reference)) {
+  const Implementation& own = *implementation_;
   implementation_->mask =
-      find_masks(this->samples(), *implementation_->reference, values(parameters().data()), options);
+      find_masks({this->samples(), own.model, *own.reference, values(parameters().data())}, options);
 }
 
 Residuals::Residuals(Residuals&&) noexcept = default;

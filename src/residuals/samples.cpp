@@ -13,6 +13,7 @@
 #include <pcor/residuals/reference.hpp>
 #include <pcor/words/error.hpp>
 #include "numerics/missing.hpp"
+#include "residuals/frozen.hpp"
 #include "roles/model_inputs.hpp"
 #include "roles/recorded_series.hpp"
 
@@ -94,6 +95,7 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelFile&
   ModelSamples samples;
   for (const ModelInput& input : model_inputs(flight, model, chain, roles, notes)) {
     samples.columns.emplace_back(input.quantity, read_values(flight, input.variable, input.conversion));
+    samples.variables.emplace_back(input.quantity, input.variable);
     if (is_role(input.quantity)) samples.roles.push_back(input.quantity);
   }
   const auto add = [&samples](Quantity quantity, std::vector<double> values) {
@@ -124,12 +126,15 @@ FlightSamples read_samples(const Flight& flight, const ModelFile& model, const R
   samples.model = read_model_columns(flight, model, reference.reads_laser(), samples.time, samples.notes);
   samples.reference = reference.read(flight, samples.time, samples.notes);
   samples.motion = read_motion(flight, model, samples);
-  samples.flaps = read_role(flight, model, Quantity::flaps).values;
+  RecordedSeries flaps = read_role(flight, model, Quantity::flaps);
+  samples.flaps = std::move(flaps.values);
+  samples.flaps_variable = std::move(flaps.variable);
   if (samples.flaps.empty()) {
     samples.notes.emplace_back(
         "the flight records no flaps, so an approach with flaps and gear out takes part; --min-airspeed or "
         "--intervals leaves it out");
   }
+  mark_frozen(samples, options.least_airspeed);
   const std::optional<RegimeCriteria> criteria = RegimeCriteria::of(samples.aircraft);
   if (!criteria) {
     samples.notes.push_back(

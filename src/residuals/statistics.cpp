@@ -1,5 +1,7 @@
 #include <pcor/residuals/statistics.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -16,6 +18,14 @@ void ResidualSums::add(double residual, double noise, double samples_per_indepen
   squares += residual * residual;
   noise_squares += noise * noise;
   independent += 1.0 / samples_per_independent;
+}
+
+void ResidualSums::add(const ResidualSums& other) {
+  samples += other.samples;
+  sum += other.sum;
+  squares += other.squares;
+  noise_squares += other.noise_squares;
+  independent += other.independent;
 }
 
 Statistics ResidualSums::statistics() const {
@@ -45,14 +55,28 @@ bool fails_more(const Statistics& a, const Statistics& b) {
 
 double Statistics::scatter() const { return std::sqrt(std::max(rms * rms - bias * bias, 0.0)); }
 
-Statistics statistics_of(const std::vector<double>& residuals, const NoiseFloor& noise,
-                         const std::vector<bool>& used) {
-  ResidualSums sums;
-  for (std::size_t i = 0; i < residuals.size(); ++i) {
-    if (used[i] && !std::isnan(residuals[i]))
-      sums.add(residuals[i], noise.local_rms[i], noise.samples_per_independent);
-  }
-  return sums.statistics();
+std::string flaps_out_text(const Statistics& flaps_out, const std::string& of_what) {
+  if (flaps_out.samples == 0) return "";
+  return fmt::format("not in {}: {} samples with flaps out, residual {:+.2f}{} hPa", of_what,
+                     flaps_out.samples, flaps_out.bias,
+                     std::isnan(flaps_out.bias_error) ? " (error unknown)"
+                                                      : fmt::format(" +- {:.2f}", flaps_out.bias_error));
+}
+
+bool HeldOutPart::is_off() const {
+  constexpr double limit = 2.5;      // standard errors: chance does it once in eighty times
+  constexpr double smallest = 1e-3;  // hPa: less is the rounding of a file
+  return statistics.samples > 0 && expected > 0.0 &&
+         std::abs(statistics.bias) > std::max(limit * expected, smallest);
+}
+
+std::string HeldOutPart::text() const {
+  return fmt::format(
+      "{}, held out, is off by {:+.3f} hPa (rms {:.3f} hPa), where the fit lets expect 0 +- {:.3f} hPa: "
+      "something changes that the model does not have, be it with time, with the flight, or with what was "
+      "not "
+      "flown in the fit",
+      flight, statistics.bias, statistics.rms, expected);
 }
 
 }  // namespace pcor

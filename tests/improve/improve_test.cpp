@@ -180,7 +180,7 @@ TEST_F(Improve, DropsWhatHeldOutFlightsContradict) {
 
 TEST_F(Improve, AddsNothingOfWhichTheWrongChoiceDoesHarm) {
   Diagnosis unclear = diagnosis(Verdict::ambiguous, {"static-beta-odd"});
-  unclear.noise_rms = 0.3;
+  unclear.noise_rms_with_findings = 0.3;
   pcor::Alias alias;
   alias.effect = "lams-azimuth";
   unclear.findings[0].aliases = {alias};
@@ -283,10 +283,58 @@ TEST_F(Improve, StopsAfterAsManyStepsAsAreAllowed) {
   EXPECT_THAT(improvement.why_stopped, HasSubstr("as many as were allowed"));
 }
 
-TEST_F(Improve, HasOneNoiseFloorForAllRungs) {
+TEST_F(Improve, TellsTheNoiseOfEveryFitAsTheFitDoes) {
   diagnoses_ = {diagnosis(Verdict::identified, {"static-lag"}), diagnosis(Verdict::silent)};
   rms_ = {1.0, 0.5};
-  for (const ImproveStep& step : run().steps) EXPECT_DOUBLE_EQ(step.noise_rms, 0.25);
+  const Improvement improvement = run();
+  EXPECT_DOUBLE_EQ(improvement.steps[0].noise_rms, 0.5);
+  EXPECT_DOUBLE_EQ(improvement.steps[1].noise_rms, 0.25);
+}
+
+TEST_F(Improve, TakesNoStepThatMakesTheHeldOutResidualWorse) {
+  diagnoses_ = {diagnosis(Verdict::identified, {"static-lag"})};
+  rms_ = {1.0, 1.0001};
+  const Improvement improvement = run();
+  EXPECT_THAT(added(improvement), ElementsAre(""));
+  EXPECT_THAT(improvement.why_stopped, HasSubstr("static-lag was tried and dropped"));
+}
+
+/// A fit whose held-out part was `before` and is `after`, with the gain that a minute-by-minute count found.
+RefitResult held_out(RefitResult fit, double before, double after, double gain, double gain_error) {
+  fit.flights.back().before.rms = before;
+  fit.flights.back().after.rms = after;
+  fit.flights.back().gain = gain;
+  fit.flights.back().gain_error = gain_error;
+  return fit;
+}
+
+TEST_F(Improve, CallsAModelWorseThatIsWorseThanTheOneGiven) {
+  diagnoses_ = {diagnosis(Verdict::silent)};
+  loop_.refit = [this](const ModelFile& model) { return held_out(fitted(model), 0.3, 0.4, -500.0, 100.0); };
+  EXPECT_THAT(run().worse, HasSubstr("1.3333 times that of the model as it was given"));
+  EXPECT_THAT(run().worse, HasSubstr("500 +- 100"));
+  loop_.refit = [this](const ModelFile& model) { return held_out(fitted(model), 0.3, 0.301, -9.0, 10.0); };
+  EXPECT_EQ(run().worse, "") << "by less than chance";
+  loop_.refit = [this](const ModelFile& model) { return held_out(fitted(model), 0.4, 0.3, 500.0, 100.0); };
+  EXPECT_EQ(run().worse, "");
+}
+
+TEST_F(Improve, DoesNotEndSilentWhereWhatIsHeldOutIsOff) {
+  diagnoses_ = {diagnosis(Verdict::silent)};
+  loop_.refit = [this](const ModelFile& model) {
+    RefitResult fit = held_out(fitted(model), 0.5, 0.272, 500.0, 100.0);
+    fit.flights.back().flight = "later.nc";
+    fit.flights.back().after.bias = 0.14;
+    fit.flights.back().expected_bias = 0.03;
+    return fit;
+  };
+  const Improvement improvement = run();
+  EXPECT_EQ(improvement.steps.back().diagnosis.verdict, Verdict::unexplained);
+  EXPECT_THAT(
+      improvement.why_stopped,
+      HasSubstr(
+          "later.nc, held out, is off by +0.140 hPa (rms 0.272 hPa), where the fit lets expect 0 +- 0.030 "
+          "hPa"));
 }
 
 TEST_F(Improve, WithoutHeldOutFlightsPartsInTurnCount) {

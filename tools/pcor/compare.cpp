@@ -39,6 +39,7 @@ nlohmann::ordered_json as_json(const ModelComparison& model) {
   result.update(as_json(model.all));
   result["rms_over_noise"] = model.all.rms_over_noise();
   result["r2"] = model.r_squared;
+  result["flaps_out"] = as_json(model.flaps_out);
   result["samples_per_independent"] = model.samples_per_independent;
   result["regimes"] = as_json(model.regimes);
   result["bands"] = as_json(model.bands);
@@ -98,6 +99,7 @@ void print_row(const std::string& name, const Statistics& s) {
 /// Of the regimes and bands, those that matter: where the model fails most.
 void print_model(const ModelComparison& model, bool with_name) {
   if (with_name) fmt::print("\n{}\n", model.name);
+  print_flaps_out(model.flaps_out, "the comparison");
   fmt::print("\n{:<32} {:>8} {:>9} {:>9} {:>9} {:>9} {:>7}\n", "residual, hPa", "samples", "bias", "scatter",
              "rms", "noise", "ratio");
   print_row("all", model.all);
@@ -135,6 +137,8 @@ void print(const Comparison& comparison, const Options& options) {
   fmt::print("residual = static pressure of the reference ({}) less that of the model\n",
              comparison.reference);
   fmt::print("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));
+  if (comparison.models.size() > 1)
+    fmt::print("noise is that of the model that leaves least of it, one for all\n");
   for (const ModelComparison& model : comparison.models) print_model(model, comparison.models.size() > 1);
   if (comparison.total_pressure) {
     const LineFit& total = *comparison.total_pressure;

@@ -42,9 +42,11 @@ void add_flight_options(CLI::App& command, ComparisonOptions& options) {
   command.add_option("--min-airspeed", options.least_airspeed, "m/s; slower samples are left out")
       ->check(is_amount())
       ->capture_default_str();
-  command.add_option("--max-flaps", options.most_flaps, "percent; samples with more flaps are left out")
-      ->check(is_amount())
-      ->capture_default_str();
+  command
+      .add_option("--max-flaps", options.most_flaps,
+                  "percent; samples with more flaps are left out; not given it is 5, and none is left out "
+                  "where an effect of the model reads the flaps")
+      ->check(is_amount());
   command
       .add_option("--time-stamp", options.time_stamp,
                   "whether the time of a record is the beginning or the middle of its second")
@@ -96,8 +98,7 @@ std::string command_line(const ComparisonOptions& options) {
   if (!options.intervals.empty()) line += "--intervals " + quoted(options.intervals) + " ";
   if (options.least_airspeed != MaskOptions{}.least_airspeed)
     line += fmt::format("--min-airspeed {} ", options.least_airspeed);
-  if (options.most_flaps != MaskOptions{}.most_flaps)
-    line += fmt::format("--max-flaps {} ", options.most_flaps);
+  if (options.most_flaps) line += fmt::format("--max-flaps {} ", *options.most_flaps);
   if (options.time_stamp != "begin") line += "--time-stamp " + options.time_stamp + " ";
   line.pop_back();
   return line;
@@ -110,6 +111,10 @@ nlohmann::ordered_json as_json(const Statistics& statistics) {
           {"rms_hpa", statistics.rms},
           {"scatter_hpa", statistics.scatter()},
           {"noise_rms_hpa", statistics.noise_rms}};
+}
+
+void print_flaps_out(const Statistics& flaps_out, const std::string& of_what) {
+  if (flaps_out.samples > 0) fmt::print("{}\n", flaps_out_text(flaps_out, of_what));
 }
 
 nlohmann::ordered_json masks_as_json(const std::array<std::size_t, mask_count>& masks) {

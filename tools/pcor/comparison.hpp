@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,7 @@ struct ComparisonOptions {
   std::vector<std::string> exclude{};
   std::string intervals{};
   double least_airspeed = MaskOptions{}.least_airspeed;
-  double most_flaps = MaskOptions{}.most_flaps;
+  std::optional<double> most_flaps{};
   std::string time_stamp = "begin";
 };
 
@@ -45,6 +46,9 @@ std::string command_line(const ComparisonOptions& options);
 std::vector<std::filesystem::path> flight_paths(const ComparisonOptions& options);
 
 nlohmann::ordered_json as_json(const Statistics& statistics);
+
+/// Prints what the residual is where flaps are out, on a line of its own; nothing where none are.
+void print_flaps_out(const Statistics& flaps_out, const std::string& of_what);
 nlohmann::ordered_json masks_as_json(const std::array<std::size_t, mask_count>& masks);
 
 }  // namespace pcor::tool

@@ -143,8 +143,11 @@ void print(const Diagnosis& diagnosis, const Options& options) {
   fmt::print("reference: {}\n", diagnosis.reference);
   fmt::print("used {} samples; not used: {}\n", diagnosis.samples, mask_text(diagnosis.masks));
   fmt::print(
-      "rms {:.3f} hPa; {:.3f} with the free coefficients refitted, weighted by the noise; noise {:.3f} hPa\n",
-      diagnosis.rms_given, diagnosis.residual_rms, diagnosis.noise_rms);
+      "rms {:.3f} hPa; noise {:.3f} hPa; rms {:.3f} hPa with the free coefficients fitted again, linearised "
+      "and "
+      "weighted by the noise\n",
+      diagnosis.rms_given, diagnosis.noise_rms, diagnosis.residual_rms);
+  print_flaps_out(diagnosis.flaps_out, "the diagnosis");
   print_findings(diagnosis.findings);
   print_unexplained(diagnosis.unexplained);
   print_others(diagnosis, options.all);

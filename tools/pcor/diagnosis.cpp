@@ -231,7 +231,14 @@ Json as_json(const Diagnosis& diagnosis) {
   json["residual_rms_hpa"] = diagnosis.residual_rms;
   json["residual_rms_held_out_hpa"] = diagnosis.residual_rms_held_out;
   json["noise_rms_hpa"] = diagnosis.noise_rms;
+  json["noise_rms_with_findings_hpa"] = diagnosis.noise_rms_with_findings;
   json["samples"] = diagnosis.samples;
+  json["flaps_out"] = as_json(diagnosis.flaps_out);
+  json["held_out"] = list_of(diagnosis.held_out, [](const HeldOutPart& part) {
+    Json entry{{"name", part.flight}, {"is_off", part.is_off()}, {"expected_bias_hpa", part.expected}};
+    entry.update(as_json(part.statistics));
+    return entry;
+  });
   json["masks"] = masks_as_json(diagnosis.masks);
   json["statistics_seconds"] = diagnosis.statistics_seconds;
   json["notes"] = diagnosis.notes;

@@ -11,6 +11,7 @@
 #include "comparison.hpp"
 #include "diagnosis.hpp"
 #include "progress.hpp"
+#include "refusal.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -25,6 +26,7 @@ struct Options {
   std::vector<std::string> holdout;
   double training_share = 1.0;
   bool trace_variables = false;
+  bool force = false;
 };
 
 using tool::as_json;
@@ -50,6 +52,8 @@ nlohmann::ordered_json as_json(const Improvement& improvement, const Options& op
   json["unexplained"] = as_json(improvement.steps.back().diagnosis.unexplained);
   json["why_stopped"] = improvement.why_stopped;
   json["holdout_is_flights"] = improvement.holdout_is_flights;
+  json["worse"] = improvement.worse;
+  json["flaps_out"] = as_json(improvement.fit.flaps_out);
   json["notes"] = improvement.fit.notes;
   json["model"] = options.output;
   return json;
@@ -57,8 +61,10 @@ nlohmann::ordered_json as_json(const Improvement& improvement, const Options& op
 
 void print(const Improvement& improvement, const Options& options) {
   fmt::print("reference: {}\n", improvement.fit.reference_text);
-  fmt::print("fitted to {} samples; not used: {}\n\n", improvement.fit.samples,
+  fmt::print("fitted to {} samples; not used: {}\n", improvement.fit.samples,
              mask_text(improvement.fit.masks));
+  print_flaps_out(improvement.fit.flaps_out, "the fit");
+  fmt::print("\n");
   fmt::print("{:<24} {:>10} {:>10} {:>10} {:>13}\n", "rms, hPa", "training", "held out", "noise",
              "coefficients");
   for (const ImproveStep& step : improvement.steps) {
@@ -67,7 +73,9 @@ void print(const Improvement& improvement, const Options& options) {
                step.rms_holdout, step.noise_rms, step.terms);
   }
   if (!improvement.holdout_is_flights)
-    fmt::print("held out are five parts of the flights in turn; name whole flights with --holdout\n");
+    fmt::print(
+        "held out are five parts of the flights in turn, without outliers; name whole flights with "
+        "--holdout\n");
   fmt::print("\n");
   for (const ImproveStep& step : improvement.steps) fmt::print("{}\n", step.learnt);
   fmt::print("stopped: {}\n", improvement.why_stopped);
@@ -107,6 +115,7 @@ void run(const Options& options) {
     improve_with.refit.progress = [&bar](std::size_t done, std::size_t total) { bar->show(done, total); };
     improvement = improve(flight_paths(options.comparison), model, *reference, improve_with);
   }
+  refuse_worse(improvement.worse, options.force, improvement.model);
   save_model(improvement.model, options.output, inputs);
   if (!options.common.report.empty())
     write_report(improvement_report(improvement, model), options.common.report);
@@ -146,6 +155,7 @@ std::function<void()> add_improve(CLI::App& program) {
                    "loss function of the fits, which limits the weight of outliers; none: least squares")
       ->check(CLI::IsMember({"tukey", "huber", "soft-l1", "cauchy", "none"}))
       ->capture_default_str();
+  add_force_option(*command, options->force);
   add_common_options(*command, options->common);
   return [options] { run(*options); };
 }

@@ -137,6 +137,7 @@ nlohmann::ordered_json as_json(const RefitResult& result) {
   json["masks"] = masks_as_json(result.masks);
   if (!result.worse.empty()) json["worse"] = result.worse;
   json["warnings"] = result.warnings;
+  json["flaps_out"] = as_json(result.flaps_out);
   json["notes"] = result.notes;
   return json;
 }
@@ -154,7 +155,9 @@ void print_flights(const RefitResult& result) {
 void print_result(const RefitResult& result) {
   for (const std::string& warning : result.warnings) fmt::print("Warning: {}.\n\n", warning);
   fmt::print("reference: {}\n", result.reference_text);
-  fmt::print("fitted to {} samples; not used: {}\n\n", result.samples, mask_text(result.masks));
+  fmt::print("fitted to {} samples; not used: {}\n", result.samples, mask_text(result.masks));
+  print_flaps_out(result.flaps_out, "the fit");
+  fmt::print("\n");
   fmt::print("{:<36} {:>13} {:>13} {:>13} {:>13}  {}\n", "coefficient", "before", "after", "std. error",
              "by jackknife", "unit");
   for (const FittedParameter& p : result.parameters) {

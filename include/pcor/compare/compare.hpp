@@ -41,6 +41,7 @@ struct ModelComparison {
   std::vector<PartStatistics> bands;    ///< altitude, Mach, angle of attack, sideslip
   std::vector<PartStatistics> flights;
   std::vector<WorstInterval> worst;  ///< at most five, the worst first
+  Statistics flaps_out;              ///< of the samples that take no part because flaps are out
 };
 
 /// The residuals of one flight, one value for each record.
@@ -48,6 +49,7 @@ struct FlightResiduals {
   std::shared_ptr<const FlightSamples> samples;
   std::vector<Mask> mask;                   ///< of the first model; the samples used are those of all models
   std::vector<std::vector<double>> values;  ///< of each model, hPa; NaN where the sample is not used
+  std::vector<std::vector<double>> flaps_out;  ///< the same at samples left out for nothing but their flaps
   std::vector<std::vector<double>> reference_defects;  ///< delta-p that the reference asks of each model, hPa
   std::vector<std::vector<double>> model_defects;      ///< delta-p of each model, hPa
   std::vector<double> static_pressure;                 ///< as measured, hPa

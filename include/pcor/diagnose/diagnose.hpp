@@ -3,6 +3,7 @@
 #include <pcor/laws/model_file.hpp>
 #include <pcor/residuals/reference.hpp>
 #include <pcor/residuals/residuals.hpp>
+#include <pcor/residuals/statistics.hpp>
 
 #include <array>
 #include <cstddef>
@@ -181,18 +182,28 @@ struct Diagnosis {
   std::vector<AbsorbedEffect> absorbed{};
   std::vector<UpperLimit> limits{};  ///< the effect that could be largest first
   std::vector<NotTestable> not_testable{};
-  std::size_t candidates = 0;          ///< effects that were tested
-  double threshold = 0.0;              ///< chi2 that an effect had to exceed
-  double rms_given = 0.0;              ///< of the residual with the model's coefficients as they are, hPa
-  double residual_rms = 0.0;           ///< with the model's free coefficients refitted, hPa
+  std::size_t candidates = 0;  ///< effects that were tested
+  double threshold = 0.0;      ///< chi2 that an effect had to exceed
+  /// Of the residual with the model's coefficients as they are, hPa: what `compare` and `refit` tell of these
+  /// samples.
+  double rms_given = 0.0;
+  double noise_rms = 0.0;  ///< the same of the noise
+  /// With the model's free coefficients fitted again by the diagnosis, hPa: linearised, by generalised least
+  /// squares.
+  double residual_rms = 0.0;
   double residual_rms_held_out = 0.0;  ///< the same on stretches that took no part (five parts in turn), hPa
-  double noise_rms = 0.0;              ///< hPa
+  double noise_rms_with_findings = 0.0;  ///< of what is left when all findings are taken off, hPa
   std::size_t samples = 0;
+  Statistics flaps_out;                 ///< of samples left out because flaps are out, as the model is given
+  std::vector<HeldOutPart> held_out{};  ///< the later parts of flights, or flights that `improve` held out
   std::array<std::size_t, mask_count> masks{};
   std::vector<FlightDiagnosis> flights{};
   double statistics_seconds = 0.0;  ///< time spent in statistics, without reading and without the chain
   std::vector<std::string> notes{};
 };
+
+/// What is held out is part of the verdict: where it is off, nothing is not an answer.
+void judge_held_out(Diagnosis& diagnosis);
 
 /// Looks for the physical effect that a fitted model lacks.
 ///

@@ -83,6 +83,11 @@ struct FlightFit {
   bool holdout = false;
   Statistics before;
   Statistics after;
+  double expected_bias = 0.0;  ///< of a part that was held out, see `HeldOutPart`, hPa
+  /// Fall of the squared residuals by the fit, in units of the noise, and its error from how it differs
+  /// between minutes.
+  double gain = 0.0;
+  double gain_error = 0.0;
 };
 
 struct RefitResult {
@@ -106,6 +111,8 @@ struct RefitResult {
   std::array<std::size_t, mask_count> masks{};
   std::vector<Omission> omissions{};
   std::vector<FlightFit> flights{};
+  Statistics
+      flaps_out;  ///< of samples that are in no fit because flaps are out, with the fitted coefficients
   std::string reference_text{};
   /// Why the fit's own numbers call it worse than the coefficients of the file; empty where they do not.
   std::string worse{};

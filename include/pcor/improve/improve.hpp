@@ -30,7 +30,7 @@ struct ImproveStep {
   double rms_train = 0.0;              ///< hPa, on the samples of the fit
   /// On the held-out flights or parts, hPa; without any, on stretches that took no part, five parts in turn.
   double rms_holdout = 0.0;
-  double noise_rms = 0.0;  ///< hPa
+  double noise_rms = 0.0;  ///< hPa, of the residual of this rung
   std::size_t terms = 0;   ///< free coefficients
   std::string learnt{};    ///< a sentence: what the step taught
   Diagnosis diagnosis{};   ///< of the model at this rung: what is still missing
@@ -42,6 +42,8 @@ struct Improvement {
   std::string why_stopped{};        ///< a sentence
   RefitResult fit;                  ///< of the best model
   bool holdout_is_flights = false;  ///< rms_holdout is of held-out flights or parts, not of parts in turn
+  /// Why the best model is worse than the one to begin with, as it was given; empty where it is not.
+  std::string worse{};
 };
 
 /// Refits the model, learns what is missing, adds it, and begins again, until nothing is missing, what is

@@ -19,11 +19,12 @@ enum class Mask : std::uint8_t {
   missing,         ///< a variable that the model reads has no value
   ground,          ///< the aircraft stands, taxis or rolls
   low_speed,       ///< airspeed below the limit
-  flaps,           ///< flaps are out
   regime,          ///< the user excluded the regime
+  frozen,          ///< a sensor that the model or the reference reads stands still
   reference,       ///< a variable of the reference has no value; the laser is off
-  laser_unlocked,  ///< the laser airspeed is far from that of the pressures
+  laser_unlocked,  ///< the laser airspeed is far from what the pressures let expect
   impossible,      ///< the values are there, but no delta-p follows from them
+  flaps,           ///< flaps are out, and nothing else speaks against the sample
   count
 };
 
@@ -39,12 +40,19 @@ extern const std::array<MaskFacts, mask_count> mask_facts;
 /// For messages: the reasons why samples are not used, the largest first: "1203 on the ground, 17 laser ...".
 std::string mask_text(const std::array<std::size_t, mask_count>& counts);
 
+/// Flaps up to here are in, percent.
+inline constexpr double flaps_in = 5.0;
+
 /// Which samples take part in a comparison.
 struct MaskOptions {
-  double least_airspeed = 60.0;       ///< m/s; an aircraft flies above it
-  double most_flaps = 5.0;            ///< percent, where the flight records flaps
-  double most_laser_departure = 8.0;  ///< m/s between the laser airspeed and that of the pressures
-  std::vector<Regime> exclude{};      ///< regimes that take no part, besides the ground
+  double least_airspeed = 60.0;  ///< m/s; an aircraft flies above it
+  /// Percent, where the flight records flaps. Not given it is `flaps_in`, but for a model of which an effect
+  /// reads the flaps: that describes all samples, and all take part.
+  std::optional<double> most_flaps{};
+  /// Robust standard deviations of the flight, beside 2 % of the airspeed, between the laser airspeed and
+  /// what the pressures let expect; beyond them the laser has lost its lock.
+  double most_laser_departure = 6.0;
+  std::vector<Regime> exclude{};  ///< regimes that take no part, besides the ground
   std::optional<UserIntervals> intervals{};
 };
 

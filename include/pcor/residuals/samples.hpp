@@ -13,10 +13,19 @@ namespace pcor {
 
 class Reference;
 
+/// A sensor that stands still for much longer than its noise allows.
+struct FrozenSpan {
+  Quantity quantity = Quantity::count;
+  std::size_t first = 0;  ///< sample
+  std::size_t count = 0;
+};
+
 /// What a model or a reference reads of a flight: quantities as arrays, one value for each record.
 struct ModelSamples {
   std::vector<Quantity> roles{};  ///< those that `Chain::build` is told of
   std::vector<std::pair<Quantity, std::vector<double>>> columns{};
+  std::vector<std::pair<Quantity, std::string>> variables{};  ///< of the file, for what is recorded
+  std::vector<FrozenSpan> frozen{};
 
   const std::vector<double>* find(Quantity quantity) const;
 };
@@ -29,6 +38,7 @@ struct FlightSamples {
   std::vector<double> time{};  ///< middles of the samples, s since 1970 UTC
   FlightMotion motion{};
   std::vector<double> flaps{};        ///< percent; empty: not recorded
+  std::string flaps_variable{};       ///< of the file
   std::vector<Interval> intervals{};  ///< regimes
   ModelSamples model{};
   ModelSamples reference{};          ///< what the reference reads for itself

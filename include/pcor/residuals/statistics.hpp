@@ -1,9 +1,7 @@
 #pragma once
 
-#include <pcor/numerics/noise.hpp>
-
 #include <cstddef>
-#include <vector>
+#include <string>
 
 namespace pcor {
 
@@ -25,9 +23,22 @@ struct Statistics {
 /// Where the noise is not known nothing is said to fail.
 bool fails_more(const Statistics& a, const Statistics& b);
 
-/// Statistics of the residuals of one series at the samples where `used` is true.
-/// @param noise the noise floor of the series
-Statistics statistics_of(const std::vector<double>& residuals, const NoiseFloor& noise,
-                         const std::vector<bool>& used);
+/// "not in the fit: 712 samples with flaps out, residual +2.30 +- 0.40 hPa"; empty where there are none.
+/// @param of_what for example "the fit"
+std::string flaps_out_text(const Statistics& flaps_out, const std::string& of_what);
+
+/// Residuals of a part of a flight that took no part in a fit.
+struct HeldOutPart {
+  std::string flight;
+  Statistics statistics;
+  /// Within which the bias would be, hPa, if the model were as right there as where it was fitted: from how
+  /// the means over five minutes, and over flights, wander in the fit.
+  double expected = 0.0;
+
+  /// Whether the bias is more than chance makes it: beyond 2.5 times what is expected.
+  bool is_off() const;
+  /// What that says, a sentence without its full stop.
+  std::string text() const;
+};
 
 }  // namespace pcor

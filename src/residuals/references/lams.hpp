@@ -1,11 +1,15 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <pcor/residuals/reference.hpp>
 #include <pcor/words/error.hpp>
+#include "residuals/laser_lock.hpp"
+#include "residuals/masks.hpp"
 #include "residuals/reference_on_samples.hpp"
 
 namespace pcor::internal {
@@ -15,7 +19,7 @@ namespace pcor::internal {
 class LamsOnSamples final : public ReferenceOnSamples, private NoisySensor {
  public:
   LamsOnSamples(const FlightSamples& samples, const ModelOnSamples& model)
-      : beam_(*samples.model.find(Quantity::lams_airspeed)), model_(model) {}
+      : beam_(*samples.model.find(Quantity::lams_airspeed)), model_(model), samples_(samples.model) {}
 
   void residuals(const Block& block, const double* parameters, double* out) const override {
     std::vector<double> defect(block.count);
@@ -42,9 +46,14 @@ class LamsOnSamples final : public ReferenceOnSamples, private NoisySensor {
     return std::isnan(state[Quantity::static_defect]) ? Mask::missing : Mask::reference;
   }
 
-  Mask why_not_believed(std::size_t sample, double airspeed, const MaskOptions& options) const override {
-    return std::abs(beam_[sample] - airspeed) > options.most_laser_departure ? Mask::laser_unlocked
-                                                                             : Mask::none;
+  void mark_not_believed(std::vector<Mask>& masks, const std::vector<double>& airspeed,
+                         const MaskOptions& options) const override {
+    const std::vector<double>& p = *samples_.find(Quantity::static_pressure);
+    std::vector<double> ratio = *samples_.find(Quantity::dynamic_pressure);
+    for (std::size_t i = 0; i < ratio.size(); ++i) ratio[i] /= p[i];
+    for (const std::size_t sample :
+         find_unlocked(beam_, airspeed, ratio, used_samples(masks), options.most_laser_departure))
+      masks[sample] = Mask::laser_unlocked;
   }
 
  private:
@@ -94,6 +103,7 @@ class LamsOnSamples final : public ReferenceOnSamples, private NoisySensor {
 
   const std::vector<double>& beam_;
   const ModelOnSamples& model_;
+  const ModelSamples& samples_;
 };
 
 class LamsReference final : public Reference {

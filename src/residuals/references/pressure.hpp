@@ -67,6 +67,7 @@ class PressureReference final : public Reference {
     flight.require_values(variable_);
     ModelSamples samples;
     samples.columns = {{Quantity::corrected_static_pressure, read_values(flight, variable_, conversion)}};
+    samples.variables = {{Quantity::corrected_static_pressure, variable_}};
     return samples;
   }
 

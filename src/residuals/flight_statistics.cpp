@@ -1,0 +1,114 @@
+#include "residuals/flight_statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "numerics/missing.hpp"
+
+namespace pcor::internal {
+namespace {
+
+constexpr double block_length = 300.0;  // s
+
+double mean_square(const std::vector<double>& values) {
+  return std::inner_product(values.begin(), values.end(), values.begin(), 0.0) /
+         static_cast<double>(values.size());
+}
+
+}  // namespace
+
+std::vector<double> only_at(const std::vector<double>& values, const std::vector<std::size_t>& samples) {
+  std::vector<double> result(values.size(), nan);
+  for (const std::size_t i : samples) result[i] = values[i];
+  return result;
+}
+
+std::vector<double> only_where(const std::vector<double>& values, const std::vector<Mask>& masks, Mask mask) {
+  std::vector<double> result = values;
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    if (masks[i] != mask) result[i] = nan;
+  }
+  return result;
+}
+
+NoiseFloor noise_of_flight(const FlightSamples& samples, const std::vector<double>& residual) {
+  return noise_floor(residual, stretches_of(residual, samples.time, samples.step), samples.step);
+}
+
+double memory_of_flight(const FlightSamples& samples, const std::vector<double>& residual,
+                        const NoiseFloor& noise) {
+  std::vector<double> centred = residual;
+  double sum = 0.0;
+  double squares = 0.0;
+  std::size_t count = 0;
+  for (const double value : residual) {
+    if (std::isnan(value)) continue;
+    sum += value;
+    squares += value * value;
+    ++count;
+  }
+  const double mean = sum / static_cast<double>(count);
+  for (double& value : centred) value -= mean;
+  const Autoregression process = autoregression(centred, stretches_of(centred, samples.time, samples.step));
+  const double variance = squares / static_cast<double>(count) - mean * mean;
+  const double memory = process.samples_per_independent(std::sqrt(std::max(variance, 0.0)));
+  return std::isfinite(memory) ? std::max(memory, noise.samples_per_independent)
+                               : noise.samples_per_independent;
+}
+
+ResidualSums sums_of_flight(const FlightSamples& samples, const std::vector<double>& residual,
+                            const NoiseFloor& noise) {
+  const double memory = memory_of_flight(samples, residual, noise);
+  ResidualSums sums;
+  for (std::size_t i = 0; i < residual.size(); ++i) {
+    if (!std::isnan(residual[i])) sums.add(residual[i], noise.local_rms[i], memory);
+  }
+  return sums;
+}
+
+ResidualSums sums_of_flight(const FlightSamples& samples, const std::vector<double>& residual) {
+  return sums_of_flight(samples, residual, noise_of_flight(samples, residual));
+}
+
+ResidualSums flaps_out(const Residuals& residuals, const double* parameters) {
+  const std::vector<Mask>& masks = residuals.mask();
+  if (std::find(masks.begin(), masks.end(), Mask::flaps) == masks.end()) return {};
+  return sums_of_flight(residuals.samples(), only_where(residuals.values(parameters), masks, Mask::flaps));
+}
+
+std::vector<double> means_of_blocks(const FlightSamples& samples, const std::vector<double>& residual) {
+  std::vector<double> means;
+  const double enough = 0.5 * block_length / samples.step;
+  for (std::size_t i = 0; i < residual.size();) {
+    const double end = samples.time[i] + block_length;
+    double sum = 0.0;
+    double count = 0.0;
+    for (; i < residual.size() && samples.time[i] < end; ++i) {
+      if (std::isnan(residual[i])) continue;
+      sum += residual[i];
+      count += 1.0;
+    }
+    if (count >= enough) means.push_back(sum / count);
+  }
+  return means;
+}
+
+double expected_bias(const std::vector<std::vector<double>>& fitted, std::size_t held_out) {
+  std::vector<double> all;
+  std::vector<double> flights;
+  for (const std::vector<double>& blocks : fitted) {
+    if (blocks.empty()) continue;
+    all.insert(all.end(), blocks.begin(), blocks.end());
+    flights.push_back(std::accumulate(blocks.begin(), blocks.end(), 0.0) /
+                      static_cast<double>(blocks.size()));
+  }
+  if (all.empty() || held_out == 0) return 0.0;
+  const double of_blocks =
+      mean_square(all) * (1.0 / static_cast<double>(held_out) + 1.0 / static_cast<double>(all.size()));
+  const double of_flights =
+      flights.size() < 2 ? 0.0 : mean_square(flights) * (1.0 + 1.0 / static_cast<double>(flights.size()));
+  return std::sqrt(std::max(of_blocks, of_flights));
+}
+
+}  // namespace pcor::internal

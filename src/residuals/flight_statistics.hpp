@@ -1,0 +1,51 @@
+#pragma once
+
+#include <pcor/numerics/noise.hpp>
+#include <pcor/residuals/residuals.hpp>
+#include <pcor/residuals/statistics.hpp>
+
+#include <vector>
+
+#include "residuals/residual_sums.hpp"
+
+namespace pcor::internal {
+
+// The one definition of rms, bias and noise of a residual: compare, refit, diagnose and improve print these.
+// The residual is that of `Residuals::values`, exact, one value for each record; every sample that takes part
+// counts once, outliers too.
+
+/// Values at some of the samples, NaN at all others.
+std::vector<double> only_at(const std::vector<double>& values, const std::vector<std::size_t>& samples);
+
+/// Values at the samples with one mask, NaN at all others.
+std::vector<double> only_where(const std::vector<double>& values, const std::vector<Mask>& masks, Mask mask);
+
+/// The noise floor of a flight. @param residual NaN where a sample takes no part
+NoiseFloor noise_of_flight(const FlightSamples& samples, const std::vector<double>& residual);
+
+/// For how many samples one independent one stands: in the residual as it is, with what the model misses, or
+/// in the noise alone, whichever is more.
+double memory_of_flight(const FlightSamples& samples, const std::vector<double>& residual,
+                        const NoiseFloor& noise);
+
+/// The sums of a residual that is NaN where it does not count. @param noise of the flight, which may be that
+/// of more samples
+ResidualSums sums_of_flight(const FlightSamples& samples, const std::vector<double>& residual,
+                            const NoiseFloor& noise);
+
+/// As above, with the noise of these samples alone.
+ResidualSums sums_of_flight(const FlightSamples& samples, const std::vector<double>& residual);
+
+/// The sums over the samples that are left out for nothing but their flaps.
+ResidualSums flaps_out(const Residuals& residuals, const double* parameters);
+
+/// The means of a residual over every five minutes, of which at least half count.
+std::vector<double> means_of_blocks(const FlightSamples& samples, const std::vector<double>& residual);
+
+/// The standard error of the mean of a residual that is held out, were the model as right there as where it
+/// was fitted: by how much the means of blocks, and of flights, differ from zero there. 0 where they say
+/// nothing.
+/// @param fitted means of blocks of each flight @param held_out how many blocks are
+double expected_bias(const std::vector<std::vector<double>>& fitted, std::size_t held_out);
+
+}  // namespace pcor::internal

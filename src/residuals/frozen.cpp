@@ -1,0 +1,134 @@
+#include "residuals/frozen.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <pcor/words/utc.hpp>
+#include "numerics/median.hpp"
+#include "numerics/missing.hpp"
+
+namespace pcor::internal {
+namespace {
+
+constexpr std::size_t fewest_samples = 20;
+constexpr std::size_t fewest_values = 50;  // with fewer a series tells nothing of its noise
+constexpr std::size_t neighbours = 20;
+constexpr std::size_t left_out = 2;
+constexpr double more_than_near = 20.0;
+constexpr double more_than_usual = 5.0;
+constexpr double noisy = 3.0;  // steps of resolution in a second difference
+constexpr std::size_t told = 3;
+
+/// The stretches of one value.
+std::vector<Stretch> runs_of(const std::vector<double>& values, const std::vector<bool>& looked_at) {
+  std::vector<Stretch> runs;
+  double last = nan;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double value = looked_at[i] ? values[i] : nan;
+    if (!std::isnan(value)) {
+      if (value != last) runs.push_back({i, 0});
+      ++runs.back().count;
+    }
+    last = value;
+  }
+  return runs;
+}
+
+/// Whether the noise of a sensor is larger than its resolution.
+bool is_noisy(const std::vector<double>& values, const std::vector<bool>& looked_at) {
+  double resolution = infinity;
+  std::vector<double> bends;
+  for (std::size_t i = 2; i < values.size(); ++i) {
+    if (!looked_at[i - 2] || !looked_at[i - 1] || !looked_at[i]) continue;
+    const double before = values[i - 1] - values[i - 2];
+    const double after = values[i] - values[i - 1];
+    if (std::isnan(before) || std::isnan(after) || (before == 0.0 && after == 0.0)) continue;
+    for (const double step : {std::abs(before), std::abs(after)}) {
+      if (step > 0.0) resolution = std::min(resolution, step);
+    }
+    bends.push_back(std::abs(after - before));
+  }
+  return median(std::move(bends)) >= noisy * resolution;
+}
+
+/// The length of run that the share `part` of the samples does not exceed.
+double usual_length(const std::vector<Stretch>& runs, double part) {
+  std::vector<std::size_t> lengths;
+  std::size_t samples = 0;
+  for (const Stretch& run : runs) {
+    lengths.push_back(run.count);
+    samples += run.count;
+  }
+  std::sort(lengths.begin(), lengths.end());
+  double within = 0.0;
+  for (const std::size_t length : lengths) {
+    within += static_cast<double>(length);
+    if (within >= part * static_cast<double>(samples)) return static_cast<double>(length);
+  }
+  return 0.0;
+}
+
+/// The mean length of the runs around one, but for those that last longest.
+double near_length(const std::vector<Stretch>& runs, std::size_t run) {
+  std::vector<std::size_t> lengths;
+  const std::size_t end = std::min(run + neighbours + 1, runs.size());
+  for (std::size_t i = run - std::min(run, neighbours); i < end; ++i) {
+    if (i != run) lengths.push_back(runs[i].count);
+  }
+  std::sort(lengths.begin(), lengths.end());
+  lengths.resize(lengths.size() - std::min(left_out, lengths.size() - 1));
+  double sum = 0.0;
+  for (const std::size_t length : lengths) sum += static_cast<double>(length);
+  return sum / static_cast<double>(lengths.size());
+}
+
+/// "VLAMS stands still at 131.2 m/s, 2011-11-18 13:20:05 to 13:21:45 UTC (100 samples)".
+std::string told_of(const std::string& variable, Quantity quantity, const std::vector<double>& values,
+                    const std::vector<double>& time, const std::vector<Stretch>& frozen) {
+  std::vector<std::string> spans;
+  const std::string unit(index(quantity) < quantity_count ? facts_of(quantity).unit : "");
+  for (const Stretch& span : frozen) {
+    if (spans.size() == told) break;
+    spans.push_back(fmt::format("at {:.6g}{} from {} to {} UTC ({} samples)", values[span.first],
+                                unit.empty() || unit == "1" ? "" : " " + unit, utc_text(time[span.first]),
+                                utc_text(time[span.first + span.count - 1], "%H:%M:%S"), span.count));
+  }
+  return fmt::format("{} is frozen, {}{}", variable, fmt::join(spans, ", "),
+                     frozen.size() > told ? fmt::format(" and {} times more", frozen.size() - told) : "");
+}
+
+}  // namespace
+
+std::vector<Stretch> find_frozen(const std::vector<double>& values, const std::vector<bool>& looked_at) {
+  const std::vector<Stretch> runs = runs_of(values, looked_at);
+  if (runs.size() < fewest_values) return {};
+  const auto is_long = [](const Stretch& run) { return run.count >= fewest_samples; };
+  if (std::none_of(runs.begin(), runs.end(), is_long)) return {};
+  const double usual = usual_length(runs, is_noisy(values, looked_at) ? 0.5 : 0.9);
+  std::vector<Stretch> frozen;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const auto length = static_cast<double>(runs[i].count);
+    if (is_long(runs[i]) && length >= more_than_usual * usual &&
+        length >= more_than_near * near_length(runs, i))
+      frozen.push_back(runs[i]);
+  }
+  return frozen;
+}
+
+void mark_frozen(FlightSamples& samples, double least_airspeed) {
+  std::vector<bool> flying;
+  for (const double airspeed : samples.motion.airspeed) flying.push_back(airspeed >= least_airspeed);
+  for (ModelSamples* const part : {&samples.model, &samples.reference}) {
+    for (const auto& [quantity, variable] : part->variables) {
+      const std::vector<double>& values = *part->find(quantity);
+      const std::vector<Stretch> frozen = find_frozen(values, flying);
+      for (const Stretch& span : frozen) part->frozen.push_back({quantity, span.first, span.count});
+      if (!frozen.empty()) samples.notes.push_back(told_of(variable, quantity, values, samples.time, frozen));
+    }
+  }
+}
+
+}  // namespace pcor::internal

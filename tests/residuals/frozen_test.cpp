@@ -1,0 +1,107 @@
+#include "residuals/frozen.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+using pcor::internal::find_frozen;
+using testing::IsEmpty;
+
+namespace {
+
+using Series = std::vector<double>;
+
+struct Sensor {
+  double noise = 0.3;       ///< from one sample to the next
+  double resolution = 0.0;  ///< 0: that of a double
+  double turn = 400.0;      ///< s in which the flight changes
+  double swing = 30.0;
+};
+
+/// Three hours of a sensor.
+Series recorded(const Sensor& sensor, unsigned seed) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal;
+  Series values;
+  for (int i = 0; i < 10800; ++i) {
+    double value = 300.0 + sensor.swing * std::sin(i / sensor.turn) + sensor.noise * normal(engine);
+    if (sensor.resolution > 0.0) value = sensor.resolution * std::round(value / sensor.resolution);
+    values.push_back(value);
+  }
+  return values;
+}
+
+void freeze(Series& values, std::size_t first, std::size_t count) {
+  for (std::size_t i = first + 1; i < first + count; ++i) values[i] = values[first];
+}
+
+std::vector<std::pair<std::size_t, std::size_t>> found(const Series& values) {
+  std::vector<std::pair<std::size_t, std::size_t>> spans;
+  for (const pcor::Stretch& span : find_frozen(values, std::vector<bool>(values.size(), true)))
+    spans.emplace_back(span.first, span.count);
+  return spans;
+}
+
+using Spans = std::vector<std::pair<std::size_t, std::size_t>>;
+
+TEST(Frozen, IsASensorThatStandsStillForAMinute) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    Series values = recorded({}, seed);
+    EXPECT_THAT(found(values), IsEmpty());
+    freeze(values, 5000, 60);
+    EXPECT_EQ(found(values), Spans({{5000, 60}}));
+  }
+}
+
+TEST(Frozen, IsFoundAsOftenAndAsLongAsItHappens) {
+  Series values = recorded({}, 1);
+  const Spans spans{{1000, 30}, {1100, 600}, {1705, 25}, {4000, 3000}};
+  for (const auto& [first, count] : spans) freeze(values, first, count);
+  EXPECT_EQ(found(values), spans);
+}
+
+TEST(Frozen, IsFoundThoughTheNumbersAreCoarse) {
+  // Steps of a third of the noise: one value in seven repeats itself.
+  Series values = recorded({0.3, 0.1}, 1);
+  freeze(values, 5000, 60);
+  EXPECT_EQ(found(values), Spans({{5000, 60}}));
+  // Whole numbers, of which every other repeats itself at least.
+  values = recorded({0.5, 1.0}, 1);
+  freeze(values, 5000, 300);
+  EXPECT_EQ(found(values), Spans({{5000, 300}}));
+}
+
+TEST(Frozen, IsNotWhatIsCoarseOrSlowOrAtRest) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    EXPECT_THAT(found(recorded({0.5, 1.0}, seed)), IsEmpty()) << "whole numbers";
+    EXPECT_THAT(found(recorded({0.05, 1.0}, seed)), IsEmpty()) << "whole numbers without noise";
+    EXPECT_THAT(found(recorded({0.01, 0.1, 3000.0, 5.0}, seed)), IsEmpty()) << "a temperature that creeps";
+    EXPECT_THAT(found(recorded({0.0, 0.0, 400.0, 0.0}, seed)), IsEmpty()) << "a constant";
+    // Out for ten minutes at a time, in motion for ten seconds.
+    Series flaps(10800, 0.0);
+    for (std::size_t first = 0; first + 1200 < flaps.size(); first += 1200) {
+      for (std::size_t i = 0; i < 620; ++i)
+        flaps[first + i] = std::min({50.0, 5.0 * static_cast<double>(i), 5.0 * static_cast<double>(620 - i)});
+    }
+    EXPECT_THAT(found(flaps), IsEmpty()) << "flaps";
+    // Calm air for half of the flight, in which the steps show.
+    Series calm = recorded({0.02, 0.1, 2000.0, 3.0}, seed);
+    const Series rough = recorded({0.5, 0.1, 2000.0, 3.0}, seed);
+    std::copy_n(rough.begin(), 5400, calm.begin());
+    EXPECT_THAT(found(calm), IsEmpty()) << "calm air after rough";
+  }
+}
+
+TEST(Frozen, IsNotLookedForWhereNothingIsLookedAt) {
+  Series values = recorded({}, 1);
+  freeze(values, 0, 900);
+  std::vector<bool> flying(values.size(), true);
+  std::fill_n(flying.begin(), 900, false);
+  EXPECT_THAT(find_frozen(values, flying), IsEmpty());
+  for (std::size_t i = 2000; i < 2300; ++i) values[i] = std::nan("");
+  EXPECT_THAT(find_frozen(values, flying), IsEmpty()) << "what is missing is not frozen";
+}
+
+}  // namespace
