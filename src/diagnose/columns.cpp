@@ -117,6 +117,18 @@ void bridge(Eigen::Ref<Eigen::VectorXf> column, const std::vector<std::size_t>& 
   }
 }
 
+/// The samples used, and those between them that are not because flaps are out.
+std::vector<std::size_t> with_flaps_out(const std::vector<Mask>& masks,
+                                        const std::vector<std::size_t>& used) {
+  if (used.empty()) return used;
+  const bool all = used.size() == used_samples(masks).size();
+  std::vector<std::size_t> result;
+  for (std::size_t i = 0; i < (all ? masks.size() : used.back() + 1); ++i) {
+    if (masks[i] == Mask::none || masks[i] == Mask::flaps) result.push_back(i);
+  }
+  return result;
+}
+
 std::vector<Where> places_of(const CandidateSet& set) {
   std::vector<Where> places;
   for (const Candidate& candidate : set.candidates) {
@@ -165,7 +177,7 @@ FlightColumns find_columns(std::shared_ptr<const FlightSamples> extended, const 
   columns.samples = extended;
   columns.mask = residuals.mask();
   columns.exact = residuals.values(start.data());
-  const std::vector<std::size_t> used = used_samples(columns.mask, first_part);
+  const std::vector<std::size_t> used = with_flaps_out(columns.mask, used_samples(columns.mask, first_part));
   std::vector<std::size_t> wanted = free_parameters(model);
   const std::size_t base_count = wanted.size();
   std::size_t own_count = 0;
@@ -173,7 +185,9 @@ FlightColumns find_columns(std::shared_ptr<const FlightSamples> extended, const 
   for (std::size_t k = 0; k < places.size(); ++k) wanted.push_back(own_count + k);
   const Linearised found = linearised(residuals, extended, with_additions, reference, mask, used, wanted);
   columns.given.assign(records, nan);
-  for (std::size_t k = 0; k < used.size(); ++k) columns.given[used[k]] = found.residual[k];
+  columns.flaps_out.assign(records, nan);
+  for (std::size_t k = 0; k < used.size(); ++k)
+    (columns.mask[used[k]] == Mask::none ? columns.given : columns.flaps_out)[used[k]] = found.residual[k];
   columns.residual = columns.given;
   columns.base.setZero(as_index(records), as_index(base_count));
   for (std::size_t c = 0; c < base_count; ++c) {

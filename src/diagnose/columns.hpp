@@ -23,6 +23,9 @@ struct FlightColumns {
   std::vector<double> residual;  ///< the same; in the diagnosis outliers are replaced, hPa
   /// The residual as it is, not measured at the sensor, of every sample, hPa.
   std::vector<double> exact{};
+  /// As `given`, of samples that are not used because flaps are out; NaN at all others. Columns are found for
+  /// them too.
+  std::vector<double> flaps_out{};
   Eigen::MatrixXf base;        ///< of the model's free coefficients, hPa per unit
   Eigen::MatrixXf candidates;  ///< of the tested parameters of all candidates, one after another
   /// How the flight was flown, for smooth functions and pictures; NaN everywhere where not known.

@@ -14,6 +14,7 @@
 #include "diagnose/candidates.hpp"
 #include "diagnose/columns.hpp"
 #include "diagnose/findings.hpp"
+#include "diagnose/flaps.hpp"
 #include "diagnose/rms.hpp"
 #include "diagnose/unexplained.hpp"
 #include "numerics/missing.hpp"
@@ -167,20 +168,6 @@ void add_statistics(const std::vector<FlightColumns>& flights, double share, Dia
     diagnosis.held_out[i].expected = expected_bias(blocks, held_out_blocks[i]);
 }
 
-/// A flap that matters is told, though its samples take no part.
-void judge_flaps(const CandidateSet& set, Diagnosis& diagnosis) {
-  constexpr double limit = 3.0;  // standard errors
-  const Statistics& out = diagnosis.flaps_out;
-  if (out.samples == 0 || !(std::abs(out.bias) > limit * out.bias_error)) return;
-  const bool can_be_added =
-      std::any_of(set.candidates.begin(), set.candidates.end(),
-                  [](const Candidate& candidate) { return candidate.effect.id == "flaps-gear"; });
-  diagnosis.notes.push_back(fmt::format(
-      "{}: flaps or gear, or the slow flight that goes with them, do what the model does not have{}",
-      flaps_out_text(diagnosis.flaps_out, "the diagnosis"),
-      can_be_added ? "; pcor add flaps-gear takes these samples into the fit and the diagnosis" : ""));
-}
-
 Verdict verdict_of(const Diagnosis& diagnosis, double explained, double left) {
   constexpr double notable = 0.03;  // of what was explained
   if (diagnosis.findings.empty())
@@ -273,7 +260,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
     throw Error(fmt::format("{} samples are left to diagnose, and {} are the fewest that tell anything: {}",
                             diagnosis.samples, fewest_samples, mask_text(diagnosis.masks)));
   }
-  judge_flaps(set, diagnosis);
+  const FlapsCandidates flaps = find_flaps_candidates(set, columns);
   drop_untestable(set, columns);
   diagnosis.candidates = static_cast<std::size_t>(
       std::count_if(set.candidates.begin(), set.candidates.end(),
@@ -300,6 +287,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
   for (std::size_t f = 0; f < structure.traced.size(); ++f)
     diagnosis.flights[f].traced = std::move(structure.traced[f]);
   if (structure.overrules) overrule(diagnosis);
+  if (!flaps.empty()) diagnose_flaps(analysis, flaps, groups_of(flaps.candidates), options.seed, diagnosis);
   double explained = 0.0;
   for (const Finding& finding : diagnosis.findings) explained += finding.chi2;
   diagnosis.verdict = verdict_of(diagnosis, explained, structure.left);

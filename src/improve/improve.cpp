@@ -48,6 +48,12 @@ bool has(const ModelFile& model, const std::string& effect) {
                      [&effect](const ModelEffect& each) { return each.id == effect; });
 }
 
+/// The coefficients with which an effect does nothing.
+std::vector<double> neutral_of(const ModelEffect& effect) {
+  return effect.is_formula() ? std::vector<double>(effect.parameters.size(), 0.0)
+                             : neutral_effect(effect.id).parameters;
+}
+
 std::string id_of_trace(const std::string& variable) {
   std::string id = "traced-";
   for (const char letter : variable) {
@@ -154,6 +160,10 @@ class Climb {
     }
     first.learnt = fmt::format("the coefficients fitted again: rms {} before, {} after",
                                shown(fit.rms_before), shown(fit.rms));
+    const Judged by_fit = judged(fit, loop_.has_holdout);
+    if (by_fit.rms_before > 0.0) growth_ = by_fit.rms_after / by_fit.rms_before;
+    gain_ = by_fit.gain;
+    gain_error_ = std::sqrt(by_fit.gain_variance);
     take(std::move(first), std::move(fit));
   }
 
@@ -171,12 +181,11 @@ class Climb {
   std::string why_worse() const {
     constexpr double much = 1.02;
     constexpr double surely = 2.0;  // standard deviations
-    if (!(growth_ > much) && !(growth_ > 1.0 && gain_ < -surely * std::sqrt(gain_variance_))) return "";
+    if (!(growth_ > much) && !(growth_ > 1.0 && gain_ < -surely * gain_error_)) return "";
     return fmt::format(
-        "{} the rms of the best model is {:.4f} times that of the model as it was given, and its squared "
-        "residuals in units of the noise are more by {:.0f} +- {:.0f}",
-        loop_.has_holdout ? "on what was held out" : "on these flights", growth_, -gain_,
-        std::sqrt(gain_variance_));
+        "{} the rms of the best model is {:.4f} times that of the model as it was given (fitting the latter "
+        "again added {:.0f} +- {:.0f} to its squared residuals in units of the noise)",
+        loop_.has_holdout ? "on what was held out" : "on these flights", growth_, -gain_, gain_error_);
   }
 
   void climb_on() {
@@ -298,8 +307,11 @@ class Climb {
     double after = step.rms_holdout;
     // Where the model describes more samples than before, those with flaps out, both are compared on these.
     if (fit.samples != result_.fit.samples) {
-      const Judged same_samples = judged(fit, loop_.has_holdout);
-      train = fit.rms_before;
+      ModelEffect nothing = candidate.effect;
+      nothing.parameters = neutral_of(candidate.effect);
+      const RefitResult from_before = loop_.refit(loop_.add(result_.fit.model, nothing));
+      const Judged same_samples = judged(from_before, loop_.has_holdout);
+      train = from_before.rms_before;
       before = same_samples.rms_before;
       after = same_samples.rms_after;
     }
@@ -317,6 +329,7 @@ class Climb {
     }
     step.learnt = fmt::format("{}: {}; held-out rms {} before, {} after{}", id, coefficients_of(fit, id),
                               shown(before), shown(after), candidate.caution);
+    growth_ *= after / before;
     take(std::move(step), std::move(fit));
     return "";
   }
@@ -345,20 +358,16 @@ class Climb {
       if (flight.holdout) held_out.push_back({flight.flight, flight.after, flight.expected_bias});
     }
     judge_held_out(step.diagnosis);
-    const Judged fitted = judged(fit, loop_.has_holdout);
-    if (fitted.rms_before > 0.0) growth_ *= fitted.rms_after / fitted.rms_before;
-    gain_ += fitted.gain;
-    gain_variance_ += fitted.gain_variance;
     result_.steps.push_back(std::move(step));
     result_.fit = std::move(fit);
   }
 
   const ImproveLoop& loop_;
   Improvement result_;
-  // Of the ladder as a whole, on what is held out, else on all samples.
-  double growth_ = 1.0;
-  double gain_ = 0.0;
-  double gain_variance_ = 0.0;
+  // On what is held out, else on all samples.
+  double growth_ = 1.0;  // of the rms, over the whole ladder
+  double gain_ = 0.0;    // by the first fit
+  double gain_error_ = 0.0;
 };
 
 /// The variables that all the flights have.

@@ -18,8 +18,10 @@ constexpr std::size_t fewest_values = 50;  // with fewer a series tells nothing 
 constexpr std::size_t neighbours = 20;
 constexpr std::size_t left_out = 2;
 constexpr double more_than_near = 20.0;
-constexpr double more_than_usual = 5.0;
-constexpr double noisy = 3.0;  // steps of resolution in a second difference
+constexpr double more_than_half = 5.0;
+constexpr double more_than_most = 10.0;
+constexpr double noisy = 3.0;        // steps of resolution in a second difference
+constexpr std::size_t around = 300;  // samples on either side
 constexpr std::size_t told = 3;
 
 /// The stretches of one value.
@@ -37,21 +39,33 @@ std::vector<Stretch> runs_of(const std::vector<double>& values, const std::vecto
   return runs;
 }
 
-/// Whether the noise of a sensor is larger than its resolution.
-bool is_noisy(const std::vector<double>& values, const std::vector<bool>& looked_at) {
+/// The smallest step of a series.
+double resolution_of(const std::vector<double>& values) {
   double resolution = infinity;
-  std::vector<double> bends;
-  for (std::size_t i = 2; i < values.size(); ++i) {
-    if (!looked_at[i - 2] || !looked_at[i - 1] || !looked_at[i]) continue;
-    const double before = values[i - 1] - values[i - 2];
-    const double after = values[i] - values[i - 1];
-    if (std::isnan(before) || std::isnan(after) || (before == 0.0 && after == 0.0)) continue;
-    for (const double step : {std::abs(before), std::abs(after)}) {
-      if (step > 0.0) resolution = std::min(resolution, step);
-    }
-    bends.push_back(std::abs(after - before));
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double step = std::abs(values[i] - values[i - 1]);
+    if (step > 0.0) resolution = std::min(resolution, step);
   }
-  return median(std::move(bends)) >= noisy * resolution;
+  return resolution;
+}
+
+/// Whether the noise from one sample to another is larger than the resolution; true where nothing tells.
+bool is_noisy(const std::vector<double>& values, std::size_t first, std::size_t end, double resolution) {
+  std::vector<double> bends;
+  for (std::size_t i = first + 2; i < end; ++i) {
+    const double before = values[i - 1] - values[i - 2];
+    const double now = values[i] - values[i - 1];
+    const double bend = std::abs(now - before);
+    if ((before != 0.0 || now != 0.0) && !std::isnan(bend)) bends.push_back(bend);
+  }
+  return bends.empty() || median(std::move(bends)) >= noisy * resolution;
+}
+
+/// Before a run and after it.
+bool is_noisy_around(const std::vector<double>& values, const Stretch& run, double resolution) {
+  const std::size_t after = run.first + run.count;
+  return is_noisy(values, run.first - std::min(run.first, around), run.first, resolution) &&
+         is_noisy(values, after, std::min(after + around, values.size()), resolution);
 }
 
 /// The length of run that the share `part` of the samples does not exceed.
@@ -107,13 +121,16 @@ std::vector<Stretch> find_frozen(const std::vector<double>& values, const std::v
   if (runs.size() < fewest_values) return {};
   const auto is_long = [](const Stretch& run) { return run.count >= fewest_samples; };
   if (std::none_of(runs.begin(), runs.end(), is_long)) return {};
-  const double usual = usual_length(runs, is_noisy(values, looked_at) ? 0.5 : 0.9);
+  const double resolution = resolution_of(values);
+  const double of_half = usual_length(runs, 0.5);
+  const double of_most = usual_length(runs, 0.9);
   std::vector<Stretch> frozen;
   for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (!is_long(runs[i])) continue;
     const auto length = static_cast<double>(runs[i].count);
-    if (is_long(runs[i]) && length >= more_than_usual * usual &&
-        length >= more_than_near * near_length(runs, i))
-      frozen.push_back(runs[i]);
+    const double least =
+        is_noisy_around(values, runs[i], resolution) ? more_than_half * of_half : more_than_most * of_most;
+    if (length >= least && length >= more_than_near * near_length(runs, i)) frozen.push_back(runs[i]);
   }
   return frozen;
 }

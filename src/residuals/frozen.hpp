@@ -11,10 +11,11 @@ namespace pcor::internal {
 ///
 /// What a sensor does elsewhere tells what chance may do. It is frozen where it stands still for at least 20
 /// samples, 20 times as long as on average over the twenty values before and the twenty after (but for the
-/// two that last longest), and five times as long as usual in the whole flight: as the median of the samples
-/// where its noise is larger than its resolution, as nine in ten of them else. So a flap, a cloud that
-/// is not there, a temperature that creeps in steps and an altitude in whole feet are not frozen, and of a
-/// coarse sensor only what is shorter than a tenth of the flight is found.
+/// two that last longest), and much longer than usual in the whole flight: where its noise, five minutes
+/// before and after, is larger than its resolution, five times as long as the median of the samples; else ten
+/// times as long as nine in ten of them. So a flap, a cloud that is not there, a temperature that creeps in
+/// steps and an altitude in whole feet are not frozen, and of a coarse sensor only what is shorter than a
+/// tenth of the flight is found.
 ///
 /// @param values NaN where missing @param looked_at the samples that count
 std::vector<Stretch> find_frozen(const std::vector<double>& values, const std::vector<bool>& looked_at);

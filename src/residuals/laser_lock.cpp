@@ -13,7 +13,7 @@ namespace pcor::internal {
 namespace {
 
 constexpr double least_deviation = 0.1;  // m/s
-constexpr double by_angles = 0.02;       // of the airspeed: a static defect of a twenty-fifth of q
+constexpr double by_angles = 0.03;       // of the airspeed: a static defect of 6 % of q
 constexpr double most_off = 0.15;        // of the airspeed: a static defect of three tenths of q
 constexpr double scale_of_cauchy = 2.385;
 constexpr int rounds = 20;

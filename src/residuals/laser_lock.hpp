@@ -10,7 +10,7 @@ namespace pcor::internal {
 /// A model may be wrong by several m/s and the laser be right, so the expectation is made of the flight
 /// itself: the airspeed of the uncorrected pressures times a factor c0 + c1 p/q + c2 q/p, which follows a
 /// static defect of usual shape, fitted so that up to half of the samples may be astray. What attack,
-/// sideslip and flaps do beyond that is within 2 % of the airspeed. Unlocked is what departs by more than
+/// sideslip and flaps do beyond that is within 3 % of the airspeed. Unlocked is what departs by more than
 /// these 2 % and `most_departure` robust standard deviations, of which 0.1 m/s is the least, the noise of a
 /// good laser at 1 Hz; what is 15 % or more from the median of the factor, which no static port explains; and
 /// what lies among eleven samples of which most are so.

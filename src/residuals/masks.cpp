@@ -77,18 +77,6 @@ void mark_flaps(const FlightSamples& samples, double most, std::vector<Mask>& ma
   }
 }
 
-bool reads_flaps(const ModelEffect& effect, const std::string& variable) {
-  if (effect.is_formula()) {
-    const auto formula = Formula::parse(effect.formula, effect.parameter_names);
-    if (!formula) return false;
-    return std::any_of(
-        formula->variables().begin(), formula->variables().end(),
-        [&](const std::string& name) { return name == variable || quantity_named(name) == Quantity::flaps; });
-  }
-  const auto& needs = effect_facts[effect_named(effect.id)].needs;
-  return std::find(needs.begin(), needs.end(), Quantity::flaps) != needs.end();
-}
-
 /// Marks the samples at which something that is read stands still.
 void mark_frozen(const ModelSamples& samples, const std::vector<Batch::Input>& read,
                  std::vector<Mask>& masks) {
@@ -136,6 +124,18 @@ std::vector<Mask> find_masks(const MaskedResidual& residual, const MaskOptions& 
   });
   mark_flaps(samples, options.most_flaps.value_or(describes_flaps ? infinity : flaps_in), masks);
   return masks;
+}
+
+bool reads_flaps(const ModelEffect& effect, const std::string& variable) {
+  if (effect.is_formula()) {
+    const auto formula = Formula::parse(effect.formula, effect.parameter_names);
+    if (!formula) return false;
+    return std::any_of(
+        formula->variables().begin(), formula->variables().end(),
+        [&](const std::string& name) { return name == variable || quantity_named(name) == Quantity::flaps; });
+  }
+  const auto& needs = effect_facts[effect_named(effect.id)].needs;
+  return std::find(needs.begin(), needs.end(), Quantity::flaps) != needs.end();
 }
 
 std::vector<std::size_t> used_samples(const std::vector<Mask>& masks, double share) {

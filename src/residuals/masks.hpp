@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include <pcor/residuals/samples.hpp>
@@ -24,6 +25,9 @@ struct MaskedResidual {
 
 /// All masks.
 std::vector<Mask> find_masks(const MaskedResidual& residual, const MaskOptions& options);
+
+/// Whether an effect describes what flaps do. @param variable of the flight's flaps, which a formula may name
+bool reads_flaps(const ModelEffect& effect, const std::string& variable);
 
 /// The samples that take part: the first `share` of them, rounded.
 std::vector<std::size_t> used_samples(const std::vector<Mask>& masks, double share = 1.0);

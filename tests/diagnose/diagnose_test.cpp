@@ -330,7 +330,8 @@ TEST(Diagnose, AModelWithoutFreeCoefficientsIsDiagnosedToo) {
   for (pcor::EffectFit& fit : fixed.fits) fit[0].fixed = true;
   const Diagnosis diagnosis =
       pcor::diagnose({flight("c130-eq18", 322, beta_odd)}, fixed, *pcor::lams_reference());
-  EXPECT_NEAR(diagnosis.residual_rms, diagnosis.rms_given, 1e-6);
+  // The first is measured at the sensor, which is the residual to first order.
+  EXPECT_NEAR(diagnosis.residual_rms, diagnosis.rms_given, 1e-3 * diagnosis.rms_given);
   EXPECT_THAT(names_of(diagnosis), testing::Contains("static-beta-odd"));
 }
 

@@ -70,7 +70,10 @@ TEST(Frozen, IsFoundThoughTheNumbersAreCoarse) {
   // Whole numbers, of which every other repeats itself at least.
   values = recorded({0.5, 1.0}, 1);
   freeze(values, 5000, 300);
-  EXPECT_EQ(found(values), Spans({{5000, 300}}));
+  ASSERT_EQ(found(values).size(), 1U);
+  // Neighbours that are equal by chance belong to it.
+  EXPECT_NEAR(static_cast<double>(found(values)[0].first), 5000.0, 5.0);
+  EXPECT_NEAR(static_cast<double>(found(values)[0].second), 300.0, 10.0);
 }
 
 TEST(Frozen, IsNotWhatIsCoarseOrSlowOrAtRest) {

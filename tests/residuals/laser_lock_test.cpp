@@ -55,7 +55,9 @@ TEST(LaserLock, IsNotDoubtedBecauseThePressuresAreWrong) {
     double most = 0.0;
     for (std::size_t i = 0; i < flight.beam.size(); ++i)
       most = std::max(most, std::abs(flight.beam[i] - flight.airspeed[i]));
-    if (std::abs(defect) == 0.03) EXPECT_GT(most, 8.0) << "a limit in m/s would take samples out";
+    if (std::abs(defect) == 0.03) {
+      EXPECT_GT(most, 8.0) << "a limit in m/s would take samples out";
+    }
     EXPECT_THAT(flight.unlocked(), IsEmpty()) << defect;
   }
 }

@@ -26,8 +26,11 @@ SCENARIO = comparison_test.SCENARIO
 LAG = with_effect('id = "static-lag"\ntau = 1.0\n')(SCENARIO)
 THRUST = with_effect('id = "unknown"\nwhere = "static"\nof = "ENGTRQ"\nshape = "linear"\nstrength = 3.0\n'
                      "centre = 50\nscale = 100\n")(SCENARIO)
-ONE, LAGGING, LAGGING_TOO, THRUSTING, GV = (
-    FLIGHTS / name for name in ("one.nc", "lag.nc", "lag-too.nc", "thrust.nc", "gv.nc"))
+FLAPPED = with_effect('id = "flaps-gear"\non = "PSFD"\ndefect = 1.5\n')(SCENARIO)
+PORT = with_effect('id = "static-constant"\non = "PSFD"\na0 = 0.001\n')(SCENARIO)
+ONE, LAGGING, LAGGING_TOO, THRUSTING, GV, FLAPS, BIASED = (
+    FLIGHTS / name
+    for name in ("one.nc", "lag.nc", "lag-too.nc", "thrust.nc", "gv.nc", "flaps.nc", "biased.nc"))
 OWN = ('id = "my-thrust"\nwhere = "static"\nformula = "k * (ENGTRQ - 50) / 100"\nparameters = { k = 0.0 }\n'
        'unit = "hPa"\n')
 
@@ -35,7 +38,7 @@ OWN = ('id = "my-thrust"\nwhere = "static"\nformula = "k * (ENGTRQ - 50) / 100"\
 def setUpModule():
     scenario = FLIGHTS / "scenario.toml"
     flights = ((ONE, SCENARIO, 3), (LAGGING, LAG, 5), (LAGGING_TOO, LAG, 6), (THRUSTING, THRUST, 7),
-               (GV, SHORT_GV, 20))
+               (GV, SHORT_GV, 20), (FLAPS, FLAPPED, 8), (BIASED, PORT, 9))
     for output, text, seed in flights:
         scenario.write_text(text)
         subprocess.run([TOOL, "simulate", scenario, "-o", output, "--seed", str(seed), "--quiet"], check=True)
@@ -379,6 +382,105 @@ class BadOutput(DiagnosisTest):
         before = contents(self.path)
         self.run_tool("add", "static-lg", "-m", SOURCE / "data/models/c130-psfd-eq18.toml", "-o", output)
         self.assertEqual(contents(self.path), before)
+
+
+class WhatTakesPart(DiagnosisTest):
+    """The same samples, with the same figures, in every command; and what is left out is told beside them."""
+
+    def test_every_command_tells_the_same_rms_and_noise(self):
+        fitted = self.path / "fitted.toml"
+        refit = self.refit("--quiet", output=fitted)
+        compared = self.compare(model=fitted)["models"][0]
+        diagnosed = self.diagnose("--no-file-variables", model=fitted)
+        again = self.refit(model=fitted, output=self.path / "again.toml")
+        improved = self.improve(model=fitted)["steps"][0]
+        told = {"compare": (compared["rms_hpa"], compared["noise_rms_hpa"], compared["samples"]),
+                "diagnose": (diagnosed["rms_given_hpa"], diagnosed["noise_rms_hpa"], diagnosed["samples"]),
+                "of that flight": tuple(refit["flights"][0]["after"][key]
+                                        for key in ("rms_hpa", "noise_rms_hpa", "samples"))}
+        for command, (rms, noise, samples) in told.items():
+            with self.subTest(command):
+                self.assertAlmostEqual(rms, refit["rms_hpa"], delta=1e-9)  # coefficients are written to 12 digits
+                self.assertAlmostEqual(noise, refit["noise_rms_hpa"], delta=1e-9)
+                self.assertEqual(samples, refit["samples"])
+        # Fitted again, coefficients move within the tolerance of the fit.
+        self.assertAlmostEqual(again["rms_before_hpa"], refit["rms_hpa"], delta=1e-9)
+        self.assertAlmostEqual(improved["rms_train_hpa"], again["rms_hpa"], delta=1e-9)
+        self.assertAlmostEqual(improved["noise_rms_hpa"], again["noise_rms_hpa"], delta=1e-9)
+
+    def test_flaps_are_out_of_the_fit_and_compared_beside_it(self):
+        fit = self.refit(flights=(FLAPS,))
+        self.assertEqual(fit["masks"]["flaps"], fit["flaps_out"]["samples"])
+        # 1.5 hPa at 50 %, which the flaps have most of the time.
+        self.assertAlmostEqual(fit["flaps_out"]["bias_hpa"], 1.4, delta=0.3)
+        text = self.done("refit", FLAPS, "-m", self.model(), "-o", self.path / "out.toml").stdout
+        self.assertRegex(text, r"not in the fit: \d+ samples with flaps out, residual \+1\.\d\d \+- 0\.\d\d hPa")
+
+    def test_flaps_are_tested_though_they_are_out_of_the_fit(self):
+        found = self.diagnose("--no-file-variables", flights=(FLAPS,), model=self.fitted_to(FLAPS))
+        self.assertEqual([finding["effect"] for finding in found["findings"]], ["flaps-gear"])
+        self.assertAlmostEqual(found["findings"][0]["parameters"]["defect"], 1.5,
+                               delta=4.0 * found["findings"][0]["stderr"]["defect"])
+        nothing = self.diagnose("--no-file-variables", model=self.fitted_to(ONE))
+        self.assertEqual(nothing["findings"], [])
+        self.assertIn("flaps-gear", [limit["effect"] for limit in nothing["limits"]])
+
+    def test_a_model_with_flaps_takes_them_into_the_fit(self):
+        self.add("flaps-gear", name="flaps.toml")
+        fit = self.refit(flights=(FLAPS,), model=self.path / "flaps.toml")
+        self.assertEqual((fit["masks"]["flaps"], fit["flaps_out"]["samples"]), (0, 0))
+        limited = self.refit("--max-flaps", "5", flights=(FLAPS,), model=self.path / "flaps.toml",
+                             output=self.path / "limited.toml")
+        self.assertGreater(limited["masks"]["flaps"], 0)
+
+    def test_a_sensor_that_freezes_is_left_out_and_told(self):
+        flight = self.path / "frozen.nc"
+        shutil.copy(ONE, flight)
+        with netCDF4.Dataset(flight, "a") as file:
+            for name, first, count in (("VLAMS", 700, 100), ("QCF", 900, 60)):
+                file[name][first:first + count] = file[name][first]
+        result = self.compare(flights=(flight,))
+        self.assertEqual(result["masks"]["frozen"], 160)
+        for words in (r"VLAMS is frozen, at .* m/s from .* \(100 samples\)", r"QCF is frozen, .* \(60 samples\)"):
+            self.assertRegex(" ".join(result["notes"]), words)
+        self.assertEqual(self.compare()["masks"]["frozen"], 0)
+
+    def test_a_model_at_zero_keeps_its_flight(self):
+        """Pressures that are off by 1.4 % of the static pressure put the airspeed off by 7 to 11 m/s."""
+        flight = self.path / "off.nc"
+        shutil.copy(ONE, flight)
+        with netCDF4.Dataset(flight, "a") as file:
+            off = 0.014 * file["PSFD"][:]
+            file["PSFD"][:], file["QCF"][:] = file["PSFD"][:] - off, file["QCF"][:] + off
+        neutral = replace(r"^parameters = .*$", "")
+        self.assertLess(self.compare(flights=(flight,), model=self.model(neutral))["masks"]["laser_unlocked"], 5)
+
+    def fitted_to(self, flight):
+        self.refit(flights=(flight,), output=self.path / f"fitted-{flight.stem}.toml")
+        return self.path / f"fitted-{flight.stem}.toml"
+
+
+class DoesNoHarm(DiagnosisTest):
+    def test_improve_refuses_a_model_that_is_worse_where_it_was_not_fitted(self):
+        """Fitted to a flight with an error of the port, it is wrong on the flight without."""
+        arguments = ("improve", BIASED, "-m", self.model(), "--holdout", ONE, "-o", self.path / "out.toml")
+        self.refused(*arguments, words=("times that of the model as it was given", "--force"))
+        self.done(*arguments, "--force", "--quiet")
+        model = tomllib.loads((self.path / "out.toml").read_text())
+        self.assertIn("times that of the model as it was given", model["provenance"]["forced"])
+        self.assertIn("covariance", model)
+
+    def test_force_without_need_changes_nothing(self):
+        improved = self.improve("--force")
+        self.assertEqual(improved["worse"], "")
+        self.assertNotIn("forced", tomllib.loads((self.path / "out.toml").read_text())["provenance"])
+
+    def test_what_is_held_out_and_off_is_not_silence(self):
+        improved = self.improve("--holdout", BIASED, "--force")
+        last = improved["steps"][-1]["diagnosis"]
+        self.assertNotEqual(last["verdict"], "silent")
+        self.assertTrue(last["held_out"][0]["is_off"])
+        self.assertRegex(improved["why_stopped"], r"held out, is off by \+\d\.\d+ hPa")
 
 
 if __name__ == "__main__":

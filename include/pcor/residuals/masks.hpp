@@ -49,7 +49,7 @@ struct MaskOptions {
   /// Percent, where the flight records flaps. Not given it is `flaps_in`, but for a model of which an effect
   /// reads the flaps: that describes all samples, and all take part.
   std::optional<double> most_flaps{};
-  /// Robust standard deviations of the flight, beside 2 % of the airspeed, between the laser airspeed and
+  /// Robust standard deviations of the flight, beside 3 % of the airspeed, between the laser airspeed and
   /// what the pressures let expect; beyond them the laser has lost its lock.
   double most_laser_departure = 6.0;
   std::vector<Regime> exclude{};  ///< regimes that take no part, besides the ground
