@@ -48,6 +48,7 @@ class LamsOnSamples final : public ReferenceOnSamples, private NoisySensor {
 
   void mark_not_believed(std::vector<Mask>& masks, const std::vector<double>& airspeed,
                          const MaskOptions& options) const override {
+    if (airspeed.empty()) return;
     const std::vector<double>& p = *samples_.find(Quantity::static_pressure);
     std::vector<double> ratio = *samples_.find(Quantity::dynamic_pressure);
     for (std::size_t i = 0; i < ratio.size(); ++i) ratio[i] /= p[i];
