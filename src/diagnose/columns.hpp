@@ -6,8 +6,8 @@
 #include <vector>
 
 #include <pcor/residuals/residuals.hpp>
-#include "numerics/binning.hpp"
 #include "diagnose/candidates.hpp"
+#include "numerics/binning.hpp"
 
 namespace pcor::internal {
 

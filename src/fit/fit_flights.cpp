@@ -32,7 +32,8 @@ FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask
   const FlightSamples& flight = residuals_.samples();
   kept_ = used_samples(residuals_.mask(), task.options.training_share);
   if (!setup.regimes.empty()) {
-    std::vector<int> inside(residuals_.size(), -1);  // number of the interval; the first that holds a sample counts
+    std::vector<int> inside(residuals_.size(),
+                            -1);  // number of the interval; the first that holds a sample counts
     for (const Interval& interval : flight.intervals) {
       if (std::find(setup.regimes.begin(), setup.regimes.end(), interval.regime) == setup.regimes.end())
         continue;
