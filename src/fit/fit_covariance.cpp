@@ -17,6 +17,32 @@ constexpr std::size_t fewest_flights = 8;  // from which on whole flights are le
 constexpr double parts = 20.0;             // else so many parts of all flights together
 constexpr double shortest_part = 120.0;    // s
 
+/// From so many bins on, the influence itself tells its variance and its memory; of fewer it is what normal
+/// innovations have.
+constexpr Eigen::Index enough_bins = 200;
+
+/// Means of the loss over normal innovations: of rho' + 2 s rho'' and of the square of the influence.
+struct NormalLoss {
+  double slope = 0.0;
+  double square = 0.0;
+
+  NormalLoss(const ceres::LossFunction* loss, double deviation) {
+    constexpr double step = 0.05;
+    double weight = 0.0;
+    for (double z = -6.0; z <= 6.0; z += step) {
+      const double density = std::exp(-0.5 * z * z);
+      const double innovation = deviation * z;
+      std::array<double, 3> rho{innovation * innovation, 1.0, 0.0};
+      if (loss != nullptr) loss->Evaluate(rho[0], rho.data());
+      weight += density;
+      slope += density * (rho[1] + 2.0 * innovation * innovation * rho[2]);
+      square += density * rho[1] * rho[1] * innovation * innovation;
+    }
+    slope /= weight;
+    square /= weight;
+  }
+};
+
 /// Which flights, or parts of flights, are left out one after another.
 class Blocks {
  public:
@@ -67,6 +93,7 @@ Sums sums_of(const FitEquations& equations, const std::vector<std::size_t>& all,
   const Solution& solution = equations.solution;
   const std::unique_ptr<ceres::LossFunction> loss =
       loss_function(flights.task().options.loss, solution.deviation);
+  const NormalLoss normal(loss.get(), solution.deviation);
   const Eigen::Index size = as_index(all.size());
   const Eigen::Index own = as_index(equations.parameters.size());
   std::vector<Eigen::Index> rows;  // of the own parameters among all
@@ -99,6 +126,10 @@ Sums sums_of(const FitEquations& equations, const std::vector<std::size_t>& all,
       slope += rho[1] + 2.0 * innovation * innovation * rho[2];
       squares[number] += influence[static_cast<std::size_t>(i)] * influence[static_cast<std::size_t>(i)];
     }
+    if (count < enough_bins) {
+      slope = normal.slope * static_cast<double>(count);
+      squares[number] = normal.square * static_cast<double>(count);
+    }
     slopes[number] = slope;
     slope /= static_cast<double>(count);
     if (fit.offsets() > 0) {
@@ -109,8 +140,8 @@ Sums sums_of(const FitEquations& equations, const std::vector<std::size_t>& all,
       columns -= shifts * (pseudo_inverse(shifts.transpose() * weighted) * (weighted.transpose() * columns));
     }
     const std::vector<Stretch>& stretches = fit.bins().stretches();
-    std::vector<double> series = influence;
-    const Autoregression memory = autoregression(series, stretches, infinity);
+    const Autoregression memory = count < enough_bins ? Autoregression{{}, std::sqrt(normal.square)}
+                                                      : autoregression(influence, stretches, infinity);
     std::vector<const double*> pointers;
     for (const Eigen::Index row : rows) pointers.push_back(columns.col(row).data());
     const std::vector<double> covariance = covariance_of_sums(memory, pointers, stretches);

@@ -104,7 +104,10 @@ void repeat_stages(Fitted& fitted, const Sources& sources, const FitTask& task,
   for (int round = 0; round < most_rounds && !fitted.stands_still; ++round) {
     const Eigen::VectorXd before = solution.values;
     // The noise hardly changes after the first rounds.
-    if (round < 2) fitted.flights->measure_noise(solution.values, Eigen::VectorXd(), task.options.drift);
+    if (round < 2) {
+      fitted.flights->measure_noise(solution.values, Eigen::VectorXd(), task.options.drift);
+      solution.deviation = fitted.flights->deviation(solution.values, Eigen::VectorXd());
+    }
     for (FitEquations& each : fitted.equations) {
       if (each.parameters.empty()) continue;
       each.flights->share_noise(*fitted.flights);

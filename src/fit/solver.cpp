@@ -106,7 +106,13 @@ class Solver {
 
   void measure(bool drift) {
     flights_.measure_noise(solution_.values, solution_.offsets, drift);
-    solution_.deviation = flights_.deviation(solution_.values, solution_.offsets);
+    find_deviation();
+  }
+
+  /// The deviation of a stage of a few manoeuvres is that of all samples, as its noise is.
+  void find_deviation() {
+    if (!flights_.shares_noise())
+      solution_.deviation = flights_.deviation(solution_.values, solution_.offsets);
   }
 
   /// The linear problem, in closed form: where derivatives do not depend on the coefficients, its solution.
@@ -172,7 +178,7 @@ class Solver {
     unknowns_ = best;
     spread();
     const double before = solution_.deviation;
-    solution_.deviation = flights_.deviation(solution_.values, solution_.offsets);
+    find_deviation();
     task_.tell();
     return std::abs(solution_.deviation - before) < 1e-3 * before;
   }
