@@ -541,13 +541,14 @@ class Refit(ComparisonTest):
 
     def test_a_copied_flight_says_the_same(self):
         """Twice the squares have their minimum where once had it, but for the weights: the noise is found from
-        twice as many samples beside as many coefficients, which moves the estimate by a few per cent of its
-        error. The errors get smaller by the root of two, to a few per cent for the same reason."""
+        twice as many samples beside as many coefficients, and how slow it is a flight of twenty minutes hardly
+        tells: that moves the estimate by less than its error. The errors get smaller by the root of two, to a
+        fifth for the same reason."""
         copy = self.path / "copy.nc"
         shutil.copy(ONE, copy)
         once, twice = self.refit(), self.refit(flights=(ONE, copy))
         for name, error in errors_of(once).items():
-            self.assertAlmostEqual(values_of(twice)[name], values_of(once)[name], delta=0.1 * error)
+            self.assertAlmostEqual(values_of(twice)[name], values_of(once)[name], delta=error)
             self.assertAlmostEqual(errors_of(twice)[name] * math.sqrt(2.0) / error, 1.0, delta=0.2)
 
     def test_memory_changes_nothing(self):
@@ -584,7 +585,7 @@ class Refit(ComparisonTest):
 
     def test_an_effect_that_the_flight_does_not_show_is_told(self):
         """Without a yaw manoeuvre nothing is known of the square of the sideslip; the rest is still found."""
-        model = self.model(with_effect('id = "static-beta-even"\nbounds = { b2 = [-0.01, 0.01] }\n'))
+        model = self.model(with_effect('id = "static-beta-even"\n'))
         fit = self.refit(flights=(STEADY,), model=model)
         note = next(note for note in fit["notes"] if "static-beta-even.b2" in note)
         for word in ("is not determined", "--fix static-beta-even.b2", "yaw manoeuvre"):
