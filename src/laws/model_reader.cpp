@@ -328,7 +328,9 @@ class Reader final : TomlReader {
     each(table(section_entry), "[policy]",
          {{"taper_below", [&](const Entry& entry) { policy.taper_below = not_negative(entry); }},
           {"taper_power", [&](const Entry& entry) { policy.taper_power = not_negative(entry); }},
-          {"minimum", [&](const Entry& entry) { policy.minimum = number(entry); }}});
+          {"minimum", [&](const Entry& entry) { policy.minimum = number(entry); }},
+          {"least_dynamic_pressure",
+           [&](const Entry& entry) { policy.least_dynamic_pressure = not_negative(entry); }}});
   }
 
   void read_domain(const Entry& section_entry) {

@@ -170,13 +170,17 @@ class Writer {
     const Policy none;
     const bool tapers = !is_zero(policy.taper_below) || policy.taper_power != none.taper_power;
     const bool limits = policy.minimum != none.minimum;
-    if (!tapers && !limits) return;
+    const bool starts = policy.least_dynamic_pressure != none.least_dynamic_pressure;
+    if (!tapers && !limits && !starts) return;
     heading("[policy]");
     if (tapers) {
       line("taper_below", number(policy.taper_below, "taper_below"));
       line("taper_power", number(policy.taper_power, "taper_power"));
     }
     if (limits) line("minimum", number(policy.minimum, "the minimum"));
+    if (starts) {
+      line("least_dynamic_pressure", number(policy.least_dynamic_pressure, "least_dynamic_pressure"));
+    }
   }
 
   void write_domain(const std::vector<DomainRange>& domain) {

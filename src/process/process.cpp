@@ -11,8 +11,11 @@
 #include <utility>
 
 #include <pcor/flight/flight_writer.hpp>
+#include <pcor/physics/air_data.hpp>
+#include <pcor/physics/standard_atmosphere.hpp>
 #include <pcor/realtime/height_step.hpp>
 #include <pcor/realtime/loop.hpp>
+#include <pcor/regimes/regimes.hpp>
 #include <pcor/words/error.hpp>
 #include <pcor/words/utc.hpp>
 #include "laws/archived_model.hpp"
@@ -37,6 +40,14 @@ constexpr std::size_t flagged_place(Quality bit) {
   std::size_t place = 0;
   while (quality_facts[place].bit != bit) ++place;
   return place;
+}
+
+/// The dynamic pressure, hPa, of the flying speed of an aircraft at sea level in the standard atmosphere.
+/// What carries an aircraft is dynamic pressure, at any height.
+double flying_dynamic_pressure(const std::string& aircraft) {
+  const double speed = RegimeCriteria::of(aircraft).value_or(RegimeCriteria{}).flying_speed;
+  return dynamic_pressure_from_airspeed(standard_pressure(0.0), speed, standard_temperature(0.0),
+                                        dry_air<double>());
 }
 
 /// One flight on its way through the loop.
@@ -256,9 +267,12 @@ void Processing::note_sample(std::size_t place) {
   const double defect = state[Quantity::corrected_static_pressure] - state[Quantity::port_static_pressure];
   if (!is_missing(defect) && !is_missing(state[Quantity::corrected_dynamic_pressure])) {
     ++summary_.corrected;
-    summary_.mean_defect += defect;  // the sum, until the end
-    summary_.least_defect = std::min(summary_.least_defect, defect);
-    summary_.greatest_defect = std::max(summary_.greatest_defect, defect);
+    if (state[Quantity::dynamic_pressure] >= summary_.flying_dynamic_pressure) {
+      ++summary_.in_flight;
+      summary_.mean_defect += defect;  // the sum, until the end
+      summary_.least_defect = std::min(summary_.least_defect, defect);
+      summary_.greatest_defect = std::max(summary_.greatest_defect, defect);
+    }
   }
   const QualityFlags quality = loop_->quality();
   double bits = 0.0;
@@ -312,6 +326,7 @@ void Processing::process_block(RecordBlock block, std::vector<double>& times) {
 
 ProcessSummary Processing::run(const std::filesystem::path& output) {
   summary_.aircraft = flight_.aircraft();
+  summary_.flying_dynamic_pressure = flying_dynamic_pressure(file_.model.aircraft);
   summary_.project = flight_.project();
   summary_.flight = flight_.flight_number();
   summary_.records = flight_.records();
@@ -342,12 +357,12 @@ ProcessSummary Processing::run(const std::filesystem::path& output) {
   writer.finish();
 
   summary_.samples = summary_.records * static_cast<std::size_t>(summary_.rate);
-  if (summary_.corrected > 0) {
-    summary_.mean_defect /= static_cast<double>(summary_.corrected);
+  if (summary_.in_flight > 0) {
+    summary_.mean_defect /= static_cast<double>(summary_.in_flight);
   } else {
     summary_.mean_defect = summary_.least_defect = summary_.greatest_defect = missing<double>();
-    summary_.notes.push_back("no sample could be corrected: see the quality bits");
   }
+  if (summary_.corrected == 0) note("no sample could be corrected: see the quality bits");
   return summary_;
 }
 

@@ -180,6 +180,7 @@ class Description {
     value(model.policy.taper_below);
     value(model.policy.taper_power);
     value(model.policy.minimum);
+    value(model.policy.least_dynamic_pressure);
     for (const DomainRange& range : model.domain) {
       value(range.quantity);
       value(range.lower);
@@ -552,6 +553,7 @@ sideslip = [0, 21]
 taper_below = 20
 taper_power = 2.5
 minimum = -3.5
+least_dynamic_pressure = 4.5
 [domain]
 mach = [0.1, 0.8]
 altitude = [0, 15000]
@@ -589,6 +591,7 @@ apple = { used = 12, share = 0.5, clean = true }
   EXPECT_EQ(file.model.policy.taper_below, 20.0);
   EXPECT_EQ(file.model.policy.taper_power, 2.5);
   EXPECT_EQ(file.model.policy.minimum, -3.5);
+  EXPECT_EQ(file.model.policy.least_dynamic_pressure, 4.5);
   ASSERT_EQ(file.model.domain.size(), 2u);
   EXPECT_EQ(file.model.domain[0].quantity, "mach");
   EXPECT_EQ(file.model.domain[1].upper, 15000.0);

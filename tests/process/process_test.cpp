@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -399,7 +401,50 @@ TEST_F(FilteredTemperature, IsMissingWithItsSample) {
   }
   EXPECT_FALSE(std::isnan(filtered[30]));
   EXPECT_GE(flagged, 2U) << "the neighbours of a single missing sample";
-  EXPECT_EQ(summary.flagged.back(), flagged);
+  std::size_t place = 0;
+  while (quality_facts[place].bit != Quality::filter_window_incomplete) ++place;
+  EXPECT_EQ(summary.flagged[place], flagged);
+}
+
+// A minute on the ramp, where the pressures of moving air are noise, and a minute of flight.
+TEST_F(Process, TellsTheRampFromFlight) {
+  constexpr std::size_t ramp = 1500;
+  constexpr std::size_t samples = 3000;
+  std::mt19937_64 engine(1);
+  std::normal_distribution<double> noise(0.0, 0.2);
+  {
+    std::vector<double> p, q, attack, temperature;
+    for (std::size_t i = 0; i < samples; ++i) {
+      Reading r = reading(110.0 + 20.0 * std::sin(0.01 * static_cast<double>(i)), 2.0);
+      if (i < ramp) r = {900.0, noise(engine), noise(engine), 288.0, 0.0};
+      p.push_back(r.static_pressure);
+      q.push_back(r.dynamic_pressure);
+      attack.push_back(r.attack_pressure);
+      temperature.push_back(r.recovery_temperature);
+    }
+    test::NetcdfMaker maker(input_);
+    maker.time(test::sequence(50000.0, samples / 25));
+    maker.series("PSFD", "hPa", p, 25);
+    maker.series("QCF", "hPa", q, 25);
+    maker.series("QCR", "hPa", q, 25);
+    maker.series("ADIFR", "hPa", attack, 25);
+    maker.series("TTRR", "K", temperature, 25);
+    maker.series("EDPC", "hPa", std::vector<double>(samples / 25, vapor_pressure));
+  }
+  const ProcessSummary summary = process_flight(input_, lams_model(), output_);
+  const std::vector<double> airspeed = read("TASX", "m/s"), defect = read("PCOR", "hPa"),
+                            flags = read("PCORFLAG", "");
+  double sum = 0.0;
+  for (std::size_t i = 0; i < samples; ++i) {
+    const auto bits = static_cast<std::uint32_t>(flags[i]);
+    EXPECT_EQ((bits & static_cast<std::uint32_t>(Quality::no_airflow)) != 0, i < ramp) << i;
+    EXPECT_EQ(std::isnan(airspeed[i]), i < ramp) << i;
+    if (i >= ramp) sum += defect[i] / (samples - ramp);
+  }
+  EXPECT_EQ(summary.in_flight, samples - ramp);
+  EXPECT_NEAR(summary.mean_defect, sum, 1e-6) << "32-bit floats of some hPa";
+  // Half of 1.225 kg/m3 times the square of 60 m/s, and 0.8 % for the compression: M^2/4.
+  EXPECT_NEAR(summary.flying_dynamic_pressure, 22.05 * 1.008, 0.02);
 }
 
 // In air of one temperature the hydrostatic equation has a closed form: H = R_a T/g0 ln(p_0/p).

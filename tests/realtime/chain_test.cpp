@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <map>
+#include <random>
 #include <string>
 #include <thread>
 #include <vector>
@@ -917,6 +918,77 @@ TEST(QualityBits, ADefectLargerThanTheDynamicPressureIsNone) {
   EXPECT_TRUE(std::isnan(s[Quantity::corrected_static_pressure]));
   EXPECT_TRUE(std::isnan(s[Quantity::corrected_dynamic_pressure]));
   EXPECT_TRUE(std::isnan(s[Quantity::corrected_airspeed]));
+}
+
+TEST(QualityBits, ADefectBelowTheNegativeDynamicPressureIsNone) {
+  Model model = truth.model();
+  const Recorded slow = with(truth.recorded(), Quantity::dynamic_pressure, 10.0);
+  const double p = slow.at(Quantity::static_pressure);
+  model.effects = {catalogued("static-constant", {-9.99 / p})};
+  EXPECT_NEAR(fly(model, slow)[Quantity::static_defect], -9.99, 1e-12);
+  model.effects = {catalogued("static-constant", {-10.01 / p})};
+  const Sample s = fly(model, slow);
+  EXPECT_TRUE(s.has(Quality::defect_exceeds_dynamic_pressure));
+  for (const Quantity gone : {Quantity::static_defect, Quantity::corrected_static_pressure,
+                              Quantity::corrected_dynamic_pressure, Quantity::corrected_airspeed})
+    EXPECT_TRUE(std::isnan(s[gone])) << pcor::facts_of(gone).name;
+}
+
+TEST(QualityBits, ALaserThatAsksForADefectBeyondTheDynamicPressureIsNotBelieved) {
+  // Half the airspeed asks for three quarters of the dynamic pressure; 1.6 times it for more than all of it.
+  const double beam = truth.recorded()[Quantity::lams_airspeed];
+  EXPECT_FALSE(std::isnan(fly(truth.model(), with(truth.recorded(), Quantity::lams_airspeed,
+                                                  0.5 * beam))[Quantity::lams_static_defect]));
+  const Sample s = fly(truth.model(), with(truth.recorded(), Quantity::lams_airspeed, 1.6 * beam));
+  EXPECT_TRUE(std::isnan(s[Quantity::lams_static_defect]));
+  EXPECT_TRUE(s.has(Quality::lams_missing));
+}
+
+// Half an hour on the ramp at 25 Hz: all dynamic pressures are noise of 0.2 hPa, and so the angles of the
+// radome are anything, in laws with and without a taper and a minimum.
+TEST(Ramp, NoAirspeedAndNoWrongPressureComeOutOfNoise) {
+  std::mt19937_64 engine(1);
+  std::normal_distribution<double> noise(0.0, 0.2);
+  for (const bool tapers : {false, true}) {
+    for (const bool has_minimum : {false, true}) {
+      Model model = truth.model();
+      model.effects = {catalogued("static-constant", {0.004127875}),
+                       catalogued("static-alpha", {0.021279816}), catalogued("static-qp", {0.030849643})};
+      if (tapers) model.policy.taper_below = 40.0;
+      if (has_minimum) model.policy.minimum = 1.113;
+      Recorded recorded = with(without(truth.recorded(), Quantity::lams_airspeed),
+                               Quantity::attack_differential_pressure, 0.0);
+      recorded[Quantity::radome_dynamic_pressure] = 0.0;
+      const Chain chain = build(model, recorded);
+      for (int i = 0; i < 45000; ++i) {
+        for (const Quantity pressure : {Quantity::dynamic_pressure, Quantity::radome_dynamic_pressure,
+                                        Quantity::attack_differential_pressure})
+          recorded[pressure] = noise(engine);
+        const Sample s = fly(chain, recorded);
+        ASSERT_TRUE(s.has(Quality::no_airflow));
+        ASSERT_TRUE(std::isnan(s[Quantity::corrected_airspeed]));
+        ASSERT_TRUE(std::isnan(s[Quantity::corrected_mach]));
+        const double p = s[Quantity::corrected_static_pressure];
+        // Under a taper delta-p of the law is its (q/40 hPa)^3, 1e-5 of it at most for this noise.
+        ASSERT_TRUE(std::isnan(p) || std::abs(p - recorded[Quantity::static_pressure]) < 0.2) << p;
+      }
+    }
+  }
+}
+
+TEST(Ramp, AirspeedBeginsAtTheLeastDynamicPressure) {
+  Model model = truth.model();
+  model.effects = {};
+  const auto at = [&](double q) { return fly(model, with(truth.recorded(), Quantity::dynamic_pressure, q)); };
+  EXPECT_TRUE(std::isnan(at(1.99)[Quantity::corrected_airspeed]));
+  EXPECT_FALSE(at(2.01).has(Quality::no_airflow));
+  // v = (2 q/rho)^(1/2), rho = p/(R T): 2 q/p R T; compressible flow and moist air are 1e-3 of it.
+  const double p = truth.recorded()[Quantity::static_pressure];
+  const Sample s = at(2.01);
+  EXPECT_NEAR(s[Quantity::corrected_airspeed],
+              std::sqrt(2 * 2.01 / p * 287.05 * s[Quantity::ambient_temperature]), 0.03);
+  model.policy.least_dynamic_pressure = 0.0;
+  EXPECT_FALSE(std::isnan(at(0.1)[Quantity::corrected_airspeed]));
 }
 
 // What Chain::build refuses, and what it says.

@@ -50,6 +50,8 @@ nlohmann::ordered_json as_json(const ProcessSummary& summary, const Options& opt
   result["rate"] = summary.rate;
   result["samples"] = summary.samples;
   result["corrected"] = summary.corrected;
+  result["flying_dynamic_pressure_hpa"] = summary.flying_dynamic_pressure;
+  result["in_flight"] = summary.in_flight;
   result["gaps"] = summary.gaps;
   result["delta_p_hpa"] = {
       {"mean", summary.mean_defect}, {"least", summary.least_defect}, {"greatest", summary.greatest_defect}};
@@ -73,9 +75,15 @@ void print(const ProcessSummary& summary, const Options& options) {
              utc_text(summary.first_time), utc_text(summary.last_time), summary.records, summary.rate,
              summary.rate == 1 ? "" : "s");
   fmt::print("corrected {} of {} samples", summary.corrected, summary.samples);
-  if (summary.corrected > 0) {
-    fmt::print(": delta-p {:.2f} hPa in the mean, {:.2f} to {:.2f} hPa", summary.mean_defect,
-               summary.least_defect, summary.greatest_defect);
+  if (summary.in_flight > 0) {
+    fmt::print(
+        "; in flight, at a dynamic pressure of {:.0f} hPa and more, {} with delta-p {:.2f} hPa in the "
+        "mean, {:.2f} to {:.2f} hPa",
+        summary.flying_dynamic_pressure, summary.in_flight, summary.mean_defect, summary.least_defect,
+        summary.greatest_defect);
+  } else if (summary.corrected > 0) {
+    fmt::print("; none of them in flight, at a dynamic pressure of {:.0f} hPa and more",
+               summary.flying_dynamic_pressure);
   }
   fmt::print("\n");
   if (summary.gaps > 0) fmt::print("{} gap{} in time\n", summary.gaps, summary.gaps == 1 ? "" : "s");

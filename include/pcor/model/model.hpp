@@ -50,6 +50,10 @@ struct Policy {
   double taper_power = 3.0;
   /// Delta-p (hPa) is not less than this, before the taper.
   double minimum = -std::numeric_limits<double>::infinity();
+  /// Below this dynamic pressure (hPa) nothing says that air flows: delta-p is missing, but under a taper,
+  /// and so are Mach number and airspeed. The default, 18 m/s at sea level, is ten times the 0.2 hPa of noise
+  /// that a transducer shows on the ramp; there such a noise is 5 % of the airspeed.
+  double least_dynamic_pressure = 2.0;
 };
 
 /// The range of a quantity over which the law was fitted. Outside it a sample is flagged.

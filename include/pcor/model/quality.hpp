@@ -28,6 +28,7 @@ enum class Quality : std::uint32_t {
   corrected_with_lams = 1U << 14,
   defect_exceeds_dynamic_pressure = 1U << 15,
   filter_window_incomplete = 1U << 16,
+  no_airflow = 1U << 17,
 };
 
 /// A quality bit and what it means.
@@ -37,7 +38,7 @@ struct QualityFacts {
   std::string_view meaning;
 };
 
-inline constexpr std::array<QualityFacts, 17> quality_facts{{
+inline constexpr std::array<QualityFacts, 18> quality_facts{{
     {Quality::static_pressure_missing, "static_pressure_missing", "no static pressure: nothing is derived"},
     {Quality::dynamic_pressure_missing, "dynamic_pressure_missing",
      "no dynamic pressure: nothing is derived"},
@@ -61,9 +62,11 @@ inline constexpr std::array<QualityFacts, 17> quality_facts{{
     {Quality::corrected_with_lams, "corrected_with_lams",
      "pressures corrected with LAMS, not with the model"},
     {Quality::defect_exceeds_dynamic_pressure, "defect_exceeds_dynamic_pressure",
-     "delta-p of the law above the dynamic pressure, as on the ramp: no delta-p"},
+     "delta-p above the dynamic pressure, or below its negative, as on the ramp: no delta-p"},
     {Quality::filter_window_incomplete, "filter_window_incomplete",
      "filter window incomplete: no filtered LAMS temperature"},
+    {Quality::no_airflow, "no_airflow",
+     "dynamic pressure too low to tell airflow from noise, as on the ramp: no Mach number, no airspeed"},
 }};
 
 /// The quality bits of one sample.

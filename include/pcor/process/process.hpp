@@ -38,10 +38,14 @@ struct ProcessSummary {
   std::size_t gaps = 0;
   double first_time = 0.0;  ///< seconds since 1970 UTC
   double last_time = 0.0;
-  double mean_defect = 0.0;      ///< of the delta-p applied, hPa; NaN where no sample was corrected
-  double least_defect = 0.0;     ///< hPa
-  double greatest_defect = 0.0;  ///< hPa
-  std::array<std::size_t, quality_facts.size()> flagged{};  ///< samples with each quality bit
+  /// In flight: with a measured dynamic pressure (hPa) of this or more, that of the flying speed of the
+  /// aircraft (`RegimeCriteria::flying_speed`) at sea level in the standard atmosphere.
+  double flying_dynamic_pressure = 0.0;
+  std::size_t in_flight = 0;     ///< of the corrected samples
+  double mean_defect = 0.0;      ///< of the delta-p applied in flight, hPa; NaN where none was
+  double least_defect = 0.0;     ///< in flight, hPa
+  double greatest_defect = 0.0;  ///< in flight, hPa
+  std::array<std::size_t, quality_facts.size()> flagged{};  ///< samples with each quality bit, flown or not
   std::vector<std::string> outputs;                         ///< names of the derived variables, in order
   std::vector<std::string> notes;                           ///< what a user should know, a sentence each
 };

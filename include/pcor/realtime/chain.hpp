@@ -49,6 +49,7 @@ class Chain : public BoundModel {
     flags.set(is_missing(q), Quality::dynamic_pressure_missing);
     flags.set(p <= S(0.0), Quality::impossible_static_pressure);
     flags.set(q <= S(0.0), Quality::impossible_dynamic_pressure);
+    flags.set(q < S(policy_.least_dynamic_pressure), Quality::no_airflow);
 
     if (derives(Quantity::dynamic_ratio)) state[Quantity::dynamic_ratio] = q / p;
     if (derives(Quantity::mach)) state[Quantity::mach] = mach_number(p, q, dry_air<S>());
@@ -80,15 +81,17 @@ class Chain : public BoundModel {
   }
 
   /// Delta-p of the model, hPa: the sum of the effects at the static ports, under the policy. NaN where a
-  /// pressure or an input of an effect is missing. Where the dynamic pressure is zero or below, no airflow
-  /// causes a defect: zero under a taper, else NaN. A defect above the dynamic pressure is impossible: NaN.
+  /// pressure or an input of an effect is missing. Where the dynamic pressure is below the least of the
+  /// policy, no airflow causes a defect: NaN, but under a taper, which ends in zero. A defect beyond the
+  /// dynamic pressure is none, NaN: above it the corrected dynamic pressure would be negative; below its
+  /// negative the port would feel half of the corrected one, ten times what static ports do.
   template <class S, class P, class Flags>
   Promoted<S, P> static_defect(const State<S>& state, const P* parameters, Flags& flags) const {
     using R = Promoted<S, P>;
     const S p = state[Quantity::static_pressure];
     const S q = state[Quantity::dynamic_pressure];
     R defect = sum<R>(Where::static_defect, state, parameters);
-    const auto flowing = p > S(0.0) && q > S(0.0);
+    const auto flowing = p > S(0.0) && is_flowing(q);
     flags.set(flowing && is_missing(defect), Quality::effect_input_missing);
     for (const Range& range : domain_) {
       const S value = state[range.quantity];
@@ -104,7 +107,7 @@ class Chain : public BoundModel {
       flags.set(slow, Quality::tapered);
       if (any(slow)) defect = select(slow, taper(defect, q), defect);
     }
-    const auto exceeds = flowing && defect > R(q);
+    const auto exceeds = p > S(0.0) && q > S(0.0) && exceeds_dynamic_pressure(defect, R(q));
     flags.set(exceeds, Quality::defect_exceeds_dynamic_pressure);
     defect = select(exceeds, missing<R>(), defect);
     const auto enough = policy_.taper_below > 0.0 ? p > S(0.0) && !is_missing(q) : flowing;
@@ -124,7 +127,9 @@ class Chain : public BoundModel {
 
   /// Humidity, Mach number, ambient temperature and airspeed from the corrected pressures. They depend on
   /// each other through the constants of moist air and the limit of saturation over water, so they are found
-  /// together. An ambient temperature that is found from the recovery temperature is calibrated here.
+  /// together. An ambient temperature that is found from the recovery temperature is calibrated here. Where
+  /// the corrected dynamic pressure is below the least of the policy, as on the ramp, Mach number and
+  /// airspeed would be those of noise: NaN; the temperature, which such a flow hardly heats, stays.
   template <class S, class P, class Flags>
   void air(State<S>& state, const P* parameters, Flags& flags) const {
     const S p = state[Quantity::corrected_static_pressure];
@@ -141,13 +146,18 @@ class Chain : public BoundModel {
     MoistAir<S> constants = solve_air(state, parameters, humidity, thermometer, delta, flags);
     if (limit_to_saturation(humidity, p, state[Quantity::ambient_temperature], flags))
       constants = solve_air(state, parameters, humidity, thermometer, delta, flags);
+    const auto still = state[Quantity::corrected_dynamic_pressure] < S(policy_.least_dynamic_pressure);
+    flags.set(still, Quality::no_airflow);
+    S& mach = state[Quantity::corrected_mach];
+    mach = select(still, missing<S>(), mach);
     state[Quantity::humidity] = humidity;
     state[Quantity::corrected_airspeed] =
-        true_airspeed(state[Quantity::corrected_mach], state[Quantity::ambient_temperature], constants);
+        true_airspeed(mach, state[Quantity::ambient_temperature], constants);
   }
 
   /// Delta-p that LAMS asks for at this sample, hPa, by the approach of the model. NaN where the laser or
-  /// anything that it needs is missing.
+  /// anything that it needs is missing, without airflow, and beyond the dynamic pressure on either side,
+  /// where no airspeed of the laser can be right.
   template <class S, class P, class Flags>
   S lams_static_defect(const State<S>& state, const P* parameters, Flags& flags) const {
     const S p = state[Quantity::port_static_pressure];
@@ -160,8 +170,10 @@ class Chain : public BoundModel {
     LamsSolution<S> solution = solve_lams(p, q, v, e, state, parameters, thermometer, recovery);
     if (limit_to_saturation(e, S(1.0), solution.temperature, flags))
       solution = solve_lams(p, q, v, e, state, parameters, thermometer, recovery);
-    const auto valid = p > S(0.0) && q > S(0.0) && v > S(0.0);
-    const S defect = select(valid, finite_or_missing(solution.static_defect), missing<S>());
+    const S found = finite_or_missing(solution.static_defect);
+    const auto exceeds = exceeds_dynamic_pressure(found, q);
+    const auto valid = p > S(0.0) && is_flowing(q) && v > S(0.0) && !exceeds;
+    const S defect = select(valid, found, missing<S>());
     flags.set(is_missing(defect), Quality::lams_missing);
     return defect;
   }
@@ -262,6 +274,17 @@ class Chain : public BoundModel {
     }
     const S airspeed = sqrt(S(7.0 * constants::gas_constant_dry_air) * temperature * heating);
     return S(0.5) * airspeed * (heating_rate / heating + relative_rate);
+  }
+
+  // True where the dynamic pressure is more than the noise of its sensor.
+  template <class S>
+  auto is_flowing(const S& q) const {
+    return q > S(0.0) && q >= S(policy_.least_dynamic_pressure);
+  }
+
+  template <class S>
+  static auto exceeds_dynamic_pressure(const S& defect, const S& q) {
+    return defect > q || defect < -q;
   }
 
   bool has_minimum() const { return policy_.minimum > -std::numeric_limits<double>::infinity(); }
