@@ -31,10 +31,13 @@ void chain_nimbus_model(benchmark::State& timing) {
 BENCHMARK(chain_nimbus_model);
 
 /// The same variables by the sample loop, with delta-p and the quality bits.
-void chain_scalar(benchmark::State& timing) {
+void run_loop(benchmark::State& timing, const Model& model, const ModelUncertainty& uncertainty) {
   const Flight flight = make_flight(flight_samples);
+  std::vector<Quantity> recorded = recorded_roles();
+  recorded.insert(recorded.end(),
+                  {Quantity::attack_differential_pressure, Quantity::radome_dynamic_pressure});
   std::string error;
-  std::optional<Loop> loop = Loop::build(gv_2014(), recorded_roles(), 25.0, &error);
+  std::optional<Loop> loop = Loop::build(model, recorded, 25.0, &error, CorrectWith::model, uncertainty);
   if (!loop) return timing.SkipWithError(error.c_str());
   std::size_t i = 0;
   double time = 0.0;
@@ -45,13 +48,52 @@ void chain_scalar(benchmark::State& timing) {
     state[Quantity::recovery_temperature] = flight.recovery_temperature[i];
     state[Quantity::vapor_pressure] = flight.vapor_pressure[i];
     state[Quantity::attack] = flight.attack[i];
+    state[Quantity::radome_dynamic_pressure] = flight.dynamic_pressure[i];
+    state[Quantity::attack_differential_pressure] = -0.2 * flight.dynamic_pressure[i];
     loop->run(time);
     benchmark::DoNotOptimize(state);
     time += 0.04;
     i = i + 1 == flight.size() ? 0 : i + 1;
   }
 }
+
+/// Uncertainties of all coefficients, correlated, of the pressures and of the thermometer.
+ModelUncertainty uncertainty_of(const Model& model) {
+  const std::size_t count = model.effects.size();
+  ModelUncertainty uncertainty;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = 0; j < count; ++j) uncertainty.covariance.push_back(i == j ? 1e-8 : 5e-9);
+  }
+  uncertainty.random[index(Quantity::static_pressure)] = 0.05;
+  uncertainty.random[index(Quantity::dynamic_pressure)] = 0.03;
+  uncertainty.random[index(Quantity::recovery_temperature)] = 0.1;
+  uncertainty.static_defect = 0.1;
+  return uncertainty;
+}
+
+/// Equation 18 of the memo on the C-130.
+Model equation_18() {
+  Model model;
+  model.effects = {
+      {"static-constant", {0.004127875}}, {"static-alpha", {0.021279816}}, {"static-qp", {0.030849643}}};
+  model.recovery = {{0.95, 0.0, 0.0, 0.0}};
+  return model;
+}
+
+void chain_scalar(benchmark::State& timing) { run_loop(timing, gv_2014(), {}); }
 BENCHMARK(chain_scalar);
+
+/// The same with the uncertainties of the results.
+void chain_uncertainty(benchmark::State& timing) { run_loop(timing, gv_2014(), uncertainty_of(gv_2014())); }
+BENCHMARK(chain_uncertainty);
+
+void chain_equation_18(benchmark::State& timing) { run_loop(timing, equation_18(), {}); }
+BENCHMARK(chain_equation_18);
+
+void chain_equation_18_uncertainty(benchmark::State& timing) {
+  run_loop(timing, equation_18(), uncertainty_of(equation_18()));
+}
+BENCHMARK(chain_equation_18_uncertainty);
 
 }  // namespace
 }  // namespace pcor::benchmarks

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <system_error>
 
@@ -11,6 +12,7 @@
 
 #include "laws/model_names.hpp"
 #include "laws/model_writer.hpp"
+#include "laws/output_table.hpp"
 #include "words/text_file.hpp"
 
 namespace pcor {
@@ -27,7 +29,46 @@ std::vector<Quantity> ModelFile::roles() const {
 
 std::string ModelFile::output_name(std::string_view standard_name) const {
   const auto renamed = output.find(std::string(standard_name));
-  return renamed == output.end() ? std::string(standard_name) : renamed->second;
+  if (renamed != output.end()) return renamed->second;
+  const std::string_view result = result_of_uncertainty(standard_name);
+  if (result.empty()) return std::string(standard_name);
+  return output_name(result) + std::string(standard_name.substr(result.size()));
+}
+
+ModelUncertainty uncertainty_of(const ModelFile& file) {
+  std::vector<std::string> names;
+  std::vector<double> variances;
+  for (std::size_t e = 0; e < file.model.effects.size(); ++e) {
+    const std::vector<std::string> own = parameter_names(file.model.effects[e]);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      const double error = file.fit(e, i).standard_error.value_or(0.0);
+      names.push_back(file.model.effects[e].id + "." + own[i]);
+      variances.push_back(error * error);
+    }
+  }
+  const std::size_t count = names.size();
+  ModelUncertainty uncertainty;
+  uncertainty.covariance.assign(count * count, 0.0);
+  for (std::size_t i = 0; i < count; ++i) uncertainty.covariance[i * count + i] = variances[i];
+  const Covariance& stated = file.covariance;
+  std::vector<std::size_t> places;
+  for (const std::string& name : stated.parameters) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) {
+      throw Error(
+          fmt::format("model '{}': its covariance names {}, which is no parameter of it; refit the model",
+                      file.model.name, in_quotes(name)));
+    }
+    places.push_back(static_cast<std::size_t>(found - names.begin()));
+  }
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    for (std::size_t j = 0; j < places.size(); ++j)
+      uncertainty.covariance[places[i] * count + places[j]] = stated.matrix[i][j];
+  }
+  for (const auto& [role, size] : file.uncertainty.roles) uncertainty.random[index(role)] = size;
+  uncertainty.static_defect = file.uncertainty.static_defect.value_or(0.0);
+  uncertainty.static_defect_ratio = file.uncertainty.static_defect_ratio.value_or(0.0);
+  return uncertainty;
 }
 
 ParameterFit ModelFile::fit(std::size_t effect, std::size_t parameter) const {

@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include <pcor/effects/catalogue.hpp>
+#include <pcor/laws/model_file.hpp>
 #include <pcor/physics/recovery_factor.hpp>
 
 #include "words/quoting.hpp"
@@ -14,6 +15,9 @@ namespace pcor::internal {
 inline constexpr std::string_view model_format = "pcor-model/1";
 
 Names names_of_parameters(const EffectFacts& facts);
+
+/// The parameter of the model that is named like "static-qp.a2", or nothing.
+const double* parameter_named(const Model& model, std::string_view name);
 
 /// The published law of that name, or nothing.
 const PublishedRecoveryFactor* published_recovery_factor(std::string_view name);

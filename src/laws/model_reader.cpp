@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <initializer_list>
 #include <locale>
@@ -113,6 +114,7 @@ class Reader final : TomlReader {
           {"effect", keep},
           {"law", keep},
           {"covariance", keep},
+          {"uncertainty", keep},
           {"provenance", keep}});
     const auto with = [&](const std::string& key, void (Reader::*reader)(const Entry&)) {
       const auto found = sections.find(key);
@@ -134,6 +136,7 @@ class Reader final : TomlReader {
     if (effects != sections.end()) read_effects(effects->second, name(), file_);
     with("law", &Reader::read_law);
     with("covariance", &Reader::read_covariance);
+    with("uncertainty", &Reader::read_uncertainty);
     with("provenance", &Reader::read_provenance);
   }
 
@@ -318,13 +321,6 @@ class Reader final : TomlReader {
 
   void read_policy(const Entry& section_entry) {
     Policy& policy = file_.model.policy;
-    const auto not_negative = [&](const Entry& entry) {
-      const double value = number(entry);
-      if (value < 0.0) {
-        fail(entry, fmt::format("{} is negative; give a number of 0 or above", called(entry)));
-      }
-      return value;
-    };
     each(table(section_entry), "[policy]",
          {{"taper_below", [&](const Entry& entry) { policy.taper_below = not_negative(entry); }},
           {"taper_power", [&](const Entry& entry) { policy.taper_power = not_negative(entry); }},
@@ -356,7 +352,7 @@ class Reader final : TomlReader {
              law.valid_to = date(entry);
              last = entry.node;
            }},
-          {"rms_hpa", [&](const Entry& entry) { law.rms_hpa = rms(entry); }},
+          {"rms_hpa", [&](const Entry& entry) { law.rms_hpa = not_negative(entry); }},
           {"note", [&](const Entry& entry) { law.note = text(entry); }}});
     if (last != nullptr && law.valid_to < law.valid_from) {
       fail(*last, fmt::format("the law ends on {}, before it begins on {}; change one of them", law.valid_to,
@@ -364,16 +360,17 @@ class Reader final : TomlReader {
     }
   }
 
-  double rms(const Entry& entry) const {
+  double not_negative(const Entry& entry) const {
     const double value = number(entry);
     if (value < 0.0) fail(entry, called(entry) + " is negative; give a number of 0 or above");
     return value;
   }
 
   void read_covariance(const Entry& section_entry) {
-    std::optional<Entry> parameters, matrix;
+    std::optional<Entry> parameters, values, matrix;
     each(table(section_entry), "[covariance]",
          {{"parameters", [&](const Entry& entry) { parameters = entry; }},
+          {"values", [&](const Entry& entry) { values = entry; }},
           {"matrix", [&](const Entry& entry) { matrix = entry; }}});
     if (!parameters || !matrix) {
       fail(section_entry.place, fmt::format("[covariance] has no '{}'; give both parameters and matrix, or "
@@ -381,7 +378,75 @@ class Reader final : TomlReader {
                                             parameters ? "matrix" : "parameters"));
     }
     read_covariance_parameters(*parameters);
+    if (values) check_values(*values);
     read_matrix(*matrix);
+    check_standard_errors(*matrix);
+  }
+
+  // A covariance belongs to the values that it was found with.
+  void check_values(const Entry& entry) const {
+    const Names& names = file_.covariance.parameters;
+    const std::string wanted = fmt::format("{} numbers, one for each parameter", names.size());
+    const std::vector<double> values = numbers(entry, wanted);
+    if (values.size() != names.size())
+      fail(entry, fmt::format("'values' has {} numbers; give {}", values.size(), wanted));
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const double value = *parameter_named(file_.model, names[i]);
+      if (std::abs(value - values[i]) <= 1e-9 * std::abs(value)) continue;
+      fail(entry, fmt::format("the covariance is of another model: {} was {} there and is {} here; refit the "
+                              "model, or remove [covariance] and the stderr of its effects",
+                              names[i], values[i], value));
+    }
+  }
+
+  // What an effect says of its own parameter agrees with the matrix, as far as rounded numbers do.
+  void check_standard_errors(const Entry& entry) const {
+    const Names& names = file_.covariance.parameters;
+    for (std::size_t e = 0; e < file_.model.effects.size(); ++e) {
+      const Names own = parameter_names(file_.model.effects[e]);
+      for (std::size_t i = 0; i < own.size(); ++i) {
+        const std::string name = file_.model.effects[e].id + "." + own[i];
+        const auto found = std::find(names.begin(), names.end(), name);
+        const std::optional<double> stated = file_.fit(e, i).standard_error;
+        if (found == names.end() || !stated) continue;
+        const auto place = static_cast<std::size_t>(found - names.begin());
+        const double here = std::sqrt(file_.covariance.matrix[place][place]);
+        if (std::abs(here - *stated) <= 0.02 * std::max(here, *stated)) continue;
+        fail(entry,
+             fmt::format("the covariance is of another model: the standard error of {} is {:.3g} there "
+                         "and {:.3g} in its effect; refit the model, or remove one of the two",
+                         name, here, *stated));
+      }
+    }
+  }
+
+  void read_uncertainty(const Entry& section_entry) {
+    StatedUncertainty& uncertainty = file_.uncertainty;
+    for (const Entry& entry : entries_of(table(section_entry), "[uncertainty]")) {
+      if (entry.key == "static_defect") {
+        uncertainty.static_defect = not_negative(entry);
+      } else if (entry.key == "static_defect_ratio") {
+        uncertainty.static_defect_ratio = not_negative(entry);
+      } else {
+        uncertainty.roles[role_of_sample(entry)] = not_negative(entry);
+      }
+    }
+  }
+
+  Quantity role_of_sample(const Entry& entry) const {
+    const Quantity quantity = quantity_named(entry.key);
+    if (quantity == Quantity::count || !is_role(quantity)) {
+      Names known = role_names();
+      known.insert(known.end(), {"static_defect", "static_defect_ratio"});
+      fail(entry.place,
+           fmt::format("there is no role {}; {}", in_quotes(entry.key), instead_of(entry.key, known)));
+    }
+    if (file_.variables.count(quantity) == 0) {
+      fail(entry.place, fmt::format("the role {} has an uncertainty but no variable; name its variable in "
+                                    "[variables], or remove it from [uncertainty]",
+                                    in_quotes(entry.key)));
+    }
+    return quantity;
   }
 
   void read_covariance_parameters(const Entry& entry) {
@@ -418,6 +483,13 @@ class Reader final : TomlReader {
       for (std::size_t j = 0; j < i; ++j) {
         if (matrix[i][j] != matrix[j][i]) fail(entry, "the matrix is not symmetric; refit the model");
       }
+    }
+    std::vector<double> rows;
+    for (const std::vector<double>& row : matrix) rows.insert(rows.end(), row.begin(), row.end());
+    if (!is_covariance(rows, size)) {
+      fail(entry,
+           "the matrix is no covariance: it gives some combination of the parameters a negative "
+           "variance; refit the model");
     }
   }
 

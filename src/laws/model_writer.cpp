@@ -29,7 +29,8 @@ class Writer {
     write_domain(file.model.domain);
     for (std::size_t i = 0; i < file.model.effects.size(); ++i) write_effect(file, i);
     write_law(file.law);
-    write_covariance(file.covariance);
+    write_covariance(file);
+    write_uncertainty(file.uncertainty);
     write_provenance(file.provenance);
     return text_;
   }
@@ -244,13 +245,21 @@ class Writer {
     line_unless_empty("note", law.note);
   }
 
-  void write_covariance(const Covariance& covariance) {
+  // With the values that it was found at, so that a later change of them is told.
+  void write_covariance(const ModelFile& file) {
+    const Covariance& covariance = file.covariance;
     if (covariance.parameters.empty() && covariance.matrix.empty()) return;
     heading("[covariance]");
     std::vector<std::string> names;
     names.reserve(covariance.parameters.size());
     for (const std::string& name : covariance.parameters) names.push_back(text(name));
     line("parameters", list(names));
+    std::vector<std::string> values;
+    for (const std::string& name : covariance.parameters) {
+      if (const double* const value = parameter_named(file.model, name))
+        values.push_back(number(*value, name));
+    }
+    line("values", list(values));
     std::string rows;
     for (const std::vector<double>& row : covariance.matrix) {
       std::vector<std::string> numbers;
@@ -259,6 +268,17 @@ class Writer {
       rows += fmt::format("  [{}],\n", fmt::join(numbers, ", "));
     }
     line("matrix", "[\n" + rows + "]");
+  }
+
+  void write_uncertainty(const StatedUncertainty& uncertainty) {
+    if (uncertainty.roles.empty() && !uncertainty.static_defect && !uncertainty.static_defect_ratio) return;
+    heading("[uncertainty]");
+    const auto stated = [this](std::string_view name, double value) {
+      line(name, number(value, fmt::format("the uncertainty of {}", name)));
+    };
+    for (const auto& [role, value] : uncertainty.roles) stated(facts_of(role).name, value);
+    if (uncertainty.static_defect) stated("static_defect", *uncertainty.static_defect);
+    if (uncertainty.static_defect_ratio) stated("static_defect_ratio", *uncertainty.static_defect_ratio);
   }
 
   void write_provenance(const Provenance& provenance) {

@@ -58,6 +58,23 @@ Quantities ambient_temperature(const Correction& correction) {
              : thermometer(correction);
 }
 
+constexpr std::string_view uncertainty_ending = "_uncertainty";
+
+/// CF names the standard error of a quantity by a modifier behind its standard name.
+OutputRow uncertainty(const std::string& name, Quantity quantity, Quantity result,
+                      const std::string& long_name, const std::string& standard_name,
+                      const std::string& category) {
+  OutputRow row;
+  row.name = name + std::string(uncertainty_ending);
+  row.quantity = quantity;
+  row.long_name = "Standard uncertainty of " + long_name;
+  if (!standard_name.empty()) row.standard_name = standard_name + " standard_error";
+  row.category = category;
+  row.from = [](const Correction&) { return Quantities{}; };
+  row.uncertainty_of = result;
+  return row;
+}
+
 }  // namespace
 
 const std::vector<OutputRow>& output_table() {
@@ -102,10 +119,28 @@ const std::vector<OutputRow>& output_table() {
          return joined({beam(c), {Q::corrected_static_pressure, Q::ambient_temperature}, humidity(c)});
        }},
       {"HYDSTEP", Q::height_step, "Hydrostatic height step per kelvin, -(R_a/g0) ln(p_i/p_(i-1))", "",
-       "Atmos. State", [](const Correction& c) {
+       "Atmos. State",
+       [](const Correction& c) {
          return joined({{Q::corrected_static_pressure}, humidity(c)});
-       }}};
+       }},
+      uncertainty("PCOR", Q::static_defect_uncertainty, Q::static_defect,
+                  "Static defect (delta-p) of the model", "", "Aircraft State"),
+      uncertainty("PSXC", Q::corrected_static_pressure_uncertainty, Q::corrected_static_pressure,
+                  "Corrected Static Pressure", "air_pressure", "Atmos. State"),
+      uncertainty("QCXC", Q::corrected_dynamic_pressure_uncertainty, Q::corrected_dynamic_pressure,
+                  "Corrected Dynamic Pressure", "", "Aircraft State"),
+      uncertainty("ATX", Q::ambient_temperature_uncertainty, Q::ambient_temperature, "Ambient Temperature",
+                  "air_temperature", "Atmos. State"),
+      uncertainty("TASX", Q::corrected_airspeed_uncertainty, Q::corrected_airspeed, "Aircraft True Airspeed",
+                  "platform_speed_wrt_air", "Aircraft State")};
   return table;
+}
+
+std::string_view result_of_uncertainty(std::string_view standard_name) {
+  constexpr std::string_view end = uncertainty_ending;
+  const std::size_t size = standard_name.size();
+  if (size <= end.size() || standard_name.substr(size - end.size()) != end) return {};
+  return standard_name.substr(0, size - end.size());
 }
 
 std::vector<std::string> output_names() {

@@ -85,10 +85,15 @@ class Processing {
   void choose_roles();
   void choose_inputs();
   void choose_rate();
+  ModelUncertainty uncertainty();
+  void note_uncertainty();
+  bool states(std::initializer_list<Where> places, std::initializer_list<Quantity> roles) const;
   FileDescription describe() const;
   void copy_variables(FlightWriter& writer, const FileDescription& description);
   Names dependencies_of(const OutputRow& row) const;
   void define_outputs(FlightWriter& writer);
+  bool is_written(const OutputRow& row) const;
+  std::string uncertainty_comment() const;
   void define_flags(FlightWriter& writer);
   std::size_t define(FlightWriter& writer, const OutputVariable& variable);
   void process_block(RecordBlock block, std::vector<double>& times);
@@ -103,6 +108,7 @@ class Processing {
   std::vector<Quantity> roles_;
   std::shared_ptr<const Chain> chain_;
   std::optional<Loop> loop_;
+  ModelUncertainty uncertainty_;  // of which the results' is found
   std::vector<Input> inputs_;
   std::vector<Output> outputs_;       // of the sample that is being run
   std::optional<DelayLine> delayed_;  // and of an earlier one
@@ -144,13 +150,76 @@ void Processing::choose_rate() {
   }
   std::string why;
   const double rate = summary_.rate / flight_.time().step;
-  loop_ = Loop::build(chain_, rate, &why, options_.correct_with);
+  uncertainty_ = uncertainty();
+  loop_ = Loop::build(chain_, rate, &why, options_.correct_with, uncertainty_);
   if (!loop_) fail_model(why);
   delayed_.emplace(chain_->has_lams() ? LowPass::delay(rate) : 0);
   sample_step_ = 1.0 / rate;
   if (!options_.hydrostatic) return;
   loop_->add(std::make_unique<HeightStep>());
   if (!loop_->order(&why)) fail_model(why);
+}
+
+/// What is stated of the model, as far as it is asked for; notes what is not. @throws Error if nothing is
+/// stated of what is asked for.
+ModelUncertainty Processing::uncertainty() {
+  const UncertaintyPart part = options_.uncertainty;
+  if (part == UncertaintyPart::none) return {};
+  ModelUncertainty stated = uncertainty_of(file_);
+  if (part == UncertaintyPart::systematic) stated = stated.systematic_part();
+  if (part == UncertaintyPart::random) stated = stated.random_part();
+  if (stated.has_systematic() || stated.has_random()) return stated;
+  if (part == UncertaintyPart::total_if_stated) return {};
+  const char* const what = part == UncertaintyPart::systematic
+                               ? "no standard error or covariance of a parameter"
+                           : part == UncertaintyPart::random ? "no uncertainty of a sample in [uncertainty]"
+                                                             : "no uncertainty";
+  fail_model(
+      fmt::format("it states {}, so its results have none; 'pcor refit' writes the covariance, "
+                  "[uncertainty] takes those of sensors, or leave out --uncertainty",
+                  what));
+}
+
+/// True where an uncertainty is stated of a coefficient at one of the places, or of one of the roles.
+bool Processing::states(std::initializer_list<Where> places, std::initializer_list<Quantity> roles) const {
+  const std::size_t count = chain_->parameters().size();
+  for (std::size_t effect = 0; !uncertainty_.covariance.empty() && effect < chain_->effect_count();
+       ++effect) {
+    if (std::find(places.begin(), places.end(), chain_->where_of(effect)) == places.end()) continue;
+    const std::size_t next =
+        effect + 1 < chain_->effect_count() ? chain_->first_parameter_of(effect + 1) : count;
+    for (std::size_t i = chain_->first_parameter_of(effect); i < next; ++i) {
+      if (uncertainty_.covariance[i * count + i] > 0.0) return true;
+    }
+  }
+  return std::any_of(roles.begin(), roles.end(),
+                     [this](Quantity role) { return uncertainty_.random[index(role)] > 0.0; });
+}
+
+void Processing::note_uncertainty() {
+  if (!uncertainty_.has_systematic() && !uncertainty_.has_random()) return;
+  if (options_.correct_with == CorrectWith::lams) {
+    note("samples that are corrected with LAMS have no uncertainty: the model's says nothing of the laser");
+  }
+  using Q = Quantity;
+  if (uncertainty_.static_defect == 0.0 && uncertainty_.static_defect_ratio == 0.0 &&
+      !states({Where::static_defect}, {})) {
+    note("the uncertainties are without that of delta-p, of which the model states none");
+  }
+  if (!states({Where::static_transducer, Where::static_line}, {Q::static_pressure}) ||
+      !states({Where::dynamic_transducer, Where::static_line, Where::total_line, Where::pitot},
+              {Q::dynamic_pressure})) {
+    note(
+        "the uncertainties are without those of both pressure transducers, of which the model does not state "
+        "each; [uncertainty] takes static_pressure and dynamic_pressure");
+  }
+  if (chain_->has_temperature() && !states({Where::temperature, Where::recovery, Where::ambient_temperature},
+                                           {Q::recovery_temperature, Q::ambient_temperature})) {
+    note(
+        "the uncertainties of temperature and airspeed are without that of the thermometer, of which the "
+        "model "
+        "states none");
+  }
 }
 
 FileDescription Processing::describe() const {
@@ -199,8 +268,9 @@ Processing::Names Processing::dependencies_of(const OutputRow& row) const {
 
 void Processing::define_outputs(FlightWriter& writer) {
   for (const OutputRow& row : output_table()) {
-    if (!loop_->writes(row.quantity)) continue;
-    const bool is_temperature = facts_of(row.quantity).unit == "K";
+    if (!is_written(row)) continue;
+    const bool is_uncertainty = row.uncertainty_of != Quantity::count;
+    const bool is_temperature = !is_uncertainty && facts_of(row.quantity).unit == "K";
     OutputVariable variable;
     variable.name = name_of(row.name);
     variable.rate = summary_.rate;
@@ -209,7 +279,15 @@ void Processing::define_outputs(FlightWriter& writer) {
     variable.standard_name = row.standard_name;
     variable.category = row.category;
     variable.dependencies = dependencies_of(row);
-    variable.ancillary_variables = {name_of(std::string(quality_output))};
+    for (const OutputRow& other : output_table()) {
+      if (other.uncertainty_of == row.quantity && is_written(other))
+        variable.ancillary_variables.push_back(name_of(other.name));
+    }
+    variable.ancillary_variables.push_back(name_of(std::string(quality_output)));
+    if (is_uncertainty) {
+      variable.dependencies = {output_names_.at(row.uncertainty_of)};
+      variable.attributes = {{"coverage_factor", "1"}, {"comment", uncertainty_comment()}};
+    }
     if (row.quantity == Quantity::height_step) {
       variable.attributes = {{"temperature_calibration", temperature_calibration()},
                              {"model", archived_model(file_, options_.correct_with)}};
@@ -222,6 +300,22 @@ void Processing::define_outputs(FlightWriter& writer) {
       outputs_.push_back(std::move(output));
     }
   }
+}
+
+/// An uncertainty is written beside its result only.
+bool Processing::is_written(const OutputRow& row) const {
+  if (!loop_->writes(row.quantity)) return false;
+  return row.uncertainty_of == Quantity::count || loop_->writes(row.uncertainty_of);
+}
+
+std::string Processing::uncertainty_comment() const {
+  const bool systematic = uncertainty_.has_systematic();
+  const bool random = uncertainty_.has_random();
+  return fmt::format("one standard deviation: {}",
+                     systematic && random ? "the systematic part, which is the same error in neighbouring "
+                                            "samples, and the random part, which is not"
+                     : systematic ? "the systematic part alone, the same error in neighbouring samples"
+                                  : "the random part alone, of a single sample");
 }
 
 void Processing::define_flags(FlightWriter& writer) {
@@ -340,6 +434,7 @@ ProcessSummary Processing::run(const std::filesystem::path& output) {
   for (std::string& each : notes_on_law(flight_, file_)) summary_.notes.push_back(std::move(each));
   choose_inputs();
   choose_rate();
+  note_uncertainty();
   const FileDescription description = describe();
   FlightWriter writer(output, flight_, description);
   copy_variables(writer, description);

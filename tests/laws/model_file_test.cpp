@@ -206,6 +206,12 @@ class Description {
     for (const auto& row : file.covariance.matrix) {
       for (const double number : row) value(number);
     }
+    for (const auto& [role, size] : file.uncertainty.roles) {
+      value(facts_of(role).name);
+      value(size);
+    }
+    value(file.uncertainty.static_defect);
+    value(file.uncertainty.static_defect_ratio);
     value(file.provenance);
   }
 
@@ -252,6 +258,7 @@ class ModelGenerator {
     for (const ModelEffect& effect : file.model.effects) file.fits.push_back(fit(effect));
     if (maybe()) file.law = {words(), "2011-11-02", "2012-02-29", positive(), words()};
     if (maybe()) covariance(file);
+    if (maybe()) uncertainty(file);
     file.provenance = provenance(3);
     return file;
   }
@@ -397,17 +404,32 @@ class ModelGenerator {
 
   void covariance(ModelFile& file) {
     std::vector<std::string>& names = file.covariance.parameters;
-    for (const ModelEffect& effect : file.model.effects) {
-      for (const std::string& name : parameter_names(effect)) {
-        if (maybe()) names.push_back(effect.id + "." + name);
+    std::vector<double> errors;
+    for (std::size_t e = 0; e < file.model.effects.size(); ++e) {
+      const ModelEffect& effect = file.model.effects[e];
+      const std::vector<std::string> own = parameter_names(effect);
+      for (std::size_t i = 0; i < own.size(); ++i) {
+        const double error = file.fit(e, i).standard_error.value_or(1.0);
+        if (!maybe() || error < 1e-100 || error > 1e100) continue;  // its square has to be a number
+        names.push_back(effect.id + "." + own[i]);
+        errors.push_back(error);
       }
     }
+    const double correlation = 0.01 * static_cast<double>(below(101));
     std::vector<std::vector<double>>& matrix = file.covariance.matrix;
     matrix.assign(names.size(), std::vector<double>(names.size()));
     for (std::size_t i = 0; i < names.size(); ++i) {
-      matrix[i][i] = positive();
-      for (std::size_t j = 0; j < i; ++j) matrix[i][j] = matrix[j][i] = number();
+      for (std::size_t j = 0; j < names.size(); ++j)
+        matrix[i][j] = errors[i] * errors[j] * (i == j ? 1.0 : correlation);
     }
+  }
+
+  void uncertainty(ModelFile& file) {
+    for (const auto& [role, variable] : file.variables) {
+      if (maybe()) file.uncertainty.roles[role] = positive();
+    }
+    if (maybe()) file.uncertainty.static_defect = positive();
+    if (maybe()) file.uncertainty.static_defect_ratio = positive();
   }
 
   Provenance provenance(std::size_t depth) {
@@ -611,6 +633,45 @@ apple = { used = 12, share = 0.5, clean = true }
 
   const std::string written = write_model(file);
   EXPECT_EQ(Description::of(parse_model(written, "m.toml")), Description::of(file)) << written;
+}
+
+// What is known of parameters that are fitted, of others that are only considered, and of samples.
+TEST(ModelFile, GathersItsUncertainty) {
+  const ModelFile file = parse_model(least + R"([[effect]]
+id = "static-constant"
+parameters = { a0 = 0.004 }
+stderr = { a0 = 1e-4 }
+[[effect]]
+id = "psfd-bias"
+stderr = { offset = 0.1 }
+fixed = ["offset"]
+[[effect]]
+id = "static-qp"
+stderr = { a2 = 2e-3 }
+[covariance]
+parameters = ["static-qp.a2", "static-constant.a0"]
+matrix = [[4e-6, -1e-7], [-1e-7, 1e-8]]
+[uncertainty]
+dynamic_pressure = 0.03
+static_defect_ratio = 0.00045
+)",
+                                     "m.toml");
+  const ModelUncertainty uncertainty = uncertainty_of(file);
+  EXPECT_THAT(uncertainty.covariance, ElementsAre(1e-8, 0.0, -1e-7,                   //
+                                                  0.0, testing::DoubleEq(0.01), 0.0,  //
+                                                  -1e-7, 0.0, 4e-6));
+  EXPECT_EQ(uncertainty.random[index(Quantity::dynamic_pressure)], 0.03);
+  EXPECT_EQ(uncertainty.random[index(Quantity::static_pressure)], 0.0);
+  EXPECT_EQ(uncertainty.static_defect_ratio, 0.00045);
+  EXPECT_FALSE(uncertainty_of(parse_model(least, "m.toml")).has_systematic());
+}
+
+TEST(ModelFile, AnUncertaintyIsCalledLikeItsResult) {
+  const ModelFile file = parse_model(
+      least + "[output]\nPSXC = \"PSFDC\"\nQCXC = \"QCFC\"\nQCXC_uncertainty = \"U\"\n", "m.toml");
+  EXPECT_EQ(file.output_name("PSXC_uncertainty"), "PSFDC_uncertainty");
+  EXPECT_EQ(file.output_name("QCXC_uncertainty"), "U");
+  EXPECT_EQ(file.output_name("ATX_uncertainty"), "ATX_uncertainty");
 }
 
 TEST(ModelFile, AnEffectWithoutBoundsHasThoseOfTheCatalogue) {
@@ -934,6 +995,35 @@ INSTANTIATE_TEST_SUITE_P(
                             "[\"static-constant.a0\", \"static-qp.a2\"]\nmatrix = [[1, 2], [3, 4]]\n",
                  "11:10",
                  {"not symmetric"}},
+        BadInput{"CovarianceNotPositive",
+                 constant + "[[effect]]\nid = \"static-qp\"\n[covariance]\nparameters = "
+                            "[\"static-constant.a0\", \"static-qp.a2\"]\nmatrix = [[1, 2], [2, 1]]\n",
+                 "11:10",
+                 {"negative variance", "refit the model"}},
+        BadInput{"CovarianceOfOtherValues",
+                 constant + "[covariance]\nparameters = [\"static-constant.a0\"]\nvalues = [0.5]\nmatrix = "
+                            "[[1]]\n",
+                 "9:10",
+                 {"of another model", "static-constant.a0 was 0.5 there", "refit the model"}},
+        BadInput{
+            "CovarianceOfMoreValues",
+            constant + "[covariance]\nparameters = [\"static-constant.a0\"]\nvalues = []\nmatrix = [[1]]\n",
+            "9:10",
+            {"'values' has 0 numbers; give 1"}},
+        BadInput{"CovarianceOfOtherErrors",
+                 constant + "stderr = { a0 = 0.2 }\n[covariance]\nparameters = [\"static-constant.a0\"]\n"
+                            "matrix = [[0.01]]\n",
+                 "10:10",
+                 {"of another model", "0.1 there and 0.2 in its effect"}},
+        BadInput{"UncertaintyOfNothing",
+                 "[uncertainty]\nstatic_presure = 0.1\n",
+                 "6:1",
+                 {"did you mean static_pressure"}},
+        BadInput{"UncertaintyWithoutVariable",
+                 "[uncertainty]\nattack = 0.1\n",
+                 "6:1",
+                 {"'attack' has an uncertainty but no variable"}},
+        BadInput{"NegativeUncertainty", "[uncertainty]\nstatic_defect = -0.1\n", "6:17", {"negative"}},
         BadInput{"ProvenanceNaN", "[provenance]\nrms = { a = [nan] }\n", "6:14", {"not finite"}}),
     [](const auto& test) { return test.param.name; });
 

@@ -92,6 +92,17 @@ Model everything(pcor::LamsApproach approach) {
   return model;
 }
 
+// Of every parameter and of every role.
+pcor::ModelUncertainty of_everything(const Model& model) {
+  std::size_t count = 0;
+  for (const pcor::ModelEffect& effect : model.effects) count += effect.parameters.size();
+  pcor::ModelUncertainty uncertainty;
+  uncertainty.covariance.assign(count * count, 0.0);
+  for (std::size_t i = 0; i < count; ++i) uncertainty.covariance[i * count + i] = 1e-6;
+  uncertainty.random.fill(0.1);
+  return uncertainty;
+}
+
 TEST(Allocation, IsCountedByThisTest) {
   const std::size_t before = allocations;
   const auto value = std::make_unique<double>(1.0);
@@ -102,15 +113,18 @@ TEST(Allocation, IsCountedByThisTest) {
 TEST(Allocation, DoesNotHappenInTheLoop) {
   for (const auto approach : {pcor::LamsApproach::simultaneous, pcor::LamsApproach::iterated}) {
     std::string error;
+    const pcor::ModelUncertainty uncertainty = of_everything(everything(approach));
     auto loop =
         Loop::build(everything(approach),
                     {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::radome_dynamic_pressure,
                      Quantity::attack_differential_pressure, Quantity::sideslip_differential_pressure,
                      Quantity::recovery_temperature, Quantity::dew_point, Quantity::lams_airspeed},
-                    25.0, &error, pcor::CorrectWith::lams);
+                    25.0, &error, pcor::CorrectWith::lams, uncertainty);
     ASSERT_TRUE(loop) << error;
     int corrected = 0;
     int filtered = 0;
+    int defects = 0;
+    int uncertain = 0;
     const std::size_t allocations_before = allocations;
     const std::size_t releases_before = releases;
     for (int i = 0; i < 100000; ++i) {
@@ -128,6 +142,8 @@ TEST(Allocation, DoesNotHappenInTheLoop) {
       s[pcor::extra_quantity(0)] = 50.0 + 60.0 * wave;
       loop->run(time);
       filtered += std::isnan(s[Quantity::filtered_lams_temperature]) ? 0 : 1;
+      defects += std::isnan(s[Quantity::static_defect]) ? 0 : 1;
+      uncertain += s[Quantity::static_defect_uncertainty] > 0.0 ? 1 : 0;
       corrected += loop->quality().has(pcor::Quality::corrected_with_lams) ? 1 : 0;
     }
     EXPECT_EQ(allocations, allocations_before);
@@ -135,6 +151,8 @@ TEST(Allocation, DoesNotHappenInTheLoop) {
     EXPECT_GT(corrected, 50000);
     EXPECT_LT(corrected, 100000);
     EXPECT_GT(filtered, 50000);
+    EXPECT_GT(uncertain, 50000);
+    EXPECT_EQ(uncertain, defects);
   }
 }
 

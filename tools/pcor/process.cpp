@@ -20,6 +20,7 @@ struct Options {
   std::string output;
   std::string correct_with = "model";
   std::string time_stamp = "begin";
+  std::string uncertainty;
   std::string suffix;
   bool copy_all = false;
   bool hydrostatic = false;
@@ -30,6 +31,7 @@ std::string command_line(const Options& options) {
                                  quoted(options.model), quoted(options.output));
   if (options.correct_with != "model") line += " --correct-with " + options.correct_with;
   if (options.time_stamp != "begin") line += " --time-stamp " + options.time_stamp;
+  if (!options.uncertainty.empty()) line += " --uncertainty " + options.uncertainty;
   if (!options.suffix.empty()) line += " --suffix " + quoted(options.suffix);
   if (options.copy_all) line += " --all";
   if (options.hydrostatic) line += " --hydrostatic";
@@ -100,6 +102,13 @@ void print(const ProcessSummary& summary, const Options& options) {
              quoted(options.output));
 }
 
+UncertaintyPart part_named(const std::string& name) {
+  if (name == "total") return UncertaintyPart::total;
+  if (name == "systematic") return UncertaintyPart::systematic;
+  if (name == "random") return UncertaintyPart::random;
+  return name == "none" ? UncertaintyPart::none : UncertaintyPart::total_if_stated;
+}
+
 void run(const Options& options) {
   refuse_overwriting({options.output, options.common.json}, {options.input, options.model});
   JsonResult json(options.common);
@@ -109,6 +118,7 @@ void run(const Options& options) {
   process.time_stamp = options.time_stamp == "middle" ? TimeStamp::middle : TimeStamp::begin;
   process.copy_all = options.copy_all;
   process.hydrostatic = options.hydrostatic;
+  process.uncertainty = part_named(options.uncertainty);
   process.suffix = options.suffix;
   process.history = command_line(options);
   ProcessSummary summary;
@@ -145,6 +155,11 @@ std::function<void()> add_process(CLI::App& program) {
                    "whether the time of a record is the beginning or the middle of its second")
       ->check(CLI::IsMember({"begin", "middle"}))
       ->capture_default_str();
+  command
+      ->add_option("--uncertainty", options->uncertainty,
+                   "write the standard uncertainties of results: total, or the part that is systematic or "
+                   "random alone, or none; without this option the total where the model states any")
+      ->check(CLI::IsMember({"total", "systematic", "random", "none"}));
   command->add_option("--suffix", options->suffix, "add S to the names of the derived variables")
       ->type_name("S");
   command->add_flag("--all", options->copy_all, "copy every variable of the input");

@@ -15,6 +15,7 @@
 
 #include <pcor/model/model.hpp>
 #include <pcor/model/quantity.hpp>
+#include <pcor/model/uncertainty.hpp>
 
 namespace pcor {
 
@@ -50,6 +51,14 @@ struct Covariance {
   std::vector<std::vector<double>> matrix{};
 };
 
+/// What the file states of single samples, as standard uncertainties: of roles, in their units, and of what
+/// the law leaves of delta-p.
+struct StatedUncertainty {
+  std::map<Quantity, double> roles{};
+  std::optional<double> static_defect{};        ///< hPa
+  std::optional<double> static_defect_ratio{};  ///< a part of the static pressure
+};
+
 struct ProvenanceValue;
 using ProvenanceList = std::vector<ProvenanceValue>;
 /// How a model came to be: keys with their values, in order.
@@ -72,12 +81,14 @@ struct ModelFile {
   std::vector<EffectFit> fits{};                ///< one for each effect of the model, or fewer
   LawFacts law{};
   Covariance covariance{};
+  StatedUncertainty uncertainty{};
   Provenance provenance{};
 
   /// The roles that have a variable, in the order of the enumeration.
   std::vector<Quantity> roles() const;
 
-  /// What the result with that standard name is called in this model's output.
+  /// What the result with that standard name is called in this model's output. An uncertainty without a name
+  /// of its own has that of its result, with `_uncertainty` behind it.
   std::string output_name(std::string_view standard_name) const;
 
   /// What the file says of parameter number `parameter` of effect number `effect`.
@@ -86,6 +97,10 @@ struct ModelFile {
   /// The bounds of that parameter: the file's, else the catalogue's, else none.
   Bounds bounds(std::size_t effect, std::size_t parameter) const;
 };
+
+/// How well the model is known, as a loop takes it: the file's covariance, the standard errors of parameters
+/// that are not in it, independent of all others, and what the file states of single samples.
+ModelUncertainty uncertainty_of(const ModelFile& file);
 
 /// The names of an effect's parameters, of the catalogue or of a formula. @throws Error if the effect is
 /// neither.

@@ -66,6 +66,12 @@ enum class Quantity : std::uint8_t {
   filtered_lams_temperature,
   height_step,
 
+  static_defect_uncertainty,
+  corrected_static_pressure_uncertainty,
+  corrected_dynamic_pressure_uncertainty,
+  ambient_temperature_uncertainty,
+  corrected_airspeed_uncertainty,
+
   count
 };
 
@@ -180,6 +186,18 @@ inline constexpr std::array<QuantityFacts, quantity_count> quantity_facts{{
      Quantity::filtered_lams_temperature},
     {"height_step", "m/K", "step of geopotential height per kelvin since the sample before",
      Quantity::height_step},
+
+    {"static_defect_uncertainty", "hPa", "standard uncertainty of delta-p of the model",
+     Quantity::static_defect_uncertainty},
+    {"corrected_static_pressure_uncertainty", "hPa", "standard uncertainty of the corrected static pressure",
+     Quantity::corrected_static_pressure_uncertainty},
+    {"corrected_dynamic_pressure_uncertainty", "hPa",
+     "standard uncertainty of the corrected dynamic pressure",
+     Quantity::corrected_dynamic_pressure_uncertainty},
+    {"ambient_temperature_uncertainty", "K", "standard uncertainty of the ambient temperature",
+     Quantity::ambient_temperature_uncertainty},
+    {"corrected_airspeed_uncertainty", "m/s", "standard uncertainty of the true airspeed",
+     Quantity::corrected_airspeed_uncertainty},
 }};
 
 /// True where every row of the facts stands at the place of its quantity.

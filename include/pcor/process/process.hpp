@@ -14,12 +14,17 @@
 
 namespace pcor {
 
+/// Which part of the standard uncertainties of results is written: all of it, what stays the same from sample
+/// to sample (the covariance of the model's parameters), or what does not (sensors, and what the law leaves).
+enum class UncertaintyPart { total_if_stated, total, systematic, random, none };
+
 /// How a flight is processed.
 struct ProcessOptions {
   CorrectWith correct_with = CorrectWith::model;
   bool copy_all = false;  ///< copy every variable of the input, not only coordinates and what was used
   /// Write the steps of hydrostatic height, `HYDSTEP`, and copy what a fit of temperature needs besides.
   bool hydrostatic = false;
+  UncertaintyPart uncertainty = UncertaintyPart::total_if_stated;
   std::string suffix{};  ///< added to the name of every derived variable
   TimeStamp time_stamp = TimeStamp::begin;
   std::string history{};  ///< what the output says of its making, e.g. the command line
@@ -61,6 +66,10 @@ struct ProcessSummary {
 /// of: the delay of the loop is taken out, and so it is for the bit `filter_window_incomplete`. Nothing goes
 /// across a gap. At 25 Hz the first and last 0.8 s of a stretch without gaps have none.
 ///
+/// Where the model states uncertainties (`uncertainty_of`), `PCOR_uncertainty`, `PSXC_uncertainty`,
+/// `QCXC_uncertainty`, `ATX_uncertainty` and `TASX_uncertainty` are written beside their results, which name
+/// them in `ancillary_variables` (`ResultUncertainty`); notes say what is not in them.
+///
 /// `hydrostatic` asks for `HYDSTEP`, -(R_a/g0) ln(p_i/p_(i-1)) in m/K (`hydrostatic_step`): times the mean
 /// temperature of two samples in K it is the step of geopotential height (standard gravity) between them. It
 /// has no value for the first sample, after a gap, and where either PSXC is missing. Its attribute
@@ -72,7 +81,8 @@ struct ProcessSummary {
 /// not depend on the length of the flight.
 ///
 /// @throws Error, and leaves `output` as it was, if the flight or a variable that the model needs cannot be
-/// read, a unit is unknown, the model cannot be used, a name is taken, or the output cannot be written.
+/// read, a unit is unknown, the model cannot be used, an uncertainty is asked for of which the model states
+/// nothing, a name is taken, or the output cannot be written.
 ProcessSummary process_flight(const std::filesystem::path& input, const ModelFile& model,
                               const std::filesystem::path& output, const ProcessOptions& options = {});
 

@@ -79,6 +79,19 @@ class BoundModel {
 
   bool has_lams() const { return recorded(Quantity::lams_airspeed); }
 
+  /// How many effects the model has, and of each where it acts and the place of its first coefficient among
+  /// `parameters`.
+  std::size_t effect_count() const { return effects_.size(); }
+  Where where_of(std::size_t effect) const { return effects_[effect].where; }
+  std::size_t first_parameter_of(std::size_t effect) const { return effects_[effect].first_parameter; }
+
+  /// True where the value of the effect is linear in that coefficient of it, and zero where all such are
+  /// zero.
+  bool is_linear(std::size_t effect, std::size_t parameter) const {
+    const std::size_t place = effects_[effect].effect;
+    return place < catalogue_size && !effect_facts[place].parameters[parameter].shape;
+  }
+
   /// What effect number `effect` of the model gives for a state that `Chain::measure` has been through, in
   /// the unit of its place. Zero for an effect on the laser's beam where there is no laser.
   /// @param own the coefficients of this effect alone

@@ -201,6 +201,55 @@ class Chain : public BoundModel {
         state[Quantity::corrected_static_pressure], v, state[Quantity::ambient_temperature], constants);
   }
 
+  /// The part of the effects at the static ports that the taper leaves of delta-p: 1 without one.
+  template <class S>
+  S taper_fraction(const State<S>& state) const {
+    const S q = state[Quantity::dynamic_pressure];
+    const auto slow = q < S(policy_.taper_below);
+    return any(slow) ? select(slow, taper(S(1.0), q), S(1.0)) : S(1.0);
+  }
+
+  /// The recovery factor at Mach number `mach`, with the effects that act on it.
+  template <class S, class P>
+  S recovery_factor(const S& mach, const State<S>& state, const P* parameters) const {
+    return recovery_(mach) + sum<S>(Where::recovery, state, parameters);
+  }
+
+  /// By how much the ambient temperature changes with what it was before its calibration: 1 without one.
+  template <class S, class P>
+  S calibration_slope(const State<S>& state, const P* parameters) const {
+    if (!acts(Where::ambient_temperature)) return S(1.0);
+    State<S> moved = state;
+    moved[Quantity::ambient_temperature] = state[Quantity::ambient_temperature] + S(0.5);
+    const S above = sum<S>(Where::ambient_temperature, moved, parameters);
+    moved[Quantity::ambient_temperature] = state[Quantity::ambient_temperature] - S(0.5);
+    return S(1.0) + above - sum<S>(Where::ambient_temperature, moved, parameters);
+  }
+
+  /// Adds to a quantity of a state that `measure` has been through, and takes along what the laws see of it:
+  /// the ratios and the Mach number of the pressures, the ratios of the radome and the angles found from
+  /// them.
+  template <class S>
+  void change(State<S>& state, Quantity quantity, const S& by) const {
+    const S radome = state[Quantity::radome_dynamic_pressure];
+    S attack_ratio(0.0);
+    S sideslip_ratio(0.0);
+    if (quantity == Quantity::attack_ratio) attack_ratio = by;
+    if (quantity == Quantity::attack_differential_pressure) attack_ratio = by / radome;
+    if (quantity == Quantity::sideslip_differential_pressure) sideslip_ratio = by / radome;
+    if (quantity == Quantity::radome_dynamic_pressure) {
+      attack_ratio = -state[Quantity::attack_ratio] * by / (radome + by);
+      sideslip_ratio = -state[Quantity::sideslip_ratio] * by / (radome + by);
+    }
+    if (quantity != Quantity::attack_ratio) state[quantity] = state[quantity] + by;
+    const S p = state[Quantity::static_pressure];
+    const S q = state[Quantity::dynamic_pressure];
+    if (derives(Quantity::dynamic_ratio)) state[Quantity::dynamic_ratio] = q / p;
+    if (derives(Quantity::mach)) state[Quantity::mach] = mach_number(p, q, dry_air<S>());
+    turn(state, Quantity::attack_ratio, attack_ratio, Quantity::attack, attack_radome_);
+    turn(state, Quantity::sideslip_ratio, sideslip_ratio, Quantity::sideslip, sideslip_radome_);
+  }
+
  private:
   explicit Chain(BoundModel bound) : BoundModel(std::move(bound)) {}
 
@@ -211,6 +260,18 @@ class Chain : public BoundModel {
   template <class S, class P>
   void add(Where where, Quantity quantity, State<S>& state, const P* parameters) const {
     if (acts(where)) state[quantity] = state[quantity] + sum<S>(where, state, parameters);
+  }
+
+  // Adds to a ratio of the radome, and to the angle that is found from it.
+  template <class S>
+  void turn(State<S>& state, Quantity ratio, const S& by, Quantity angle,
+            const RadomeCalibration& radome) const {
+    if (!needs(ratio)) return;
+    state[ratio] = state[ratio] + by;
+    if (!derives(angle)) return;
+    S slope(radome.slope);
+    if (radome.needs_mach()) slope = slope + S(radome.slope_mach) * state[Quantity::mach];
+    state[angle] = state[angle] + slope * by;
   }
 
   // The ratios of the radome pressures, and the angles of flow where they are found from these.

@@ -13,6 +13,7 @@
 #include <pcor/realtime/functor.hpp>
 #include <pcor/realtime/low_pass.hpp>
 #include <pcor/realtime/rate_of_change.hpp>
+#include <pcor/realtime/result_uncertainty.hpp>
 #include <pcor/realtime/stages.hpp>
 
 namespace pcor {
@@ -51,13 +52,16 @@ class Loop {
 
   /// A loop that runs `model` on the roles `recorded`: delta-p, corrected pressures, Mach number, humidity,
   /// ambient temperature, airspeed, and what LAMS says where its airspeed is recorded, its temperature also
-  /// filtered (`LowPass`). Returns nothing where the model cannot be used; `error` says why.
+  /// filtered (`LowPass`). Where an uncertainty is stated, those of the results, too (`ResultUncertainty`).
+  /// Returns nothing where the model cannot be used; `error` says why.
   static std::optional<Loop> build(const Model& model, const std::vector<Quantity>& recorded, double rate,
-                                   std::string* error, CorrectWith with = CorrectWith::model);
+                                   std::string* error, CorrectWith with = CorrectWith::model,
+                                   const ModelUncertainty& uncertainty = {});
 
   /// The same for a chain that is built already.
   static std::optional<Loop> build(std::shared_ptr<const Chain> chain, double rate, std::string* error,
-                                   CorrectWith with = CorrectWith::model);
+                                   CorrectWith with = CorrectWith::model,
+                                   const ModelUncertainty& uncertainty = {});
 
   /// The place of the variable `name` for functors of the user's own: the one it has already, as a quantity
   /// of the library or in a formula, else a new one. Nothing where the room is used up.
@@ -186,18 +190,19 @@ inline bool Loop::order(std::string* error) {
 }
 
 inline std::optional<Loop> Loop::build(const Model& model, const std::vector<Quantity>& recorded, double rate,
-                                       std::string* error, CorrectWith with) {
+                                       std::string* error, CorrectWith with,
+                                       const ModelUncertainty& uncertainty) {
   BindingError why;
   std::optional<Chain> chain = Chain::build(model, recorded, &why);
   if (!chain) {
     if (error != nullptr) *error = why.message();
     return std::nullopt;
   }
-  return build(std::make_shared<const Chain>(std::move(*chain)), rate, error, with);
+  return build(std::make_shared<const Chain>(std::move(*chain)), rate, error, with, uncertainty);
 }
 
 inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, double rate, std::string* error,
-                                       CorrectWith with) {
+                                       CorrectWith with, const ModelUncertainty& uncertainty) {
   const auto fail = [error](const char* why) {
     if (error != nullptr) *error = why;
     return std::nullopt;
@@ -223,6 +228,11 @@ inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, doubl
   if (chain->has_lams()) {
     loop.add(
         std::make_unique<LowPass>(Quantity::lams_temperature, Quantity::filtered_lams_temperature, rate));
+  }
+  if (uncertainty.has_systematic() || uncertainty.has_random()) {
+    auto functor = ResultUncertainty::build(chain, uncertainty, with, error);
+    if (functor == nullptr) return std::nullopt;
+    loop.add(std::move(functor));
   }
   if (!loop.order(error)) return std::nullopt;
   return loop;

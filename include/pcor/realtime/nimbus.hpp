@@ -53,9 +53,11 @@ class NimbusSystem {
 
   /// Sets `model` up for both rates (samples in a second), in place of what was installed before. `inputs`
   /// are the names of roles, or of variables in the model's formulas, in the order of the leader's dependency
-  /// line. Returns false, and changes nothing, where the model cannot be used; `error` says why.
+  /// line. Where an `uncertainty` is stated entries may fetch those of the results. Returns false, and
+  /// changes nothing, where the model cannot be used; `error` says why.
   static bool install(const Model& model, const std::vector<std::string>& inputs, double low_rate,
-                      double high_rate, std::string* error, CorrectWith with = CorrectWith::model) {
+                      double high_rate, std::string* error, CorrectWith with = CorrectWith::model,
+                      const ModelUncertainty& uncertainty = {}) {
     const auto fail = [error](std::string why) {
       if (error != nullptr) *error = std::move(why);
       return false;
@@ -66,8 +68,8 @@ class NimbusSystem {
       const Quantity quantity = quantity_named(name);
       if (quantity != Quantity::count && is_role(quantity)) roles.push_back(quantity);
     }
-    std::optional<Loop> low = Loop::build(model, roles, low_rate, error, with);
-    std::optional<Loop> high = Loop::build(model, roles, high_rate, error, with);
+    std::optional<Loop> low = Loop::build(model, roles, low_rate, error, with, uncertainty);
+    std::optional<Loop> high = Loop::build(model, roles, high_rate, error, with, uncertainty);
     if (!low || !high) return false;
     const std::vector<std::string>& extras = low->extra_names();
     for (const std::string& extra : extras) {

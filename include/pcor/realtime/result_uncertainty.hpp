@@ -1,0 +1,504 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pcor/model/uncertainty.hpp>
+#include <pcor/realtime/functor.hpp>
+#include <pcor/realtime/stages.hpp>
+
+namespace pcor {
+
+/// A result of the loop and its standard uncertainty, which is in the same unit.
+struct UncertainResult {
+  Quantity result;
+  Quantity uncertainty;
+};
+
+inline constexpr std::array<UncertainResult, 5> uncertain_results{{
+    {Quantity::static_defect, Quantity::static_defect_uncertainty},
+    {Quantity::corrected_static_pressure, Quantity::corrected_static_pressure_uncertainty},
+    {Quantity::corrected_dynamic_pressure, Quantity::corrected_dynamic_pressure_uncertainty},
+    {Quantity::ambient_temperature, Quantity::ambient_temperature_uncertainty},
+    {Quantity::corrected_airspeed, Quantity::corrected_airspeed_uncertainty},
+}};
+
+/// The standard uncertainties of delta-p, corrected pressures, ambient temperature and airspeed of every
+/// sample, by the law of propagation (GUM 5.2.2):
+///
+///     u^2 = g' C g + sum_i (dy/dx_i u_i)^2
+///
+/// with g the derivatives of the result by the coefficients, C their covariance, and u_i the random
+/// uncertainty of each input of the sample, and of the law itself. Derivatives by coefficients that an effect
+/// is not linear in are differences over two of their standard uncertainties (GUM 5.1.3, note 2). By
+/// pressures, temperature and humidity they are those of the equations of the air with the constants of dry
+/// air, which is within 2 % of the uncertainty. They change slowly, so a sample keeps the uncertainties that
+/// were found less than two seconds ago at pressures within 5 %: at 25 Hz that is what it can afford.
+/// docs/uncertainty.md says what is in them and what cannot be.
+///
+/// Where delta-p is raised to the minimum of the law it keeps the uncertainty of the law; where it is tapered
+/// that is tapered, too. Where a result is missing so is its uncertainty. Where LAMS corrects the sample all
+/// but that of delta-p of the model are missing: what the model knows of itself says nothing of the laser.
+class ResultUncertainty final : public Functor {
+ public:
+  /// Null where `uncertainty` is not of the model in `chain`; `error` says why.
+  static std::unique_ptr<ResultUncertainty> build(std::shared_ptr<const Chain> chain,
+                                                  const ModelUncertainty& uncertainty, CorrectWith with,
+                                                  std::string* error) {
+    const auto fail = [error](std::string why) {
+      if (error != nullptr) *error = std::move(why);
+      return nullptr;
+    };
+    const std::size_t count = chain->parameters().size();
+    if (!uncertainty.covariance.empty()) {
+      if (uncertainty.covariance.size() != count * count) {
+        return fail("the covariance is not of this model, which has " + std::to_string(count) +
+                    " parameter(s)");
+      }
+      if (!is_covariance(uncertainty.covariance, count)) {
+        return fail("the covariance of the model's parameters gives a negative variance");
+      }
+    }
+    return std::unique_ptr<ResultUncertainty>(new ResultUncertainty(std::move(chain), uncertainty, with));
+  }
+
+  void reset() noexcept override { is_complete_ = false; }
+
+  void compute(State<double>& state, QualityFlags&) noexcept override {
+    if (!still_holds(state)) find(state);
+    // Zero times a result is missing where the result is.
+    for (std::size_t i = 0; i < uncertain_results.size(); ++i)
+      state[uncertain_results[i].uncertainty] = found_[i] + 0.0 * state[uncertain_results[i].result];
+    if (with_ == CorrectWith::lams && !is_missing(state[Quantity::lams_static_defect])) {
+      for (std::size_t i = 1; i < uncertain_results.size(); ++i)
+        state[uncertain_results[i].uncertainty] = missing<double>();
+    }
+  }
+
+ private:
+  /// One value for each of `uncertain_results`.
+  using Results = std::array<double, uncertain_results.size()>;
+
+  /// Changes of what the corrected air is found from.
+  struct Changes {
+    double static_defect = 0.0;
+    double static_pressure = 0.0;   // at the port
+    double dynamic_pressure = 0.0;  // at the ports
+    double thermometer = 0.0;
+    double recovery = 0.0;
+    double ambient = 0.0;  // before its calibration
+    double calibration = 0.0;
+    double vapor = 0.0;
+  };
+
+  /// What such changes do to the results of one sample. With h = (1 + q/p)^(R/c_p) - 1 = M^2 (gamma - 1)/2:
+  ///
+  ///     dh = R/c_p (1 + h) (dq - q/p dp)/(p + q),   T = T_r/(1 + a_r h),   v^2 = 2 c_p T h
+  ///
+  /// and for the vapour, x = e/p: dR/R = (1 - eps) dx, d(R/c_p) = -R/c_p dx/7, d(1/(gamma - 1)) = dx/5 of it.
+  struct Sensitivity {
+    Sensitivity(const Chain& chain, const State<double>& state) {
+      const double p = state[Quantity::corrected_static_pressure];
+      const double q = state[Quantity::corrected_dynamic_pressure];
+      const double mach = state[Quantity::corrected_mach];
+      const double temperature = state[Quantity::ambient_temperature];
+      const double heating = 0.2 * mach * mach;
+      const double by_pressure = 1.0 / p;
+      ratio = q * by_pressure;
+      heating_by_dynamic = (2.0 / 7.0) * (1.0 + heating) / (p + q);
+      heating_by_vapor = -(1.0 / 7.0) * heating * (1.0 + 0.5 * heating) * by_pressure;
+      if (chain.derives_temperature()) {
+        double rest = temperature / state[Quantity::recovery_temperature];
+        double factor = 0.0;
+        if (chain.acts(Where::temperature) || chain.acts(Where::recovery) ||
+            chain.acts(Where::ambient_temperature)) {
+          const double* parameters = chain.parameters().data();
+          factor = chain.recovery_factor(mach, state, parameters);
+          rest = 1.0 / (1.0 + factor * heating);
+          calibration = chain.calibration_slope(state, parameters);
+          temperature_by_heating = -temperature * factor * rest;
+        } else {
+          temperature_by_heating = -temperature * (1.0 - rest) / heating;
+        }
+        temperature_by_thermometer = rest;
+        temperature_by_recovery = -temperature * heating * rest;
+      } else if (chain.calibrates_recorded_temperature()) {
+        calibration = chain.calibration_slope(state, chain.parameters().data());
+      }
+      half_airspeed = 0.5 * state[Quantity::corrected_airspeed];
+      by_heating = 1.0 / heating;
+      by_temperature = 1.0 / temperature;
+      by_vapor = 0.52 * by_pressure;
+    }
+
+    Results of(const Changes& changes) const {
+      const double p = changes.static_pressure + changes.static_defect;
+      const double q = changes.dynamic_pressure - changes.static_defect;
+      const double heating = heating_by_dynamic * (q - ratio * p) + heating_by_vapor * changes.vapor;
+      const double before = temperature_by_heating * heating +
+                            temperature_by_thermometer * changes.thermometer +
+                            temperature_by_recovery * changes.recovery + changes.ambient;
+      const double temperature = calibration * before + changes.calibration;
+      const double airspeed =
+          half_airspeed * (heating * by_heating + temperature * by_temperature + by_vapor * changes.vapor);
+      return {changes.static_defect, p, q, temperature, airspeed};
+    }
+
+    double ratio = 0.0;
+    double heating_by_dynamic = 0.0;
+    double heating_by_vapor = 0.0;
+    double temperature_by_heating = 0.0;
+    double temperature_by_thermometer = 0.0;
+    double temperature_by_recovery = 0.0;
+    double calibration = 1.0;
+    double half_airspeed = 0.0;
+    double by_heating = 0.0;
+    double by_temperature = 0.0;
+    double by_vapor = 0.0;
+  };
+
+  /// A coefficient with a standard uncertainty.
+  struct Coefficient {
+    std::size_t effect;
+    std::size_t number;  // among those of its effect
+    bool is_linear;
+    std::vector<double> own;  // those of its effect: where it is linear, one for itself and zero for others
+    double step;              // its standard uncertainty
+    double shape = 0.0;       // of this sample: the derivative of the effect's value
+  };
+
+  /// The uncertain coefficients that act at one place.
+  struct Place {
+    Where where;
+    std::size_t begin;
+    std::size_t end;
+    Results by_amount{};  // of this sample
+  };
+
+  /// A role whose value is uncertain in every sample.
+  struct Noise {
+    Quantity role;
+    double size;
+    bool moves_law;  // effects at the ports read it, or what is found from it
+  };
+
+  ResultUncertainty(std::shared_ptr<const Chain> chain, const ModelUncertainty& uncertainty, CorrectWith with)
+      : Functor(reads(*chain, with), writes()),
+        chain_(std::move(chain)),
+        with_(with),
+        static_defect_(uncertainty.static_defect),
+        static_defect_ratio_(uncertainty.static_defect_ratio) {
+    for (std::size_t effect = 0; effect < chain_->effect_count(); ++effect) {
+      const Where where = chain_->where_of(effect);
+      if (where == Where::static_defect || is_before_ports(where)) at_ports_.push_back(effect);
+    }
+    if (!uncertainty.covariance.empty()) add_coefficients(uncertainty.covariance);
+    Quantities read_at_ports;
+    for (std::size_t place = 0; place < where_count; ++place) {
+      const auto where = static_cast<Where>(place);
+      if (where != Where::static_defect && !is_before_ports(where)) continue;
+      for (const Quantity read : chain_->read_at(where)) {
+        read_at_ports = joined({read_at_ports, MeasuredQuantities::sources(*chain_, read)});
+      }
+    }
+    for (std::size_t i = 0; i < role_count; ++i) {
+      const auto role = static_cast<Quantity>(i);
+      if (!(uncertainty.random[i] > 0.0 && chain_->recorded(role))) continue;
+      const bool moves_law =
+          std::find(read_at_ports.begin(), read_at_ports.end(), role) != read_at_ports.end();
+      noises_.push_back({role, uncertainty.random[i], moves_law});
+    }
+  }
+
+  static Quantities reads(const Chain& chain, CorrectWith with) {
+    Quantities read{Quantity::static_defect, Quantity::corrected_static_pressure,
+                    Quantity::corrected_dynamic_pressure, Quantity::corrected_mach};
+    if (chain.has_temperature()) {
+      read.insert(read.end(), {Quantity::ambient_temperature, Quantity::corrected_airspeed});
+    }
+    if (with == CorrectWith::lams) read.push_back(Quantity::lams_static_defect);
+    return read;
+  }
+
+  static Quantities writes() {
+    Quantities written;
+    for (const UncertainResult& each : uncertain_results) written.push_back(each.uncertainty);
+    return written;
+  }
+
+  static bool is_before_ports(Where where) {
+    return where == Where::static_transducer || where == Where::dynamic_transducer ||
+           where == Where::static_line || where == Where::total_line || where == Where::pitot;
+  }
+
+  /// The quantity that is changed at the place and that laws stand in, or none.
+  static Quantity source_of(Where where) {
+    switch (where) {
+      case Where::radome:
+        return Quantity::radome_dynamic_pressure;
+      case Where::attack_ratio:
+        return Quantity::attack_ratio;
+      case Where::attack:
+        return Quantity::attack;
+      case Where::sideslip:
+        return Quantity::sideslip;
+      default:
+        return Quantity::count;
+    }
+  }
+
+  // The laser's beam is left out: it moves none of the results.
+  void add_coefficients(const std::vector<double>& covariance) {
+    const std::size_t count = chain_->parameters().size();
+    std::vector<std::size_t> order;
+    for (std::size_t place = 0; place < where_count; ++place) {
+      const auto where = static_cast<Where>(place);
+      if (where == Where::beam_elevation || where == Where::beam_azimuth || where == Where::beam_speed)
+        continue;
+      const std::size_t begin = order.size();
+      for (std::size_t effect = 0; effect < chain_->effect_count(); ++effect) {
+        if (chain_->where_of(effect) != where) continue;
+        const std::size_t first = chain_->first_parameter_of(effect);
+        const std::size_t next =
+            effect + 1 < chain_->effect_count() ? chain_->first_parameter_of(effect + 1) : count;
+        for (std::size_t parameter = first; parameter < next; ++parameter) {
+          const double variance = covariance[parameter * count + parameter];
+          if (!(variance > 0.0)) continue;
+          order.push_back(parameter);
+          coefficients_.push_back(coefficient(effect, first, next, parameter, std::sqrt(variance)));
+        }
+      }
+      if (order.size() > begin) places_.push_back({where, begin, order.size()});
+    }
+    for (const std::size_t i : order) {
+      for (const std::size_t j : order) covariance_.push_back(covariance[i * count + j]);
+    }
+  }
+
+  Coefficient coefficient(std::size_t effect, std::size_t first, std::size_t next, std::size_t parameter,
+                          double step) const {
+    const double* const all = chain_->parameters().data();
+    Coefficient made{effect, parameter - first, chain_->is_linear(effect, parameter - first), {}, step};
+    made.own.assign(all + first, all + next);
+    if (!made.is_linear) return made;
+    for (std::size_t i = 0; i < made.own.size(); ++i) {
+      if (chain_->is_linear(effect, i)) made.own[i] = i == made.number ? 1.0 : 0.0;
+    }
+    return made;
+  }
+
+  double shape_of(Coefficient& coefficient, const State<double>& state) const noexcept {
+    double* const own = coefficient.own.data();
+    if (coefficient.is_linear) return chain_->effect_value(coefficient.effect, state, own);
+    const double value = own[coefficient.number];
+    own[coefficient.number] = value + coefficient.step;
+    const double above = chain_->effect_value(coefficient.effect, state, own);
+    own[coefficient.number] = value - coefficient.step;
+    const double below = chain_->effect_value(coefficient.effect, state, own);
+    own[coefficient.number] = value;
+    return (above - below) / (2.0 * coefficient.step);
+  }
+
+  // What the effects before and at the ports add in all.
+  Changes at_ports(const State<double>& state) const noexcept {
+    Changes sum;
+    const double* const parameters = chain_->parameters().data();
+    for (const std::size_t effect : at_ports_) {
+      const double value =
+          chain_->effect_value(effect, state, parameters + chain_->first_parameter_of(effect));
+      add(sum, chain_->where_of(effect), value);
+    }
+    return sum;
+  }
+
+  static void add(Changes& changes, Where where, double amount) noexcept {
+    switch (where) {
+      case Where::static_defect:
+        changes.static_defect += amount;
+        break;
+      case Where::static_transducer:
+        changes.static_pressure += amount;
+        break;
+      case Where::static_line:
+        changes.static_pressure += amount;
+        changes.dynamic_pressure -= amount;
+        break;
+      case Where::dynamic_transducer:
+      case Where::total_line:
+      case Where::pitot:
+        changes.dynamic_pressure += amount;
+        break;
+      case Where::temperature:
+        changes.thermometer += amount;
+        break;
+      case Where::recovery:
+        changes.recovery += amount;
+        break;
+      case Where::ambient_temperature:
+        changes.calibration += amount;
+        break;
+      case Where::humidity:
+        changes.vapor += amount;
+        break;
+      default:
+        break;
+    }
+  }
+
+  // How the effects at the ports answer to a quantity that they read, per unit of it.
+  Changes response(const State<double>& state, Quantity quantity, double step) const noexcept {
+    State<double> moved = state;
+    chain_->change(moved, quantity, step);
+    const Changes above = at_ports(moved);
+    chain_->change(moved, quantity, -2.0 * step);
+    const Changes below = at_ports(moved);
+    const double scale = 1.0 / (2.0 * step);
+    Changes change;
+    change.static_defect = scale * (above.static_defect - below.static_defect);
+    change.static_pressure = scale * (above.static_pressure - below.static_pressure);
+    change.dynamic_pressure = scale * (above.dynamic_pressure - below.dynamic_pressure);
+    return change;
+  }
+
+  // A tenth of a degree or a hPa, and what that is as a ratio: laws are smooth over it.
+  static double step_of(Quantity quantity) { return quantity == Quantity::attack_ratio ? 0.005 : 0.1; }
+
+  // An uncertainty of the last two seconds holds where the pressures that it was found at do.
+  bool still_holds(const State<double>& state) const noexcept {
+    const double age = state[Quantity::time] - time_;
+    if (!(is_complete_ && age >= 0.0 && age < 2.0)) return false;
+    const double p = state[Quantity::static_pressure];
+    const double q = state[Quantity::dynamic_pressure];
+    return std::abs(p - static_pressure_) <= 0.05 * p && std::abs(q - dynamic_pressure_) <= 0.05 * q;
+  }
+
+  void find(const State<double>& state) noexcept {
+    time_ = state[Quantity::time];
+    static_pressure_ = state[Quantity::static_pressure];
+    dynamic_pressure_ = state[Quantity::dynamic_pressure];
+    const Sensitivity sensitivity(*chain_, state);
+    const double fraction = chain_->taper_fraction(state);
+    Results variance{};
+    add_systematic(sensitivity, state, fraction, variance);
+    add_random(sensitivity, state, fraction, variance);
+    for (std::size_t i = 0; i < found_.size(); ++i) found_[i] = std::sqrt(variance[i]);
+    const double of_temperature = chain_->has_temperature() ? found_[3] + found_[4] : 0.0;
+    is_complete_ = !is_missing(found_[0] + found_[1] + found_[2] + of_temperature);
+  }
+
+  // `fraction` is what the taper leaves of the effects at the static ports.
+  void add_systematic(const Sensitivity& sensitivity, const State<double>& state, double fraction,
+                      Results& variance) noexcept {
+    for (Coefficient& each : coefficients_) each.shape = shape_of(each, state);
+    for (Place& place : places_) {
+      const Quantity source = source_of(place.where);
+      Changes changes;
+      if (source != Quantity::count) changes = response(state, source, step_of(source));
+      add(changes, place.where, 1.0);
+      changes.static_defect *= fraction;
+      place.by_amount = sensitivity.of(changes);
+    }
+    for (const Place& a : places_) {
+      for (const Place& b : places_) {
+        const double both = shared(a, b);
+        for (std::size_t i = 0; i < variance.size(); ++i) {
+          // What an effect lacks is nothing to a result that it does not move.
+          const double slopes = a.by_amount[i] * b.by_amount[i];
+          if (slopes != 0.0) variance[i] += slopes * both;
+        }
+      }
+    }
+    // A variance that cancels to zero may round to less.
+    for (double& each : variance) each = each < 0.0 ? 0.0 : each;
+  }
+
+  // The covariance of the amounts that are added at two places, in this sample.
+  double shared(const Place& a, const Place& b) const noexcept {
+    double sum = 0.0;
+    for (std::size_t i = a.begin; i < a.end; ++i) {
+      const double* const row = covariance_.data() + i * coefficients_.size();
+      double part = 0.0;
+      for (std::size_t j = b.begin; j < b.end; ++j) part += row[j] * coefficients_[j].shape;
+      sum += coefficients_[i].shape * part;
+    }
+    return sum;
+  }
+
+  void add_random(const Sensitivity& sensitivity, const State<double>& state, double fraction,
+                  Results& variance) const noexcept {
+    for (const Noise& noise : noises_) {
+      Changes changes;
+      if (noise.moves_law) changes = response(state, noise.role, noise.size);
+      changes.static_defect *= fraction;
+      add_role(changes, noise.role, state);
+      add_squares(sensitivity.of(changes), noise.size * noise.size, variance);
+    }
+    const double ratio = static_defect_ratio_ * state[Quantity::static_pressure];
+    const double left = static_defect_ * static_defect_ + ratio * ratio;
+    if (static_defect_ == 0.0 && static_defect_ratio_ == 0.0) return;
+    Changes changes;
+    changes.static_defect = 1.0;
+    add_squares(sensitivity.of(changes), left, variance);
+  }
+
+  static void add_squares(const Results& results, double square, Results& variance) noexcept {
+    for (std::size_t i = 0; i < variance.size(); ++i) variance[i] += results[i] * results[i] * square;
+  }
+
+  // What a unit of the role is where the air is found from it.
+  static void add_role(Changes& changes, Quantity role, const State<double>& state) noexcept {
+    // Magnus: d(ln e)/dT = 17.62 * 243.12/(243.12 + t)^2 over water, within 5 % over ice.
+    const auto by_point = [&](double point) {
+      if (is_missing(point)) return 0.0;  // then the air counts as dry
+      const double width = point - 30.03;
+      const double p = state[Quantity::corrected_static_pressure];
+      return 4284.0 / (width * width) * state[Quantity::humidity] * p;
+    };
+    switch (role) {
+      case Quantity::static_pressure:
+        changes.static_pressure += 1.0;
+        break;
+      case Quantity::dynamic_pressure:
+        changes.dynamic_pressure += 1.0;
+        break;
+      case Quantity::recovery_temperature:
+        changes.thermometer += 1.0;
+        break;
+      case Quantity::ambient_temperature:
+        changes.ambient += 1.0;
+        break;
+      case Quantity::vapor_pressure:
+        changes.vapor += 1.0;
+        break;
+      case Quantity::dew_point:
+      case Quantity::frost_point:
+        changes.vapor += by_point(state[role]);
+        break;
+      default:
+        break;
+    }
+  }
+
+  std::shared_ptr<const Chain> chain_;
+  CorrectWith with_;
+  double static_defect_;
+  double static_defect_ratio_;
+  std::vector<std::size_t> at_ports_;  // effects before and at them
+  std::vector<Coefficient> coefficients_;
+  std::vector<Place> places_;
+  std::vector<double> covariance_;  // of the coefficients, in their order
+  std::vector<Noise> noises_;
+  Results found_{};
+  bool is_complete_ = false;  // none is missing
+  double time_ = 0.0;         // of the sample that they were found at
+  double static_pressure_ = 0.0;
+  double dynamic_pressure_ = 0.0;
+};
+
+}  // namespace pcor
