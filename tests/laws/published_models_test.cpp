@@ -8,7 +8,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -466,6 +468,22 @@ TEST(PublishedModels, ReproduceAFlightOf2004) {
       EXPECT_NEAR(law(sample), corrected[i] - p[i], 1e-4) << pair << " record " << i;
     }
     EXPECT_GT(in_flight, 2900U);
+  }
+}
+
+// What the memo prints of its fits, and the abstract of the paper of 2014; other sources print none.
+TEST(PublishedModels, StateTheUncertaintyThatTheirSourcesPrint) {
+  const std::map<std::string, double> ratios{{"c130-psfd-eq18", 0.00045}, {"gv-psf-eq20", 0.00081}};
+  const std::set<std::string> of_2014{"c130-psfd-2014", "c130-psfrd-2014", "gv-psf-2014"};
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::filesystem::path(PCOR_SOURCE_DIR) / "data/models")) {
+    if (entry.path().extension() != ".toml") continue;
+    const std::string name = entry.path().stem().string();
+    const ModelUncertainty stated = uncertainty_of(read_model(entry.path()));
+    const auto ratio = ratios.find(name);
+    EXPECT_EQ(stated.static_defect_ratio, ratio == ratios.end() ? 0.0 : ratio->second) << name;
+    EXPECT_EQ(stated.static_defect, of_2014.count(name) != 0 ? 0.3 : 0.0) << name;
+    EXPECT_FALSE(stated.has_systematic()) << name;
   }
 }
 

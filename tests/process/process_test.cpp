@@ -447,6 +447,73 @@ TEST_F(Process, TellsTheRampFromFlight) {
   EXPECT_NEAR(summary.flying_dynamic_pressure, 22.05 * 1.008, 0.02);
 }
 
+ModelFile uncertain_model() {
+  ModelFile file = lams_model();
+  file.fits.resize(file.model.effects.size());
+  file.fits[0] = {{false, 1e-4, {}}};
+  file.uncertainty.roles[Quantity::static_pressure] = 0.03;
+  return file;
+}
+
+TEST_F(Process, WritesUncertaintiesBesideTheirResults) {
+  write_flight(input_, 20, 1);
+  ModelFile file = uncertain_model();
+  file.output["PSXC"] = "PSFDC";
+  ProcessOptions options;
+  options.suffix = "_NEW";
+  const ProcessSummary summary = process_flight(input_, file, output_, options);
+  EXPECT_THAT(summary.outputs, Contains("PSFDC_uncertainty_NEW"));
+  EXPECT_EQ(attribute("PSFDC_NEW", "ancillary_variables"), "PSFDC_uncertainty_NEW PCORFLAG_NEW");
+  EXPECT_EQ(attribute("PSFDC_uncertainty_NEW", "standard_name"), "air_pressure standard_error");
+  EXPECT_EQ(attribute("ATX_uncertainty_NEW", "units"), "K");
+  EXPECT_THAT(attribute("PSFDC_uncertainty_NEW", "comment"), HasSubstr("systematic part"));
+  // a0 is of the measured static pressure, 698 hPa; 32-bit floats. The noise of p moves delta-p by 0.4 %.
+  EXPECT_NEAR(read("PCOR_uncertainty_NEW", "hPa")[5], std::hypot(1e-4 * 698.0, 0.004 * 0.03), 1e-5);
+  EXPECT_NEAR(read("PSFDC_uncertainty_NEW", "hPa")[5], std::hypot(1e-4 * 698.0, 0.03), 1e-4);
+  const auto is_of_thermometer = [](const std::string& note) {
+    return note.find("without that of the thermometer") != std::string::npos;
+  };
+  EXPECT_EQ(std::count_if(summary.notes.begin(), summary.notes.end(), is_of_thermometer), 1);
+}
+
+TEST_F(Process, WritesThePartOfUncertaintiesThatIsAskedFor) {
+  write_flight(input_, 20, 1);
+  ProcessOptions options;
+  options.uncertainty = UncertaintyPart::systematic;
+  process_flight(input_, uncertain_model(), output_, options);
+  EXPECT_NEAR(read("PSXC_uncertainty", "hPa")[5], 1e-4 * 698.0, 1e-5);
+  options.uncertainty = UncertaintyPart::random;
+  process_flight(input_, uncertain_model(), output_, options);
+  EXPECT_NEAR(read("PSXC_uncertainty", "hPa")[5], 0.03, 2e-4);
+  options.uncertainty = UncertaintyPart::none;
+  EXPECT_THAT(process_flight(input_, uncertain_model(), output_, options).outputs,
+              testing::Not(Contains("PSXC_uncertainty")));
+}
+
+TEST_F(Process, HasNoUncertaintyOfWhatTheLaserCorrects) {
+  write_flight(input_, 20, 1);
+  ProcessOptions options;
+  options.correct_with = CorrectWith::lams;
+  process_flight(input_, uncertain_model(), output_, options);
+  EXPECT_GT(read("PCOR_uncertainty", "hPa")[5], 0.0);
+  EXPECT_TRUE(std::isnan(read("PSXC_uncertainty", "hPa")[5]));
+}
+
+TEST_F(Process, SaysWhatToDoWhereAModelStatesNoUncertainty) {
+  write_flight(input_, 20, 1);
+  EXPECT_THAT(process_flight(input_, lams_model(), output_).outputs,
+              testing::Not(Contains("PSXC_uncertainty")));
+  ProcessOptions options;
+  for (const auto& [part, what] : {std::pair{UncertaintyPart::total, "it states no uncertainty"},
+                                   {UncertaintyPart::systematic, "no standard error or covariance"},
+                                   {UncertaintyPart::random, "no uncertainty of a sample"}}) {
+    options.uncertainty = part;
+    EXPECT_THAT(
+        [&] { process_flight(input_, lams_model(), output_, options); },
+        testing::ThrowsMessage<Error>(testing::AllOf(HasSubstr(what), HasSubstr("'pcor refit' writes"))));
+  }
+}
+
 // In air of one temperature the hydrostatic equation has a closed form: H = R_a T/g0 ln(p_0/p).
 TEST_F(Process, WritesHydrostaticStepsThatAddUpToTheHeight) {
   const double nan = std::nan("");
