@@ -135,8 +135,9 @@ class NimbusSystem {
     double zero;
   };
 
-  // What the library calls the zero of the host's unit.
+  // What the library calls the zero of the host's unit. An uncertainty in K is a difference.
   static constexpr double zero_of(Quantity quantity) {
+    if (quantity == Quantity::ambient_temperature_uncertainty) return 0.0;
     return index(quantity) < quantity_count && facts_of(quantity).unit == "K" ? constants::ice_point : 0.0;
   }
 
