@@ -369,6 +369,21 @@ TEST(NimbusSystem, TakesAndGivesTemperaturesInCelsius) {
               0.02);
 }
 
+TEST(NimbusSystem, GivesUncertaintiesAsDifferences) {
+  pcor::ModelUncertainty uncertainty;
+  uncertainty.random[pcor::index(Quantity::recovery_temperature)] = 0.1;
+  std::string error;
+  using System = NimbusSystem<Host, struct UncertainTag>;
+  ASSERT_TRUE(System::install(fuselage_model(), fuselage_roles, 1.0, 25.0, &error, pcor::CorrectWith::model,
+                              uncertainty))
+      << error;
+  Table table(raw_names, {{"PCOR", fuselage_inputs, System::compute},
+                          {"ATX_U", {"PCOR"}, System::fetch<Quantity::ambient_temperature_uncertainty>}});
+  table.compute(0.0, raw_value);
+  // A thermometer's error is the temperature's but for the dynamic heating of some percent.
+  EXPECT_NEAR(static_cast<double>(table.low("ATX_U")), 0.1, 0.005);
+}
+
 TEST(NimbusSystem, NeverPassesOffAnEarlierSampleAsThisOne) {
   ASSERT_TRUE(install_both());
   Table table(raw_names, both_systems());
