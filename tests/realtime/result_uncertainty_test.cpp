@@ -227,6 +227,18 @@ TEST(ResultUncertainty, FollowsTheTaperAndKeepsThatOfTheLawAtItsMinimum) {
   EXPECT_NEAR(of_constant(model), 1e-4 * 700.0, 1e-12) << "the limit is not known better than the law";
 }
 
+TEST(ResultUncertainty, OfATemperatureIsThatOfItsThermometerOnTheRamp) {
+  Model model = law();
+  model.policy.taper_below = 40.0;
+  Recorded recorded = everything_recorded();
+  recorded[Quantity::dynamic_pressure] = 0.5;
+  ModelUncertainty uncertainty;
+  uncertainty.random[index(Quantity::recovery_temperature)] = 0.1;
+  const State<double> s = fly(model, recorded, uncertainty);
+  EXPECT_NEAR(s[Quantity::ambient_temperature_uncertainty], 0.1, 1e-4);
+  EXPECT_TRUE(std::isnan(s[Quantity::corrected_airspeed_uncertainty]));
+}
+
 // Two errors of delta-p that are the same one add up, or cancel.
 TEST(ResultUncertainty, CountsCorrelations) {
   Model model;

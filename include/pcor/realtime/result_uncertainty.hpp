@@ -108,7 +108,8 @@ class ResultUncertainty final : public Functor {
       const double q = state[Quantity::corrected_dynamic_pressure];
       const double mach = state[Quantity::corrected_mach];
       const double temperature = state[Quantity::ambient_temperature];
-      const double heating = 0.2 * mach * mach;
+      const bool is_still = is_missing(mach);  // as on the ramp, where a temperature has its uncertainty, too
+      const double heating = is_still ? 0.0 : 0.2 * mach * mach;
       const double by_pressure = 1.0 / p;
       ratio = q * by_pressure;
       heating_by_dynamic = (2.0 / 7.0) * (1.0 + heating) / (p + q);
@@ -119,12 +120,12 @@ class ResultUncertainty final : public Functor {
         if (chain.acts(Where::temperature) || chain.acts(Where::recovery) ||
             chain.acts(Where::ambient_temperature)) {
           const double* parameters = chain.parameters().data();
-          factor = chain.recovery_factor(mach, state, parameters);
+          factor = is_still ? 1.0 : chain.recovery_factor(mach, state, parameters);
           rest = 1.0 / (1.0 + factor * heating);
           calibration = chain.calibration_slope(state, parameters);
           temperature_by_heating = -temperature * factor * rest;
         } else {
-          temperature_by_heating = -temperature * (1.0 - rest) / heating;
+          temperature_by_heating = is_still ? -temperature : -temperature * (1.0 - rest) / heating;
         }
         temperature_by_thermometer = rest;
         temperature_by_recovery = -temperature * heating * rest;
