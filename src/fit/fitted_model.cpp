@@ -80,6 +80,9 @@ ModelFile fitted_model(ModelFile file, std::size_t first, const RefitResult& fit
                     return std::find(held.begin(), held.end(), name) != held.end();
                   }));
   file.covariance = std::move(covariance);
+  file.uncertainty.static_defect.reset();
+  if (fit.drift_rms > 0.0) file.uncertainty.static_defect = fit.drift_rms;
+  file.uncertainty.static_defect_ratio.reset();
   Provenance provenance = provenance_of(fit, loss);
   // How the temperature was calibrated stays: the pressures do not change it.
   for (auto& entry : file.provenance) {

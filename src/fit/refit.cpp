@@ -251,6 +251,7 @@ RefitResult fit(const Sources& sources, const ModelFile& model, const Reference&
   result.flights = std::move(compared.flights);
   result.flaps_out = compared.flaps_out;
   list_coefficients(result, task, fitted, covariance);
+  result.drift_rms = flights.drift_rms();
   result.worse = why_worse(result, before.rms_of(before.bulk_squares));
   result.warnings = fit_warnings(flights, result, solution.values, sums.rms_of(squares.least()));
   result.notes = notes_of(result, task, fitted, covariance.matrix, compared);

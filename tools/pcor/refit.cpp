@@ -116,6 +116,7 @@ nlohmann::ordered_json as_json(const RefitResult& result) {
   json["rms_over_pressure"] = result.rms_over_pressure;
   json["bulk_rms_hpa"] = result.bulk_rms;
   json["noise_rms_hpa"] = result.noise_rms;
+  json["drift_rms_hpa"] = result.drift_rms;
   json["r2"] = result.r_squared;
   json["samples"] = result.samples;
   json["outliers"] = result.outliers;

@@ -102,6 +102,9 @@ struct RefitResult {
   double rms_over_pressure = 0.0;  ///< of residual over static pressure
   double bulk_rms = 0.0;           ///< robust deviation, hPa: without outliers
   double noise_rms = 0.0;          ///< of the noise floor, hPa
+  /// Of slow changes that the model does not follow, hPa: drift of the sensors, or what it lacks. The fitted
+  /// model states it as the standard uncertainty of its delta-p in one sample.
+  double drift_rms = 0.0;
   double r_squared = 0.0;
   double rms_before = 0.0;   ///< hPa, with the coefficients of the file
   std::size_t outliers = 0;  ///< samples that depart from what the noise allows after those before them
