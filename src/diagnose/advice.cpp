@@ -39,8 +39,7 @@ std::vector<Prospect> prospects_of(const Analysis& analysis, const CandidateSet&
   for (const Eigen::VectorXd& level : analysis.noise().level)
     levels.insert(levels.end(), level.data(), level.data() + level.size());
   const double usual_level = median(levels);
-  NoiseModel noise;
-  noise.coefficients = analysis.noise().coefficients;
+  NoiseModel noise = analysis.noise();
 
   std::vector<Prospect> prospects;
   for (Manoeuvre& manoeuvre : standard_manoeuvres(flights)) {

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "numerics/spikes.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
+#include "numerics/spikes.hpp"
 #include "numerics/triangular_factor.hpp"
+#include "numerics/whitening.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -15,8 +16,6 @@ constexpr int most_rounds = 4;
 /// For the first noise: whatever might be an effect is taken off, a claim it is not.
 constexpr double generous_threshold = 9.0;
 constexpr std::size_t generous_effects = 6;
-/// Twice the gain in log-likelihood that makes drift worth its parameter.
-constexpr double least_drift_gain = 2.0;
 constexpr double stretch_time = 300.0;  // s
 constexpr double least_eigenvalue = 1e-11;
 constexpr int parts = 5;
@@ -42,7 +41,7 @@ Analysis::Analysis(std::vector<FlightColumns> flights, std::vector<ColumnGroup> 
   // with whatever might be an effect taken off first, and with none. The likelier end counts.
   const Eigen::VectorXd start = pseudo_solution(information, right, least_eigenvalue);
   const double by_effects = search_from(start, true, explained);
-  if (result_.chosen.empty() || noise_.drift > 0.0) {
+  if (result_.chosen.empty() || noise_.model.drifts()) {
     const SearchResult result = result_;
     const double by_drift = search_from(start, false, explained);
     if (by_effects > by_drift && result.chosen != result_.chosen) search_from(start, true, explained);
@@ -55,8 +54,10 @@ double Analysis::search_from(const Eigen::VectorXd& start, bool generous, double
   Eigen::MatrixXd covariance;
   for (int round = generous ? 0 : 1; round < most_rounds; ++round) {
     replace_outliers(chosen, estimate);
-    find_noise(chosen, estimate);
-    if (round == 0) noise_.drift = 0.0;
+    if (round == 0)
+      noise_ = {estimate_noise(bins_, left_by(chosen, estimate))};
+    else
+      find_noise(chosen, estimate);
     find_search();
     SearchOptions options;
     options.seed = seed_;
@@ -73,9 +74,7 @@ double Analysis::search_from(const Eigen::VectorXd& start, bool generous, double
   }
   Eigen::Index columns = 0;
   for (const std::size_t group : chosen) columns += as_index(search_->told(group).size());
-  double scale = 0.0;  // the noise models have levels of their own
-  for (const Eigen::VectorXd& level : noise_.level) scale += 2.0 * level.array().log().sum();
-  return drift_.likelihood - scale - static_cast<double>(columns) * result_.threshold;
+  return noise_.likelihood - static_cast<double>(columns) * result_.threshold;
 }
 
 std::vector<Eigen::MatrixXd> Analysis::columns_of(const std::vector<std::size_t>& groups) const {
@@ -144,13 +143,11 @@ void Analysis::replace_outliers(const std::vector<std::size_t>& groups, const Ei
 }
 
 void Analysis::find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate) {
-  noise_ = estimate_noise(bins_, left_by(groups, estimate));
-  drift_ = likely_drift(bins_, columns_of(groups), residuals_, noise_);
-  noise_.drift = drift_.gain > least_drift_gain ? drift_.size : 0.0;
+  noise_ = internal::find_noise(bins_, columns_of(groups), left_by(groups, estimate));
 }
 
 void Analysis::find_search() {
-  scores_ = std::make_unique<Scores>(find_scores(bins_, columns_, residuals_, noise_));
+  scores_ = std::make_unique<Scores>(find_scores(bins_, columns_, residuals_, noise_.model));
   search_ = std::make_unique<Search>(*scores_, base_, groups_);
 }
 
@@ -164,7 +161,7 @@ double Analysis::held_out_rms(const std::vector<std::size_t>& groups) const {
   for (std::size_t f = 0; f < columns.size(); ++f) {
     Eigen::MatrixXd all(columns[f].rows(), width);
     all << columns[f], residuals_[f];
-    const Eigen::MatrixXd white = whitened(all, bins_[f], noise_, f);
+    const Eigen::MatrixXd white = whitened(all, bins_[f], noise_.model, f);
     for (Eigen::Index i = 0; i < white.rows(); ++i) {
       const std::size_t part =
           part_of(bins_[f].time()[static_cast<std::size_t>(i)] - flights_[f].samples->time.front());
@@ -202,17 +199,11 @@ double Analysis::held_out_rms(const std::vector<std::size_t>& groups) const {
 std::vector<double> Analysis::drift(std::size_t flight, const std::vector<std::size_t>& groups) const {
   std::vector<double> result(flights_[flight].given.size(), nan);
   const Binning& bins = bins_[flight];
-  for (const std::size_t record : bins.records()) result[record] = 0.0;
-  if (!(noise_.drift > 0.0)) return result;
   Eigen::VectorXd estimate;
   Eigen::MatrixXd covariance;
   search_->fit(groups, estimate, covariance);
-  const Eigen::MatrixXd shapes = drift_shapes(bins);
-  const Eigen::MatrixXd white = whitened(shapes, bins, noise_, flight);
-  const Eigen::VectorXd left = whitened(left_by(groups, estimate)[flight], bins, noise_, flight);
-  Eigen::MatrixXd normal = white.transpose() * white;
-  normal.diagonal().array() += 1.0 / (noise_.drift * noise_.drift);
-  const Eigen::VectorXd series = shapes * symmetric_solution(normal, white.transpose() * left);
+  const Whitening whitening(bins, noise_.model, flight);
+  const Eigen::VectorXd series = whitening.slow_parts(left_by(groups, estimate)[flight]);
   for (std::size_t k = 0; k < bins.records().size(); ++k) result[bins.records()[k]] = series[bins.bins()[k]];
   return result;
 }

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "diagnose/columns.hpp"
-#include "numerics/noise_model.hpp"
 #include "diagnose/scores.hpp"
 #include "diagnose/search.hpp"
+#include "numerics/noise_model.hpp"
 
 namespace pcor::internal {
 
@@ -23,9 +23,9 @@ class Analysis {
 
   const std::vector<FlightColumns>& flights() const { return flights_; }
   const std::vector<Binning>& bins() const { return bins_; }
-  const NoiseModel& noise() const { return noise_; }
+  const NoiseModel& noise() const { return noise_.model; }
   /// Twice the gain in log-likelihood by slow drift.
-  double drift_gain() const { return drift_.gain; }
+  double drift_gain() const { return noise_.drift_gain; }
   const Search& search() const { return *search_; }
   const Scores& scores() const { return *scores_; }
   const std::vector<ColumnGroup>& groups() const { return groups_; }
@@ -69,8 +69,7 @@ class Analysis {
   std::vector<Binning> bins_{};
   std::vector<Eigen::MatrixXd> columns_{};  // base and candidates, in bins
   std::vector<Eigen::VectorXd> residuals_{};
-  NoiseModel noise_{};
-  DriftFit drift_{};
+  FoundNoise noise_{};
   std::unique_ptr<Scores> scores_{};
   std::unique_ptr<Search> search_{};
   SearchResult result_{};

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t most_columns = 6;
 constexpr std::size_t bins_per_column = 40;
 constexpr double most_missing = 0.1;
-constexpr double least_left = 1e-3;  // of a direction, by model and drift
+constexpr double least_left = 1e-3;  // of a direction, by the model
 
 }  // namespace
 
@@ -35,11 +35,9 @@ StructureTest::StructureTest(const std::vector<Binning>& bins, const std::vector
   variance_ = squares_ / std::max(1.0, static_cast<double>(scores.row_count()) - static_cast<double>(width));
   block_ = scores.block;
   blocks_ = scores.blocks;
-  drift_ = scores.drift;
-  shares_ = scores.shares;
   for (std::size_t f = 0; f < bins.size(); ++f) {
     model_.emplace_back(scores.rows[f].leftCols(width));
-    marginal_.push_back(scores.left(f, solution));
+    left_.push_back(scores.left(f, solution));
   }
 }
 
@@ -96,12 +94,7 @@ bool StructureTest::add(const std::string& name, const std::vector<const double*
     const Eigen::MatrixXd white = whitened(columns[f], (*bins_)[f], *noise_, f);
     own += white.transpose() * white;
     with_model += model_[f].transpose() * white;
-    if (drift_[f].cols() > 0) {
-      const Eigen::MatrixXd overlap = drift_[f].transpose() * white;
-      own -= overlap.transpose() * shares_[f].asDiagonal() * overlap;
-      with_model -= (drift_[f].transpose() * model_[f]).transpose() * shares_[f].asDiagonal() * overlap;
-    }
-    score += white.transpose() * marginal_[f];
+    score += white.transpose() * left_[f];
     whites.push_back(white);
   }
   const Eigen::MatrixXd solution = scale_.asDiagonal() * (inverse_ * (scale_.asDiagonal() * with_model));
@@ -110,7 +103,7 @@ bool StructureTest::add(const std::string& name, const std::vector<const double*
   for (std::size_t f = 0; f < bins_->size(); ++f) {
     const Eigen::MatrixXd left = whites[f] - model_[f] * solution;
     for (Eigen::Index i = 0; i < left.rows(); ++i)
-      block_scores.row(block_[f][static_cast<std::size_t>(i)]) += marginal_[f][i] * left.row(i);
+      block_scores.row(block_[f][static_cast<std::size_t>(i)]) += left_[f][i] * left.row(i);
   }
 
   Structure structure;

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/smooth.hpp"
 #include "numerics/binning.hpp"
 #include "numerics/noise_model.hpp"
-#include "diagnose/smooth.hpp"
 
 namespace pcor::internal {
 
@@ -62,10 +62,8 @@ class StructureTest {
 
   const std::vector<Binning>* bins_;
   const NoiseModel* noise_;
-  std::vector<Eigen::MatrixXd> model_{};     // whitened columns of each flight
-  std::vector<Eigen::VectorXd> marginal_{};  // without model and drift
-  std::vector<Eigen::MatrixXd> drift_{};     // whitened shapes, turned
-  std::vector<Eigen::VectorXd> shares_{};
+  std::vector<Eigen::MatrixXd> model_{};  // whitened columns of each flight
+  std::vector<Eigen::VectorXd> left_{};   // of the whitened residuals, by the model
   std::vector<std::vector<Eigen::Index>> block_{};
   Eigen::Index blocks_ = 0;
   Eigen::VectorXd scale_{};

@@ -20,18 +20,7 @@ constexpr std::size_t fewest_innovations = 20;
 /// Twice the logarithm of the likelihood that a slow part has to be worth.
 constexpr double worth_of_a_part = 1.0;
 
-Eigen::VectorXd without_drift(const Binning& bins, const Eigen::VectorXd& residual) {
-  const Eigen::MatrixXd shapes = drift_shapes(bins);
-  if (shapes.cols() == 0) return residual;
-  const Eigen::MatrixXd normal = shapes.transpose() * shapes;
-  const double ridge = 1e-9 * normal.trace();
-  const Eigen::MatrixXd conditioned =
-      normal + ridge * Eigen::MatrixXd::Identity(normal.rows(), normal.cols());
-  return residual - shapes * symmetric_solution(conditioned, shapes.transpose() * residual);
-}
-
-}  // namespace
-
+/// The shapes of slow drift over a flight, cos(pi k t/T)/k: periods down to five minutes, at most 48.
 Eigen::MatrixXd drift_shapes(const Binning& bins) {
   if (bins.size() < 2) return Eigen::MatrixXd(as_index(bins.size()), 0);
   const double begin = bins.time().front();
@@ -46,6 +35,22 @@ Eigen::MatrixXd drift_shapes(const Binning& bins) {
     }
   }
   return shapes;
+}
+
+Eigen::VectorXd without_drift(const Binning& bins, const Eigen::VectorXd& residual) {
+  const Eigen::MatrixXd shapes = drift_shapes(bins);
+  if (shapes.cols() == 0) return residual;
+  const Eigen::MatrixXd normal = shapes.transpose() * shapes;
+  const double ridge = 1e-9 * normal.trace();
+  const Eigen::MatrixXd conditioned =
+      normal + ridge * Eigen::MatrixXd::Identity(normal.rows(), normal.cols());
+  return residual - shapes * symmetric_solution(conditioned, shapes.transpose() * residual);
+}
+
+}  // namespace
+
+bool NoiseModel::drifts() const {
+  return std::any_of(slow.begin(), slow.end(), [](double size) { return size > 0.0; });
 }
 
 NoiseModel estimate_noise(const std::vector<Binning>& bins, const std::vector<Eigen::VectorXd>& residuals) {
@@ -115,8 +120,14 @@ class RestrictedLikelihood {
     white_.resize(count_, rows_.front().cols());
   }
 
-  /// Minus twice its logarithm, without constants. @param variance becomes that of the innovations, robustly
-  double operator()(const NoiseModel& noise, double& variance) {
+  /// What a noise model comes to.
+  struct Value {
+    double restricted = 0.0;  ///< minus twice the logarithm of the restricted likelihood, without constants
+    double plain = 0.0;       ///< the same of the likelihood with the columns at their best
+    double variance = 1.0;    ///< of the innovations, robustly
+  };
+
+  Value operator()(const NoiseModel& noise) {
     double determinant = 0.0;
     Eigen::Index first = 0;
     for (std::size_t f = 0; f < bins_.size(); ++f) {
@@ -127,24 +138,30 @@ class RestrictedLikelihood {
     }
     const Eigen::Index width = white_.cols() - 1;
     Eigen::VectorXd innovation = white_.col(width);
+    double columns = 0.0;  // the determinant of their information
     if (width > 0) {
       const Eigen::MatrixXd information = white_.leftCols(width).transpose() * white_.leftCols(width);
       innovation -= white_.leftCols(width) *
                     pseudo_solution(information, white_.leftCols(width).transpose() * innovation, 1e-11);
       const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt();
       const Eigen::VectorXd inverse = scale.cwiseInverse();
-      determinant += 2.0 * scale.array().log().sum() +
-                     symmetric_eigenvalues(inverse.asDiagonal() * information * inverse.asDiagonal())
-                         .cwiseMax(1e-11)
-                         .array()
-                         .log()
-                         .sum();
+      columns = 2.0 * scale.array().log().sum() +
+                symmetric_eigenvalues(inverse.asDiagonal() * information * inverse.asDiagonal())
+                    .cwiseMax(1e-11)
+                    .array()
+                    .log()
+                    .sum();
     }
     const double deviation = robust_deviation({innovation.data(), innovation.data() + innovation.size()});
     const double limit = 9.0 * deviation * deviation;
+    const double squares = innovation.array().square().min(limit).sum() / clipped_variance;
+    const auto count = static_cast<double>(count_);
     const auto freedom = static_cast<double>(count_ - width);
-    variance = innovation.array().square().min(limit).sum() / (clipped_variance * freedom);
-    return determinant + freedom * std::log(variance);
+    Value value;
+    value.variance = squares / freedom;
+    value.restricted = determinant + columns + freedom * std::log(value.variance);
+    value.plain = determinant + count * std::log(squares / count);
+    return value;
   }
 
  private:
@@ -183,9 +200,10 @@ std::vector<double> least_of(const Cost& cost) {
 
 }  // namespace
 
-NoiseModel find_noise(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
+FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
                       const std::vector<Eigen::VectorXd>& residuals) {
-  NoiseModel whole = estimate_noise(bins, residuals);
+  FoundNoise found{estimate_noise(bins, residuals)};
+  NoiseModel& whole = found.model;
   NoiseModel noise;  // of the flights that take part
   noise.coefficients = whole.coefficients;
   std::vector<std::size_t> part;
@@ -197,17 +215,18 @@ NoiseModel find_noise(const std::vector<Binning>& bins, const std::vector<Eigen:
     all.insert(all.end(), residuals[f].data(), residuals[f].data() + residuals[f].size());
   }
   const double rms = robust_deviation(all);
-  if (!(rms > 0.0)) return whole;
+  if (!(rms > 0.0)) return found;
   RestrictedLikelihood likelihood(bins, columns, residuals, part);
-  const auto cost = [&](const std::vector<double>& sizes) {
+  const auto with = [&](const std::vector<double>& sizes) {
     for (std::size_t k = 0; k < sizes.size(); ++k) noise.slow[k] = sizes[k] * rms;
-    double variance = 1.0;
-    return likelihood(noise, variance);
+    return likelihood(noise);
   };
+  const auto cost = [&](const std::vector<double>& sizes) { return with(sizes).restricted; };
   std::vector<double> sizes = least_of(cost);
   // A part that is worth nothing is left out, the slowest first: it is what a flight tells least of.
   double least = cost(sizes);
   for (std::size_t k = sizes.size(); k-- > 0;) {
+    if (sizes[k] == 0.0) continue;
     std::vector<double> without = sizes;
     without[k] = 0.0;
     const double left = cost(without);
@@ -215,13 +234,13 @@ NoiseModel find_noise(const std::vector<Binning>& bins, const std::vector<Eigen:
     sizes = without;
     least = left;
   }
-  double variance = 1.0;
-  for (std::size_t k = 0; k < sizes.size(); ++k) noise.slow[k] = sizes[k] * rms;
-  likelihood(noise, variance);
-  const double scale = std::sqrt(variance);
+  found.drift_gain = cost(std::vector<double>(sizes.size(), 0.0)) - least;
+  const RestrictedLikelihood::Value best = with(sizes);
+  found.likelihood = -best.plain;
+  const double scale = std::sqrt(best.variance);
   for (Eigen::VectorXd& level : whole.level) level *= scale;
   for (std::size_t k = 0; k < sizes.size(); ++k) whole.slow[k] = scale * noise.slow[k];
-  return whole;
+  return found;
 }
 
 Eigen::MatrixXd whitened(const Eigen::Ref<const Eigen::MatrixXd>& columns, const Binning& bins,

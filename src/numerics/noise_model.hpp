@@ -18,7 +18,16 @@ struct NoiseModel {
   std::vector<double> coefficients{};            ///< of the autoregression, from bin to bin
   std::vector<Eigen::VectorXd> level{};          ///< of each flight's bins: rms of the innovations, hPa
   std::array<double, slow_times.size()> slow{};  ///< rms of each slow part, hPa
-  double drift = 0.0;  ///< the drift is drift * sum over k of z_k cos(pi k t/T)/k, z_k normal, hPa
+
+  /// Whether any part of it is slow.
+  bool drifts() const;
+};
+
+/// A noise model, and how well it describes the residuals that it was found from.
+struct FoundNoise {
+  NoiseModel model{};
+  double drift_gain = 0.0;  ///< twice the gain in restricted log-likelihood by the slow parts
+  double likelihood = 0.0;  ///< twice the log-likelihood, with the columns at their best, without constants
 };
 
 /// Estimates autoregression and level from residuals that hold no effect any more. Slow drift is taken off
@@ -36,15 +45,11 @@ NoiseModel estimate_noise(const std::vector<Binning>& bins, const std::vector<Ei
 /// @param columns of each flight, in bins: of all that is fitted. Flights without columns do not take part in
 ///        the search for slow parts.
 /// @param residuals of each flight, in bins, after the fit, hPa
-NoiseModel find_noise(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
+FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
                       const std::vector<Eigen::VectorXd>& residuals);
 
-/// The columns in units of the noise and without its memory: each row is scaled by the level and what the
-/// rows before predict is taken off; exact at the beginning of stretches.
+/// The columns in units of the noise and without its memory: `Whitening` of one flight.
 Eigen::MatrixXd whitened(const Eigen::Ref<const Eigen::MatrixXd>& columns, const Binning& bins,
                          const NoiseModel& noise, std::size_t flight);
-
-/// The shapes of slow drift over a flight, cos(pi k t/T)/k: periods down to five minutes, at most 48.
-Eigen::MatrixXd drift_shapes(const Binning& bins);
 
 }  // namespace pcor::internal

@@ -47,6 +47,7 @@ Whitening::Whitening(const Binning& bins, const NoiseModel& noise, std::size_t f
   }
   const Eigen::Index order = as_index(order_);
   const Eigen::Index slow = as_index(slow_time.size());
+  slow_variance_ = Eigen::Map<const Eigen::VectorXd>(slow_variance.data(), slow);
   const Eigen::Index size = order + slow;
   const Eigen::Index count = as_index(bins.size());
   decay_ = Eigen::MatrixXd::Zero(slow, count);
@@ -62,8 +63,7 @@ Whitening::Whitening(const Binning& bins, const NoiseModel& noise, std::size_t f
   }
   Eigen::MatrixXd now = Eigen::MatrixXd::Zero(size, size);  // covariance of the state
   Eigen::MatrixXd next = now;
-  for (Eigen::Index j = 0; j < slow; ++j)
-    now(order + j, order + j) = slow_variance[static_cast<std::size_t>(j)];
+  now.diagonal().tail(slow) = slow_variance_;
   Eigen::VectorXd seen(size);   // covariance of state and observation
   Eigen::VectorXd ahead(size);  // of the next value of the autoregression and the state
   Eigen::VectorXd decay = Eigen::VectorXd::Ones(slow);
@@ -80,7 +80,7 @@ Whitening::Whitening(const Binning& bins, const NoiseModel& noise, std::size_t f
     next.bottomRightCorner(slow, slow) =
         decay.asDiagonal() * now.bottomRightCorner(slow, slow) * decay.asDiagonal();
     for (Eigen::Index j = 0; j < slow; ++j)
-      next(order + j, order + j) += (1.0 - decay[j] * decay[j]) * slow_variance[static_cast<std::size_t>(j)];
+      next(order + j, order + j) += (1.0 - decay[j] * decay[j]) * slow_variance_[j];
     if (stretch < begins_.size() && begins_[stretch] == t) {
       ++stretch;
       next.topLeftCorner(order, order) = stationary;
@@ -98,7 +98,8 @@ Whitening::Whitening(const Binning& bins, const NoiseModel& noise, std::size_t f
     seen = level_[t] * next.col(0) + next.rightCols(slow).rowwise().sum();
     const double variance = level_[t] * seen[0] + seen.tail(slow).sum();
     gain_.col(t) = seen / variance;
-    now = next - gain_.col(t) * seen.transpose();
+    next.noalias() -= gain_.col(t) * seen.transpose();
+    now.swap(next);
     deviation_[t] = std::sqrt(variance);
     log_determinant_ += std::log(variance);
   }
@@ -136,6 +137,48 @@ Eigen::MatrixXd Whitening::operator()(const Eigen::Ref<const Eigen::MatrixXd>& c
       const double* const gain = gain_.data() + t * (order + slow);
       for (std::size_t k = 0; k < state.size(); ++k) state[k] += gain[k] * innovation;
       result(t, c) = innovation / deviation_[t];
+    }
+  }
+  return result;
+}
+
+Eigen::VectorXd Whitening::transposed(const Eigen::VectorXd& values) const {
+  const auto order = static_cast<Eigen::Index>(order_);
+  const Eigen::Index slow = decay_.rows();
+  Eigen::VectorXd result(values.size());
+  // What all that comes later makes of the state, backwards step by step.
+  Eigen::VectorXd later = Eigen::VectorXd::Zero(order + slow);
+  std::size_t stretch = begins_.size();
+  for (Eigen::Index t = values.size(); t-- > 0;) {
+    result[t] = values[t] / deviation_[t] + gain_.col(t).dot(later);
+    later[0] -= level_[t] * result[t];
+    later.tail(slow).array() -= result[t];
+    later.tail(slow).array() *= decay_.col(t).array();
+    if (stretch > 0 && begins_[stretch - 1] == t) {
+      --stretch;
+      later.head(order).setZero();
+    } else {
+      const double newest = later[0];
+      for (Eigen::Index k = 0; k < order; ++k)
+        later[k] = coefficients_[static_cast<std::size_t>(k)] * newest + (k + 1 < order ? later[k + 1] : 0.0);
+    }
+  }
+  return result;
+}
+
+Eigen::VectorXd Whitening::slow_parts(const Eigen::VectorXd& residuals) const {
+  const Eigen::VectorXd weighted = transposed((*this)(residuals));
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(residuals.size());
+  for (Eigen::Index j = 0; j < decay_.rows(); ++j) {
+    double before = 0.0;  // sums of what was and what comes, each with what is left of it here
+    for (Eigen::Index t = 0; t < result.size(); ++t) {
+      before = decay_(j, t) * before + weighted[t];
+      result[t] += slow_variance_[j] * before;
+    }
+    double after = 0.0;
+    for (Eigen::Index t = result.size(); t-- > 0;) {
+      result[t] += slow_variance_[j] * after;
+      after = decay_(j, t) * (after + weighted[t]);
     }
   }
   return result;

@@ -19,6 +19,14 @@ class Whitening {
   /// @param columns one row for each bin
   Eigen::MatrixXd operator()(const Eigen::Ref<const Eigen::MatrixXd>& columns) const;
 
+  /// The transpose of what is applied to columns: `transposed(whitening(y))` is the inverse of the covariance
+  /// times y.
+  Eigen::VectorXd transposed(const Eigen::VectorXd& values) const;
+
+  /// The slow parts together that are most likely for residuals: their covariance times the inverse of that
+  /// of the whole noise times the residuals.
+  Eigen::VectorXd slow_parts(const Eigen::VectorXd& residuals) const;
+
   /// Of the covariance of the noise.
   double log_determinant() const { return log_determinant_; }
 
@@ -27,6 +35,7 @@ class Whitening {
   std::vector<double> coefficients_{};
   Eigen::VectorXd level_{};
   std::vector<Eigen::Index> begins_{};  // bins at which a stretch begins
+  Eigen::VectorXd slow_variance_{};     // of each slow part
   Eigen::MatrixXd decay_{};             // of each slow part since the bin before, by columns of bins
   Eigen::MatrixXd gain_{};              // of the state, by columns of bins
   Eigen::VectorXd deviation_{};         // of the innovations

@@ -50,7 +50,7 @@ struct Example {
     noise.coefficients = {memory};
   }
 
-  /// The covariance of noise and drift of a flight.
+  /// The covariance of the noise of a flight.
   Eigen::MatrixXd covariance(std::size_t flight) const {
     const Eigen::VectorXd& level = noise.level[flight];
     Eigen::MatrixXd result = Eigen::MatrixXd::Zero(level.size(), level.size());
@@ -64,50 +64,47 @@ struct Example {
         }
       }
     }
-    const Eigen::MatrixXd shapes = pcor::internal::drift_shapes(bins[flight]);
-    return result + noise.drift * noise.drift * shapes * shapes.transpose();
+    const std::vector<double>& time = bins[flight].time();
+    for (Eigen::Index a = 0; a < level.size(); ++a) {
+      for (Eigen::Index b = 0; b < level.size(); ++b) {
+        const double apart = std::abs(time[static_cast<std::size_t>(a)] - time[static_cast<std::size_t>(b)]);
+        for (std::size_t k = 0; k < slow_times.size(); ++k)
+          result(a, b) += noise.slow[k] * noise.slow[k] * std::exp(-apart / slow_times[k]);
+      }
+    }
+    return result;
   }
 };
-
-/// Noise of the model and drift of that size, as the model has them.
-Eigen::VectorXd draw_noise(const Example& example, std::size_t flight, double drift,
-                           std::mt19937_64& engine) {
-  std::normal_distribution<double> normal;
-  const Eigen::VectorXd& level = example.noise.level[flight];
-  Eigen::VectorXd values(level.size());
-  double value = normal(engine) / std::sqrt(1.0 - memory * memory);
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    values[i] = level[i] * value;
-    value = memory * value + normal(engine);
-  }
-  const Eigen::MatrixXd shapes = pcor::internal::drift_shapes(example.bins[flight]);
-  for (Eigen::Index k = 0; k < shapes.cols(); ++k) values += drift * normal(engine) * shapes.col(k);
-  return values;
-}
 
 }  // namespace
 
 TEST(Scores, AreThoseOfGeneralisedLeastSquares) {
-  for (const double drift : {0.0, 0.3, 3.0}) {
-    Example example({300, 150}, 4, 1);
-    example.noise.drift = drift;
-    const Scores scores =
-        pcor::internal::find_scores(example.bins, example.columns, example.residuals, example.noise);
-    Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(5, 5);
+  const auto expected = [](const Example& example) {
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(5, 5);
     for (std::size_t f = 0; f < 2; ++f) {
       Eigen::MatrixXd all(example.columns[f].rows(), 5);
       all << example.columns[f], example.residuals[f];
-      expected += all.transpose() * example.covariance(f).ldlt().solve(all);
+      sum += all.transpose() * example.covariance(f).ldlt().solve(all);
     }
-    // Rounding, of matrices whose condition is 1e4 at most.
-    EXPECT_TRUE(scores.information.isApprox(expected, 1e-9)) << drift;
+    return sum;
+  };
+  for (const double drift : {0.0, 0.3, 3.0}) {
+    Example example({300, 150}, 4, 1);
+    example.noise.slow = {0.5 * drift, 0.0, drift, 0.2 * drift};
+    const Scores scores =
+        pcor::internal::find_scores(example.bins, example.columns, example.residuals, example.noise);
+    // Rounding, of matrices whose condition is 1e5 at most.
+    EXPECT_TRUE(scores.information.isApprox(expected(example), 1e-9)) << drift;
     EXPECT_TRUE(scores.information.isApprox(scores.information.transpose(), 1e-14));
+    example.noise.slow = {};
+    EXPECT_TRUE(scores.plain.isApprox(expected(example), 1e-9)) << drift;
+    EXPECT_TRUE(scores.plain.isApprox(scores.plain.transpose(), 1e-14));
   }
 }
 
 TEST(Scores, OfBlocksAddUpToTheScore) {
   Example example({300, 150}, 4, 2);
-  example.noise.drift = 0.5;
+  example.noise.slow = {0.0, 0.5, 0.0, 0.0};
   const Scores scores =
       pcor::internal::find_scores(example.bins, example.columns, example.residuals, example.noise);
   // What is left after no coefficients has the score of the residual.
@@ -131,63 +128,19 @@ TEST(Scores, OfBlocksAddUpToTheScore) {
 // worth what it was.
 TEST(Scores, WithDriftSlowColumnsAreWorthLittle) {
   Example example({600}, 2, 3);
-  const Eigen::MatrixXd shapes = pcor::internal::drift_shapes(example.bins[0]);
-  example.columns[0].col(0) = shapes.col(2);
-  const Eigen::MatrixXd without =
-      pcor::internal::find_scores(example.bins, example.columns, example.residuals, example.noise)
-          .information;
-  example.noise.drift = 1.0;
-  const Eigen::MatrixXd with =
-      pcor::internal::find_scores(example.bins, example.columns, example.residuals, example.noise)
-          .information;
-  // The coefficient of the shape has the variance of the drift: its information is below 1.
-  EXPECT_LT(with(0, 0), 1.0);
-  EXPECT_GT(without(0, 0), 20.0);
-  EXPECT_GT(with(1, 1), 0.9 * without(1, 1));
-}
-
-TEST(LikelyDrift, FindsTheSizeOfTheDrift) {
-  for (const double size : {0.15, 0.5, 1.5}) {
-    for (unsigned seed = 1; seed <= 5; ++seed) {
-      Example example({900, 600}, 2, seed);
-      std::mt19937_64 engine(100 + seed);
-      for (std::size_t f = 0; f < 2; ++f) example.residuals[f] = draw_noise(example, f, size, engine);
-      const pcor::internal::DriftFit fit =
-          pcor::internal::likely_drift(example.bins, example.columns, example.residuals, example.noise);
-      const double found = fit.size;
-      const double gain = fit.gain;
-      // From about ten coefficients above the noise; steps of the sizes are up to 1.9.
-      EXPECT_GT(found, size / 2.2) << size << " " << seed;
-      EXPECT_LT(found, size * 2.2) << size << " " << seed;
-      EXPECT_GT(gain, 2.0) << size << " " << seed;
-    }
-  }
-}
-
-TEST(LikelyDrift, IsMostlyNoneWhereThereIsNone) {
-  int found = 0;
-  for (unsigned seed = 1; seed <= 60; ++seed) {
-    Example example({450}, 2, seed);
-    std::mt19937_64 engine(200 + seed);
-    example.residuals[0] = draw_noise(example, 0, 0.0, engine);
-    const double gain =
-        pcor::internal::likely_drift(example.bins, example.columns, example.residuals, example.noise).gain;
-    EXPECT_GE(gain, 0.0);
-    found += gain > 2.0 ? 1 : 0;
-  }
-  // Twice the gain is a chi2 of one degree, of which one half is at no drift: it exceeds 2 in 8 % of the
-  // cases. Of 60 more than 12 are that once in 600 times.
-  EXPECT_LE(found, 12);
-}
-
-TEST(LikelyDrift, IsNotWhatAColumnExplains) {
-  Example example({900}, 2, 7);
-  std::mt19937_64 engine(300);
-  example.columns[0].col(0) = pcor::internal::drift_shapes(example.bins[0]).col(3);
-  example.residuals[0] = draw_noise(example, 0, 0.0, engine) + 5.0 * example.columns[0].col(0);
-  const pcor::internal::DriftFit fit =
-      pcor::internal::likely_drift(example.bins, example.columns, example.residuals, example.noise);
-  const double found = fit.size;
-  const double gain = fit.gain;
-  EXPECT_TRUE(found == 0.0 || gain < 5.0) << found;
+  for (Eigen::Index i = 0; i < example.columns[0].rows(); ++i)
+    example.columns[0](i, 0) = std::cos(3.0 * M_PI * example.bins[0].time()[static_cast<std::size_t>(i)] /
+                                        example.bins[0].time().back());
+  const Scores without =
+      pcor::internal::find_scores(example.bins, example.columns, example.residuals, example.noise);
+  example.noise.slow = {0.0, 0.0, 1.0, 0.0};
+  const Scores with =
+      pcor::internal::find_scores(example.bins, example.columns, example.residuals, example.noise);
+  // Forty minutes hold a few pieces of a drift of 800 s and 1 hPa: the coefficient of a wave is known to some
+  // tenths of it.
+  EXPECT_LT(with.information(0, 0), 20.0);
+  EXPECT_GT(without.information(0, 0), 200.0);
+  // Of a column without memory a drift that is slower than two minutes hides a tenth at most.
+  EXPECT_GT(with.information(1, 1), 0.8 * without.information(1, 1));
+  EXPECT_NEAR(with.plain(0, 0), without.information(0, 0), 1e-9 * without.information(0, 0));
 }

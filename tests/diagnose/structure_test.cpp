@@ -205,7 +205,7 @@ TEST(StructureTest, KnowsTheSlopeOfALine) {
 
 TEST(StructureTest, TheSlopeIsThatOfGeneralisedLeastSquares) {
   Flight flight(200, 1, 3);
-  flight.noise.drift = 0.4;
+  flight.noise.slow = {0.0, 0.4, 0.0, 0.0};
   const StructureTest test = flight.test();
   ASSERT_EQ(test.structures().size(), 1U);
   const Eigen::Index rows = 200;
@@ -213,10 +213,9 @@ TEST(StructureTest, TheSlopeIsThatOfGeneralisedLeastSquares) {
   for (Eigen::Index i = 0; i < rows; ++i) {
     for (Eigen::Index j = 0; j < rows; ++j)
       covariance(i, j) =
-          0.09 * std::pow(memory, std::abs(static_cast<double>(i - j))) / (1.0 - memory * memory);
+          0.09 * std::pow(memory, std::abs(static_cast<double>(i - j))) / (1.0 - memory * memory) +
+          0.16 * std::exp(-step * std::abs(static_cast<double>(i - j)) / pcor::internal::slow_times[1]);
   }
-  const Eigen::MatrixXd shapes = pcor::internal::drift_shapes(flight.bins[0]);
-  covariance += 0.16 * shapes * shapes.transpose();
   Eigen::MatrixXd columns(rows, 2);
   columns << Eigen::VectorXd::Ones(rows), as_vector(flight.variables[0]);
   const Eigen::MatrixXd weighted = covariance.ldlt().solve(columns);

@@ -162,26 +162,3 @@ TEST(NoiseModel, OfSeveralFlightsHasALevelForEach) {
   EXPECT_NEAR(noise.level[0].mean(), 0.11, 0.02);
   EXPECT_NEAR(noise.level[1].mean(), 0.29, 0.04);
 }
-
-TEST(DriftShapes, SpanASlowWave) {
-  const Binning bins = bins_of(std::vector<double>(1800, 0.0));  // two hours
-  const Eigen::MatrixXd shapes = pcor::internal::drift_shapes(bins);
-  EXPECT_GE(shapes.cols(), 46);
-  EXPECT_LE(shapes.cols(), 48);
-  for (const double period : {900.0, 2500.0, 10000.0}) {
-    Eigen::VectorXd wave(shapes.rows());
-    for (Eigen::Index i = 0; i < wave.size(); ++i)
-      wave[i] = std::sin(2.0 * M_PI * static_cast<double>(i) * step / period + 0.7);
-    Eigen::MatrixXd columns(shapes.rows(), shapes.cols() + 1);
-    columns << shapes, Eigen::VectorXd::Ones(shapes.rows());
-    const Eigen::VectorXd left = wave - columns * columns.householderQr().solve(wave);
-    // Cosines of whole half-waves fall off as 1/k^2: beyond the 48th 1 % of the wave is left.
-    EXPECT_LT(left.norm(), 0.03 * wave.norm()) << period;
-  }
-}
-
-TEST(DriftShapes, AreFewInShortFlights) {
-  EXPECT_EQ(pcor::internal::drift_shapes(bins_of({1.0})).cols(), 0);
-  EXPECT_EQ(pcor::internal::drift_shapes(bins_of(std::vector<double>(30, 0.0))).cols(), 0);
-  EXPECT_LE(pcor::internal::drift_shapes(bins_of(std::vector<double>(300, 0.0))).cols(), 8);
-}

@@ -10,6 +10,8 @@
 #include <random>
 #include <vector>
 
+#include "numerics/median.hpp"
+
 using namespace pcor::internal;
 
 namespace {
@@ -63,15 +65,17 @@ TEST(Whitening, TurnsTheCovarianceOfSlowPartsIntoUnity) {
         }
       }
     }
+    Eigen::MatrixXd slow = Eigen::MatrixXd::Zero(count, count);
     for (std::size_t k = 0; k < slow_times.size(); ++k) {
       for (std::size_t i = 0; i < bins.size(); ++i) {
         for (std::size_t j = 0; j < bins.size(); ++j) {
-          covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) +=
+          slow(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) +=
               noise.slow[k] * noise.slow[k] *
               std::exp(-std::abs(bins.time()[i] - bins.time()[j]) / slow_times[k]);
         }
       }
     }
+    covariance += slow;
     const Whitening whitening(bins, noise, 0);
     const Eigen::MatrixXd white = whitening(Eigen::MatrixXd::Identity(count, count));
     // Rounding of forty steps.
@@ -80,6 +84,10 @@ TEST(Whitening, TurnsTheCovarianceOfSlowPartsIntoUnity) {
                   .maxCoeff(),
               1e-12);
     EXPECT_NEAR(whitening.log_determinant(), std::log(covariance.determinant()), 1e-9);
+    const Eigen::VectorXd values = drifting(bins.size(), 3, 1.0, 1.0, 60.0);
+    EXPECT_LT((whitening.transposed(values) - white.transpose() * values).cwiseAbs().maxCoeff(), 1e-12);
+    EXPECT_LT((whitening.slow_parts(values) - slow * covariance.ldlt().solve(values)).cwiseAbs().maxCoeff(),
+              1e-12);
   }
 }
 
@@ -98,7 +106,7 @@ TEST(SlowNoise, GivesTheMeanOfAFlightItsError) {
     for (unsigned seed = 1; seed <= flights; ++seed) {
       const std::vector<Eigen::VectorXd> residual{drifting(count, seed, 0.1, each.slow, each.memory)};
       const Eigen::VectorXd left = residual[0].array() - residual[0].mean();
-      const NoiseModel noise = find_noise(bins, columns, {left});
+      const NoiseModel noise = find_noise(bins, columns, {left}).model;
       const Whitening whitening(bins[0], noise, 0);
       const Eigen::VectorXd one = whitening(columns[0]);
       const double information = one.squaredNorm();
@@ -109,4 +117,54 @@ TEST(SlowNoise, GivesTheMeanOfAFlightItsError) {
     // known to a factor of two, and the error of a mean goes with its root.
     EXPECT_NEAR(std::sqrt(squares / flights), 1.0, 0.35) << each.slow << " hPa, " << each.memory << " s";
   }
+}
+
+// A flight of two hours holds some dozen pieces of a drift, and in some flights a long memory of the
+// autoregression describes it as well: it is the flight in the middle that has its size, to a factor of 1.5.
+TEST(SlowNoise, HasTheSizeOfTheDrift) {
+  constexpr std::size_t count = 1800;
+  const std::vector<Binning> bins{bins_of(std::vector<double>(count, 0.0))};
+  const std::vector<Eigen::MatrixXd> columns{Eigen::MatrixXd::Ones(count, 1)};
+  for (const double memory : {100.0, 400.0}) {
+    std::vector<double> sizes;
+    std::vector<double> gains;
+    for (unsigned seed = 1; seed <= 9; ++seed) {
+      const FoundNoise found = find_noise(bins, columns, {drifting(count, seed, 0.1, 0.2, memory)});
+      sizes.push_back(Eigen::Map<const Eigen::Vector4d>(found.model.slow.data()).norm());
+      gains.push_back(found.drift_gain);
+      EXPECT_EQ(found.model.drifts(), sizes.back() > 0.0);
+    }
+    EXPECT_NEAR(std::log(median(sizes) / 0.2), 0.0, std::log(1.5)) << memory;
+    EXPECT_GT(median(gains), 30.0) << memory;
+  }
+}
+
+// Twice the gain by four parts that are at their bound is below a chi2 of four degrees, of which 13 is one
+// percent.
+TEST(SlowNoise, GainsLittleWhereThereIsNone) {
+  constexpr std::size_t count = 900;
+  const std::vector<Binning> bins{bins_of(std::vector<double>(count, 0.0))};
+  const std::vector<Eigen::MatrixXd> columns{Eigen::MatrixXd::Ones(count, 1)};
+  int beyond = 0;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    const FoundNoise found = find_noise(bins, columns, {drifting(count, seed, 0.1, 0.0, 100.0)});
+    EXPECT_GE(found.drift_gain, 0.0);
+    beyond += found.drift_gain > 13.0 ? 1 : 0;
+  }
+  EXPECT_LE(beyond, 2);
+}
+
+// A wave that a column explains is not a drift; without the column it is one, and less likely.
+TEST(SlowNoise, IsNotWhatAColumnExplains) {
+  constexpr std::size_t count = 900;
+  const std::vector<Binning> bins{bins_of(std::vector<double>(count, 0.0))};
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Ones(count, 2);
+  for (Eigen::Index i = 0; i < columns.rows(); ++i)
+    columns(i, 1) = std::cos(4.0 * M_PI * static_cast<double>(i) / static_cast<double>(count));
+  const Eigen::VectorXd noise = drifting(count, 7, 0.1, 0.0, 100.0);
+  const FoundNoise with = find_noise(bins, {columns}, {noise + 2.0 * columns.col(1)});
+  const FoundNoise without = find_noise(bins, {columns.leftCols(1)}, {noise + 2.0 * columns.col(1)});
+  EXPECT_LT(with.drift_gain, 13.0);
+  EXPECT_GT(without.drift_gain, 100.0);
+  EXPECT_GT(with.likelihood, without.likelihood);
 }
