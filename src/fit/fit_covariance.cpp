@@ -280,4 +280,13 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations,
   return found;
 }
 
+void widen_to_jackknife(FitCovariance& covariance) {
+  for (Eigen::Index k = 0; k < covariance.jackknife.size(); ++k) {
+    const double ratio = covariance.jackknife[k] / std::sqrt(covariance.matrix(k, k));
+    if (!(ratio > 1.0 && std::isfinite(ratio))) continue;
+    covariance.matrix.row(k) *= ratio;
+    covariance.matrix.col(k) *= ratio;
+  }
+}
+
 }  // namespace pcor::internal

@@ -40,4 +40,7 @@ struct FitCovariance {
 FitCovariance fit_covariance(const std::vector<FitEquations>& equations,
                              const std::vector<std::size_t>& held);
 
+/// Makes every standard error at least that of the jackknife; correlations stay.
+void widen_to_jackknife(FitCovariance& covariance);
+
 }  // namespace pcor::internal

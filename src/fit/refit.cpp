@@ -230,7 +230,9 @@ RefitResult fit(const Sources& sources, const ModelFile& model, const Reference&
   Reduction alike;
   alike.factor = flights.unweighted_factor(solution.values);
   result.condition_number = condition_number(alike, task, fitted.parameters);
-  const FitCovariance covariance = fit_covariance(fitted.equations, fitted.held);
+  FitCovariance covariance = fit_covariance(fitted.equations, fitted.held);
+  // Slow changes that are followed are in no model of the noise; the jackknife sees them.
+  if (!options.drift) widen_to_jackknife(covariance);
   const FitSums sums = sums_at(flights, solution.values, solution.deviation);
   result.samples = sums.samples;
   result.rms = sums.rms_of(sums.squares);
@@ -265,20 +267,40 @@ RefitResult fit(const Sources& sources, const ModelFile& model, const Reference&
   return result;
 }
 
+/// A fit that takes slow changes for drift, and where that leaves more than the coefficients of the file do,
+/// one that follows them: then they are what the model lacks.
+RefitResult fit_with_or_without_drift(const Sources& sources, const ModelFile& model,
+                                      const Reference& reference, const RefitOptions& options) {
+  RefitResult result = fit(sources, model, reference, options);
+  if (result.worse.empty() || !options.drift) return result;
+  RefitOptions following = options;
+  following.drift = false;
+  RefitResult other = fit(sources, model, reference, following);
+  if (!other.worse.empty()) return result;
+  other.warnings.insert(
+      other.warnings.begin(),
+      fmt::format(
+          "slow changes of the residuals, of {:.2f} hPa, are too many to be drift of the sensors alone: the "
+          "fit follows them, its errors are those by jackknife, and the model lacks something; pcor "
+          "diagnose tells what",
+          result.drift_rms));
+  return other;
+}
+
 }  // namespace
 
 RefitResult refit(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
                   const Reference& reference, const RefitOptions& options) {
   Sources sources;
   for (const std::filesystem::path& path : flights) sources.push_back({path, nullptr});
-  return fit(sources, model, reference, options);
+  return fit_with_or_without_drift(sources, model, reference, options);
 }
 
 RefitResult refit(const std::vector<std::shared_ptr<const FlightSamples>>& flights, const ModelFile& model,
                   const Reference& reference, const RefitOptions& options) {
   Sources sources;
   for (const std::shared_ptr<const FlightSamples>& samples : flights) sources.push_back({{}, samples});
-  return fit(sources, model, reference, options);
+  return fit_with_or_without_drift(sources, model, reference, options);
 }
 
 }  // namespace pcor
