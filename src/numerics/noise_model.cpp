@@ -186,7 +186,7 @@ std::vector<double> least_of(const Cost& cost) {
                               void* data) { return (*static_cast<Cost*>(data))(x); },
                            &own);
   search.set_initial_step(0.2);
-  search.set_xtol_abs(0.02);
+  search.set_xtol_abs(0.03);
   search.set_maxeval(120);
   std::vector<double> sizes(slow_times.size(), 0.25);
   double least = 0.0;

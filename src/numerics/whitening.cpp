@@ -32,6 +32,20 @@ std::vector<double> autocovariance(const std::vector<double>& coefficients) {
   return result;
 }
 
+/// A covariance of a handful of variables, of which the upper triangle is kept. In loops by hand: blocks of
+/// such a size cost a matrix library more than they compute.
+class Covariance {
+ public:
+  explicit Covariance(Eigen::Index size) : size_(size), values_(static_cast<std::size_t>(size * size), 0.0) {}
+  double& operator()(Eigen::Index row, Eigen::Index column) {
+    return values_[static_cast<std::size_t>(row * size_ + column)];
+  }
+
+ private:
+  Eigen::Index size_;
+  std::vector<double> values_;
+};
+
 }  // namespace
 
 Whitening::Whitening(const Binning& bins, const NoiseModel& noise, std::size_t flight)
@@ -61,45 +75,64 @@ Whitening::Whitening(const Binning& bins, const NoiseModel& noise, std::size_t f
     for (Eigen::Index j = 0; j < order; ++j)
       stationary(i, j) = lags[static_cast<std::size_t>(std::abs(i - j))];
   }
-  Eigen::MatrixXd now = Eigen::MatrixXd::Zero(size, size);  // covariance of the state
-  Eigen::MatrixXd next = now;
-  now.diagonal().tail(slow) = slow_variance_;
+  Covariance now(size);  // of the state
+  Covariance next(size);
+  for (Eigen::Index j = 0; j < slow; ++j) now(order + j, order + j) = slow_variance_[j];
   Eigen::VectorXd seen(size);   // covariance of state and observation
   Eigen::VectorXd ahead(size);  // of the next value of the autoregression and the state
   Eigen::VectorXd decay = Eigen::VectorXd::Ones(slow);
   for (const Stretch& stretch : bins.stretches()) begins_.push_back(as_index(stretch.first));
   std::size_t stretch = 0;
+  double usual = 0.0;  // s from the bin before
   for (Eigen::Index t = 0; t < count; ++t) {
     if (t > 0) {
       const double since =
           bins.time()[static_cast<std::size_t>(t)] - bins.time()[static_cast<std::size_t>(t - 1)];
-      for (Eigen::Index j = 0; j < slow; ++j)
+      for (Eigen::Index j = 0; j < slow && since != usual; ++j)
         decay[j] = std::exp(-since / slow_time[static_cast<std::size_t>(j)]);
+      usual = since;
     }
     decay_.col(t) = decay;
-    next.bottomRightCorner(slow, slow) =
-        decay.asDiagonal() * now.bottomRightCorner(slow, slow) * decay.asDiagonal();
-    for (Eigen::Index j = 0; j < slow; ++j)
+    for (Eigen::Index j = 0; j < slow; ++j) {
+      for (Eigen::Index i = 0; i <= j; ++i)
+        next(order + i, order + j) = decay[i] * decay[j] * now(order + i, order + j);
       next(order + j, order + j) += (1.0 - decay[j] * decay[j]) * slow_variance_[j];
+    }
     if (stretch < begins_.size() && begins_[stretch] == t) {
       ++stretch;
-      next.topLeftCorner(order, order) = stationary;
-      next.topRightCorner(order, slow).setZero();
+      for (Eigen::Index j = 0; j < order; ++j) {
+        for (Eigen::Index i = 0; i <= j; ++i) next(i, j) = stationary(i, j);
+      }
+      for (Eigen::Index j = order; j < size; ++j) {
+        for (Eigen::Index i = 0; i < order; ++i) next(i, j) = 0.0;
+      }
     } else {
-      ahead.noalias() = now.topRows(order).transpose() * coefficients;
-      next(0, 0) = ahead.head(order).dot(coefficients) + 1.0;
-      next.block(0, 1, 1, order - 1) = ahead.head(order - 1).transpose();
-      next.block(1, 0, order - 1, 1) = ahead.head(order - 1);
-      next.block(1, 1, order - 1, order - 1) = now.topLeftCorner(order - 1, order - 1);
-      next.block(0, order, 1, slow) = ahead.tail(slow).cwiseProduct(decay).transpose();
-      next.block(1, order, order - 1, slow) = now.block(0, order, order - 1, slow) * decay.asDiagonal();
+      for (Eigen::Index j = 0; j < size; ++j) {
+        ahead[j] = 0.0;
+        for (Eigen::Index k = 0; k < order; ++k)
+          ahead[j] += coefficients[k] * now(std::min(k, j), std::max(k, j));
+      }
+      next(0, 0) = 1.0;
+      for (Eigen::Index k = 0; k < order; ++k) next(0, 0) += ahead[k] * coefficients[k];
+      for (Eigen::Index j = 1; j < order; ++j) {
+        next(0, j) = ahead[j - 1];
+        for (Eigen::Index i = 1; i <= j; ++i) next(i, j) = now(i - 1, j - 1);
+      }
+      for (Eigen::Index j = order; j < size; ++j) {
+        next(0, j) = ahead[j] * decay[j - order];
+        for (Eigen::Index i = 1; i < order; ++i) next(i, j) = now(i - 1, j) * decay[j - order];
+      }
     }
-    next.bottomLeftCorner(slow, order) = next.topRightCorner(order, slow).transpose();
-    seen = level_[t] * next.col(0) + next.rightCols(slow).rowwise().sum();
-    const double variance = level_[t] * seen[0] + seen.tail(slow).sum();
+    double variance = 0.0;
+    for (Eigen::Index i = 0; i < size; ++i) {
+      seen[i] = level_[t] * next(0, i);
+      for (Eigen::Index j = order; j < size; ++j) seen[i] += next(std::min(i, j), std::max(i, j));
+      variance += i == 0 ? level_[t] * seen[0] : i < order ? 0.0 : seen[i];
+    }
     gain_.col(t) = seen / variance;
-    next.noalias() -= gain_.col(t) * seen.transpose();
-    now.swap(next);
+    for (Eigen::Index j = 0; j < size; ++j) {
+      for (Eigen::Index i = 0; i <= j; ++i) now(i, j) = next(i, j) - gain_(i, t) * seen[j];
+    }
     deviation_[t] = std::sqrt(variance);
     log_determinant_ += std::log(variance);
   }

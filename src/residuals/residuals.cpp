@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <mutex>
 #include <numeric>
 #include <utility>
 
@@ -48,7 +49,12 @@ struct Residuals::Implementation {
   std::vector<double> parameters;
   std::vector<bool> linear;
   std::vector<Mask> mask;
-  std::vector<double> sensitivity;  // of the residual to the reference's sensor, where it has one
+
+  /// Of the residual to the reference's sensor, where it has one; found when it is first asked for.
+  const std::vector<double>& sensitivity() const {
+    std::call_once(found_, [this] { sensitivity_ = reference->sensor()->sensitivity(); });
+    return sensitivity_;
+  }
 
   Implementation(std::shared_ptr<const FlightSamples> flight, const ModelFile& of,
                  const Reference& held_against)
@@ -63,8 +69,11 @@ struct Residuals::Implementation {
       const std::vector<bool> more = other->linear();
       linear.insert(linear.end(), more.begin(), more.end());
     }
-    if (reference->sensor() != nullptr) sensitivity = reference->sensor()->sensitivity();
   }
+
+ private:
+  mutable std::once_flag found_;
+  mutable std::vector<double> sensitivity_;
 };
 
 Residuals::Residuals(std::shared_ptr<const FlightSamples> samples, const ModelFile& model,
@@ -142,15 +151,16 @@ void Residuals::evaluate_at_sensor(const std::size_t* samples, std::size_t count
   const NoisySensor* const sensor = own.reference->sensor();
   if (sensor == nullptr) return evaluate(samples, count, parameters, wanted, residual, derivatives);
   const std::vector<double>& recorded = *own.samples->model.find(sensor->quantity());
+  const std::vector<double>& sensitivity = own.sensitivity();
   sensor->predict(samples, count, parameters, residual);
   for (std::size_t i = 0; i < count; ++i)
-    residual[i] = own.sensitivity[samples[i]] * (recorded[samples[i]] - residual[i]);
+    residual[i] = sensitivity[samples[i]] * (recorded[samples[i]] - residual[i]);
   std::vector<std::size_t> all(wanted.size());
   std::iota(all.begin(), all.end(), 0);
   differentiate(count, {parameters, parameters + own.parameters.size()}, wanted, all, derivatives,
                 [&](const Jet* dual, Jet* out) { sensor->predict(samples, count, dual, out); });
   for (std::size_t k = 0; k < wanted.size(); ++k) {
-    for (std::size_t i = 0; i < count; ++i) derivatives[k * count + i] *= -own.sensitivity[samples[i]];
+    for (std::size_t i = 0; i < count; ++i) derivatives[k * count + i] *= -sensitivity[samples[i]];
   }
 }
 

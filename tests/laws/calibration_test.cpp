@@ -203,8 +203,16 @@ TEST(Calibration, IsHeldByARefit) {
   // without.
   for (std::size_t e = 0; e < 3; ++e)
     EXPECT_EQ(with.model.model.effects[e].parameters, without.model.model.effects[e].parameters);
-  EXPECT_THAT(with.covariance_names, ElementsAre("static-constant.a0", "static-alpha.a1", "static-qp.a2"));
-  EXPECT_EQ(with.covariance, without.covariance);
+  // The calibration is held with a stated error, which here goes on to nothing.
+  EXPECT_THAT(with.covariance_names,
+              ElementsAre("static-constant.a0", "static-alpha.a1", "static-qp.a2", "temp-calibration.a0",
+                          "temp-calibration.a1", "temp-calibration.a2"));
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t b = 0; b < 3; ++b) {
+      EXPECT_EQ(with.covariance[a][b], without.covariance[a][b]);
+      EXPECT_EQ(with.covariance[a][3 + b], 0.0);
+    }
+  }
 }
 
 TEST(Calibration, KeepsItsCovarianceInARefit) {
