@@ -239,7 +239,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations,
   const Eigen::MatrixXd prior = prior_rows(task, parameters);
   const Eigen::MatrixXd drawn = last.solution.deviation * last.solution.deviation * prior.transpose() * prior;
   derivatives.leftCols(fitted) += drawn;
-  score += drawn;
+  score += last.solution.deviation * last.solution.deviation * drawn;
 
   FitCovariance found;
   found.information = information_of(*last.flights);

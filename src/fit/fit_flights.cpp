@@ -7,6 +7,7 @@
 #include <cmath>
 #include <deque>
 #include <future>
+#include <numeric>
 #include <thread>
 
 #include <pcor/words/error.hpp>
@@ -402,6 +403,12 @@ void FitFlights::measure_noise(const Eigen::VectorXd& parameters, const Eigen::V
   visit([&](std::size_t number, std::size_t, FitFlight& fit) {
     if (cache_[number]) fit.set_noise(*noise_, number);
   });
+}
+
+std::size_t FitFlights::bins() {
+  std::vector<std::size_t> parts(count(), 0);
+  visit([&](std::size_t number, std::size_t, FitFlight& fit) { parts[number] = fit.bins().size(); });
+  return std::accumulate(parts.begin(), parts.end(), std::size_t{0});
 }
 
 double FitFlights::drift_rms() const {

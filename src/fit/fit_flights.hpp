@@ -157,6 +157,8 @@ class FitFlights {
   const std::vector<bool>& is_linear() const { return linear_; }
   std::size_t samples() const { return samples_; }
   std::size_t offsets() const { return offsets_; }
+  /// Bins of all flights, as they are now.
+  std::size_t bins();
   const std::array<std::size_t, mask_count>& masks() const { return masks_; }
 
   /// Visits every flight; `visit` is called by several threads, with the number of the flight and of its

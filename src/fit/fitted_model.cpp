@@ -71,6 +71,10 @@ ModelFile fitted_model(ModelFile file, std::size_t first, const RefitResult& fit
           static_cast<std::size_t>(std::find(known.begin(), known.end(), parameter.name) - known.begin()));
     }
   }
+  const auto last = fit.parameters.begin() + static_cast<std::ptrdiff_t>(p);
+  const bool any_fitted = std::any_of(fit.parameters.begin() + static_cast<std::ptrdiff_t>(first), last,
+                                      [](const FittedParameter& parameter) { return parameter.fitted; });
+  if (!any_fitted) return file;  // all of it was held: it is the law that it was
   for (const std::size_t a : inside) {
     std::vector<double>& row = covariance.matrix.emplace_back();
     for (const std::size_t b : inside) row.push_back(fit.covariance[a][b]);

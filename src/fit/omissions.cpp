@@ -31,7 +31,7 @@ double SquaredResiduals::at(const Eigen::VectorXd& values) const {
 }
 
 double SquaredResiduals::least() const {
-  if (!is_linear_) return nan;
+  if (!is_linear_ || flights_.task().options.fit_reference) return nan;
   const double left = factor_(factor_.rows() - 1, factor_.cols() - 1);
   return left * left;
 }

@@ -12,7 +12,8 @@ class SquaredResiduals {
 
   bool is_linear() const { return is_linear_; }
   double at(const Eigen::VectorXd& values) const;
-  /// The least that any coefficients leave; NaN where the residual is not linear.
+  /// The least that any coefficients leave; NaN where the residual is not linear, or
+  /// two systems are fitted, whose derivatives hold the noise of the residual.
   double least() const;
 
  private:

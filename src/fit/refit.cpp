@@ -203,7 +203,8 @@ std::vector<std::string> notes_of(const RefitResult& result, const FitTask& task
   };
   add(identifiability_notes(task, fitted.solution, covariance, fitted.parameters, result.condition_number,
                             compared.flown));
-  add(error_notes(result, fitted.flights->count(), fitted.stands_still, task.uses_prior()));
+  add(error_notes(result, fitted.flights->count(), fitted.stands_still,
+                  task.uses_prior() || !fitted.held.empty()));
   add(compared.notes);
   add(bound_notes(task, fitted.solution, result.condition_number));
   if (task.uses_prior()) {
@@ -231,6 +232,7 @@ RefitResult fit(const Sources& sources, const ModelFile& model, const Reference&
   alike.factor = flights.unweighted_factor(solution.values);
   result.condition_number = condition_number(alike, task, fitted.parameters);
   FitCovariance covariance = fit_covariance(fitted.equations, fitted.held);
+  result.jackknife_parts = covariance.blocks;
   // Slow changes that are followed are in no model of the noise; the jackknife sees them.
   if (!options.drift) widen_to_jackknife(covariance);
   const FitSums sums = sums_at(flights, solution.values, solution.deviation);
@@ -272,7 +274,7 @@ RefitResult fit(const Sources& sources, const ModelFile& model, const Reference&
 RefitResult fit_with_or_without_drift(const Sources& sources, const ModelFile& model,
                                       const Reference& reference, const RefitOptions& options) {
   RefitResult result = fit(sources, model, reference, options);
-  if (result.worse.empty() || !options.drift) return result;
+  if (result.worse.empty() || !options.drift || !(result.drift_rms > 0.0)) return result;
   RefitOptions following = options;
   following.drift = false;
   RefitResult other = fit(sources, model, reference, following);

@@ -18,7 +18,9 @@
 namespace pcor::internal {
 namespace {
 
-void require_samples(const FitFlights& flights) {
+constexpr std::size_t fewest_free_bins = 15;  // a minute: the deviation of the noise to a fifth
+
+void require_samples(FitFlights& flights) {
   const FitSetup& setup = flights.setup();
   if (flights.samples() == 0 && !setup.regimes.empty()) {
     std::vector<std::string_view> names;
@@ -40,6 +42,15 @@ void require_samples(const FitFlights& flights) {
         fmt::format("{} samples are too few for {} coefficients (not used: {}); give more flights or fix "
                     "coefficients",
                     flights.samples(), unknown, mask_text(flights.masks())));
+  }
+  // The noise is found from bins of four seconds; that of a stage is the noise of all samples.
+  const std::size_t fewest = unknown + (flights.shares_noise() ? 1 : fewest_free_bins);
+  const std::size_t bins = flights.bins();
+  if (bins < fewest) {
+    throw Error(fmt::format(
+        "{} samples, in {} intervals of four seconds, are too few for {} coefficients and their errors: {} "
+        "intervals are the fewest (not used: {}); give more flights or fix coefficients",
+        flights.samples(), bins, unknown, fewest, mask_text(flights.masks())));
   }
 }
 

@@ -13,7 +13,10 @@ namespace pcor::internal {
 namespace {
 
 constexpr double larger = 1.02;
+constexpr double larger_elsewhere =
+    1.05;  // by chance a fit of half a flight is worse on the rest by some per cent
 constexpr double much_larger = 1.1;
+constexpr double least_drift = 0.02;     // hPa; of less a pressure is not told
 constexpr double longest_chance = 30.0;  // s of outliers in a row; spikes and gusts are shorter
 constexpr double many_outliers = 0.05;   // of all samples
 
@@ -61,7 +64,7 @@ std::string why_worse(const RefitResult& result, double bulk_rms_before) {
         result.rms, result.rms_before);
   }
   for (const FlightFit& flight : result.flights) {
-    if (flight.holdout && flight.after.rms > larger * flight.before.rms) {
+    if (flight.holdout && flight.after.rms > larger_elsewhere * flight.before.rms) {
       return fmt::format(
           "on {}, which was held out, the fit leaves a larger rms, {:.3f} hPa, than the coefficients of the "
           "file, {:.3f} hPa",
@@ -103,7 +106,7 @@ std::vector<std::string> fit_warnings(FitFlights& flights, const RefitResult& re
                     100.0 * share));
   }
   const double drift = flights.drift_rms();
-  if (drift > 0.0 && result.rms > much_larger * least_rms) {
+  if (drift > least_drift && result.rms > much_larger * least_rms) {
     warnings.push_back(fmt::format(
         "slow changes of the residuals, of {:.2f} hPa, were taken for drift of the sensors and not followed; "
         "coefficients that follow them leave an rms of {:.3f} hPa instead of {:.3f}. If they are what the "
@@ -115,9 +118,11 @@ std::vector<std::string> fit_warnings(FitFlights& flights, const RefitResult& re
 }
 
 std::vector<std::string> error_notes(const RefitResult& result, std::size_t flights, bool stands_still,
-                                     bool with_prior) {
-  constexpr double too_small = 1.6;  // the jackknife of twenty parts knows an error to 16 %
-  constexpr double too_large = 0.5;
+                                     bool with_doubt) {
+  // The jackknife of n parts knows an error to 1/sqrt(2 (n - 1)); four of these either side.
+  const double chance = 4.0 / std::sqrt(2.0 * (static_cast<double>(result.jackknife_parts) - 1.0));
+  const double too_small = 1.0 + chance;
+  const double too_large = 1.0 / too_small;
   std::vector<std::string> notes;
   if (!stands_still) {
     notes.emplace_back(
@@ -127,8 +132,8 @@ std::vector<std::string> error_notes(const RefitResult& result, std::size_t flig
   std::string apart;
   for (const FittedParameter& parameter : result.parameters) {
     const double ratio = parameter.jackknife_error / parameter.standard_error;
-    // The error of a prior is no noise, which a jackknife could see.
-    if (!(ratio > too_small || (ratio < too_large && !with_prior))) continue;
+    // The doubt of a prior, or of what is held, is no noise, which a jackknife could see.
+    if (!(ratio > too_small || (ratio < too_large && !with_doubt))) continue;
     apart += fmt::format("{}{} ({:.2g} against {:.2g})", apart.empty() ? "" : ", ", parameter.name,
                          parameter.jackknife_error, parameter.standard_error);
   }
@@ -136,7 +141,7 @@ std::vector<std::string> error_notes(const RefitResult& result, std::size_t flig
     notes.push_back(fmt::format(
         "the standard errors are not borne out by leaving out one {} after another, for {}: the noise is not "
         "what the fit takes it for, or a few minutes decide; believe the larger one",
-        flights >= 8 ? "flight" : "part of the flights", apart));
+        result.jackknife_parts == flights ? "flight" : "part of the flights", apart));
   }
   return notes;
 }

@@ -8,8 +8,9 @@
 namespace pcor::internal {
 
 /// Why the fit's own numbers call it worse than the coefficients of the file, a sentence without full stop:
-/// its residuals are larger by more than 2 %, on what was fitted (rms and robust deviation both, since a
-/// robust fit may leave outliers more) or on a part that was held out. Empty where they are not.
+/// its residuals are larger, by more than 2 % on what was fitted (rms and robust deviation both, since a
+/// robust fit may leave outliers more) or by more than 5 % on a
+/// part that was held out. Empty where they are not.
 /// @param bulk_rms_before robust deviation with the coefficients of the file, hPa
 std::string why_worse(const RefitResult& result, double bulk_rms_before);
 
@@ -21,7 +22,8 @@ std::vector<std::string> fit_warnings(FitFlights& flights, const RefitResult& re
                                       const Eigen::VectorXd& values, double least_rms);
 
 /// In words: where the jackknife does not bear out the stated errors, and stages that do not come to rest.
+/// @param with_doubt errors hold that of a prior, or of coefficients that were held
 std::vector<std::string> error_notes(const RefitResult& result, std::size_t flights, bool stands_still,
-                                     bool with_prior);
+                                     bool with_doubt);
 
 }  // namespace pcor::internal

@@ -159,7 +159,9 @@ Autoregression autoregression(const std::vector<double>& values, const std::vect
   std::vector<double> backward = kept;
   std::vector<double> coefficients;
   double best_criterion = count * std::log(power);
-  for (std::size_t order = 1; order <= highest_order; ++order) {
+  // Ten values for a coefficient: of fewer a process takes up the noise itself.
+  const std::size_t most = std::min(highest_order, kept.size() / 10);
+  for (std::size_t order = 1; order <= most; ++order) {
     double across = 0.0;
     double total = 0.0;
     std::size_t begin = 0;

@@ -18,11 +18,11 @@ constexpr std::size_t most_shapes = 48;
 constexpr double shortest_period = 300.0;  // s
 constexpr std::size_t fewest_innovations = 20;
 /// Twice the logarithm of the likelihood that a slow part has to be worth.
-constexpr double worth_of_a_part = 1.0;
+constexpr double worth_of_a_part = 2.0;
 
 /// The shapes of slow drift over a flight, cos(pi k t/T)/k: periods down to five minutes, at most 48.
 Eigen::MatrixXd drift_shapes(const Binning& bins) {
-  if (bins.size() < 2) return Eigen::MatrixXd(as_index(bins.size()), 0);
+  if (bins.size() < 2) return {as_index(bins.size()), 0};
   const double begin = bins.time().front();
   const double length = bins.time().back() - begin;
   const auto by_period = static_cast<std::size_t>(2.0 * length / shortest_period);
@@ -175,10 +175,12 @@ class RestrictedLikelihood {
 
 using Cost = std::function<double(const std::vector<double>&)>;
 
-/// The sizes of the slow parts, of the rms of the residuals, with the least cost.
-std::vector<double> least_of(const Cost& cost) {
+/// The sizes of the first `parts` slow parts, of the rms of the residuals, with the least cost.
+std::vector<double> least_of(const Cost& cost, std::size_t parts) {
   constexpr double most = 5.0;
-  nlopt::opt search(nlopt::LN_BOBYQA, static_cast<unsigned>(slow_times.size()));
+  std::vector<double> sizes(parts, 0.25);
+  if (parts < 2) return std::vector<double>(parts, 0.0);  // in minutes there is no drift to be found
+  nlopt::opt search(nlopt::LN_BOBYQA, static_cast<unsigned>(parts));
   search.set_lower_bounds(0.0);
   search.set_upper_bounds(most);
   Cost own = cost;
@@ -188,7 +190,6 @@ std::vector<double> least_of(const Cost& cost) {
   search.set_initial_step(0.2);
   search.set_xtol_abs(0.03);
   search.set_maxeval(120);
-  std::vector<double> sizes(slow_times.size(), 0.25);
   double least = 0.0;
   try {
     search.optimize(sizes, least);
@@ -208,11 +209,13 @@ FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen:
   noise.coefficients = whole.coefficients;
   std::vector<std::size_t> part;
   std::vector<double> all;
+  double longest = 0.0;  // of the flights, s
   for (std::size_t f = 0; f < bins.size(); ++f) {
     if (columns[f].rows() == 0) continue;
     part.push_back(f);
     noise.level.push_back(whole.level[f]);
     all.insert(all.end(), residuals[f].data(), residuals[f].data() + residuals[f].size());
+    if (bins[f].size() > 0) longest = std::max(longest, bins[f].time().back() - bins[f].time().front());
   }
   const double rms = robust_deviation(all);
   if (!(rms > 0.0)) return found;
@@ -222,7 +225,10 @@ FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen:
     return likelihood(noise);
   };
   const auto cost = [&](const std::vector<double>& sizes) { return with(sizes).restricted; };
-  std::vector<double> sizes = least_of(cost);
+  // What is slower than half a flight, no flight tells from its mean.
+  const auto parts = static_cast<std::size_t>(
+      std::count_if(slow_times.begin(), slow_times.end(), [&](double time) { return time < 0.5 * longest; }));
+  std::vector<double> sizes = least_of(cost, parts);
   // A part that is worth nothing is left out, the slowest first: it is what a flight tells least of.
   double least = cost(sizes);
   for (std::size_t k = sizes.size(); k-- > 0;) {

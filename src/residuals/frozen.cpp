@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <pcor/words/utc.hpp>
@@ -99,6 +100,20 @@ double near_length(const std::vector<Stretch>& runs, std::size_t run) {
   return sum / static_cast<double>(lengths.size());
 }
 
+/// True for what no flying aircraft leaves at one value: flaps and liquid water may stay where they are.
+bool always_varies(Quantity quantity) {
+  constexpr std::array varying{Quantity::static_pressure,
+                               Quantity::dynamic_pressure,
+                               Quantity::radome_dynamic_pressure,
+                               Quantity::attack_differential_pressure,
+                               Quantity::sideslip_differential_pressure,
+                               Quantity::recovery_temperature,
+                               Quantity::ambient_temperature,
+                               Quantity::corrected_static_pressure,
+                               Quantity::lams_airspeed};
+  return std::find(varying.begin(), varying.end(), quantity) != varying.end();
+}
+
 /// "VLAMS stands still at 131.2 m/s, 2011-11-18 13:20:05 to 13:21:45 UTC (100 samples)".
 std::string told_of(const std::string& variable, Quantity quantity, const std::vector<double>& values,
                     const std::vector<double>& time, const std::vector<Stretch>& frozen) {
@@ -116,8 +131,11 @@ std::string told_of(const std::string& variable, Quantity quantity, const std::v
 
 }  // namespace
 
-std::vector<Stretch> find_frozen(const std::vector<double>& values, const std::vector<bool>& looked_at) {
+std::vector<Stretch> find_frozen(const std::vector<double>& values, const std::vector<bool>& looked_at,
+                                 bool always_varies) {
   const std::vector<Stretch> runs = runs_of(values, looked_at);
+  const auto same = [&](const Stretch& run) { return values[run.first] == values[runs.front().first]; };
+  if (always_varies && !runs.empty() && std::all_of(runs.begin(), runs.end(), same)) return runs;
   if (runs.size() < fewest_values) return {};
   const auto is_long = [](const Stretch& run) { return run.count >= fewest_samples; };
   if (std::none_of(runs.begin(), runs.end(), is_long)) return {};
@@ -141,7 +159,7 @@ void mark_frozen(FlightSamples& samples, double least_airspeed) {
   for (ModelSamples* const part : {&samples.model, &samples.reference}) {
     for (const auto& [quantity, variable] : part->variables) {
       const std::vector<double>& values = *part->find(quantity);
-      const std::vector<Stretch> frozen = find_frozen(values, flying);
+      const std::vector<Stretch> frozen = find_frozen(values, flying, always_varies(quantity));
       for (const Stretch& span : frozen) part->frozen.push_back({quantity, span.first, span.count});
       if (!frozen.empty()) samples.notes.push_back(told_of(variable, quantity, values, samples.time, frozen));
     }

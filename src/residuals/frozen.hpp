@@ -18,7 +18,9 @@ namespace pcor::internal {
 /// tenth of the flight is found.
 ///
 /// @param values NaN where missing @param looked_at the samples that count
-std::vector<Stretch> find_frozen(const std::vector<double>& values, const std::vector<bool>& looked_at);
+/// @param always_varies one value from beginning to end is frozen, too
+std::vector<Stretch> find_frozen(const std::vector<double>& values, const std::vector<bool>& looked_at,
+                                 bool always_varies = false);
 
 /// Finds the sensors that freeze in the air among those that model and reference read, and notes them.
 /// @param least_airspeed m/s; slower samples do not count

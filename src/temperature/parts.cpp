@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "numerics/chi_squared.hpp"
+#include "numerics/decompositions.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "temperature/degrees.hpp"
 
@@ -67,7 +68,12 @@ std::vector<PartCorrection> corrections_of_climbs_and_descents(const std::vector
   std::vector<PartCorrection> parts;
   for (Eigen::Index k = 0; k < 2; ++k) {
     if (!(equations.information(k, k) > 0.0)) return {};
-    PartCorrection part = common_at(equations.information(k, 2) / equations.information(k, k), unknowns);
+  }
+  // The column of a1 as the sum of both of a0, each times a temperature.
+  const Eigen::MatrixXd both = equations.information.topLeftCorner(2, 3);
+  const Eigen::VectorXd temperature = inverse_of(both.leftCols(2)) * both.col(2);
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    PartCorrection part = common_at(temperature[k], unknowns);
     part.part = k == 0 ? "climbs" : "descents";
     part.correction = part.common + equations.best(2)[k];
     part.standard_error = std::sqrt(equations.covariance(2)(k, k));

@@ -501,9 +501,10 @@ class TemperatureCalibration {
       for (const PartCorrection& part : parts) sayings.push_back(saying(part));
       const Disagreement apart = disagreement_of(parts);
       result_.warnings.push_back(fmt::format(
-          "{} differ: {}; chance makes a chi-squared of {:.1f} of {} with a probability of {:.1g}, and the "
+          "{} differ: {}; chance makes a chi-squared of {:.1f}, of {} degrees of freedom, with a probability "
+          "of {:.1g}, and the "
           "limit is 0.01; the standard deviation between them, {:.2g} K, is in the errors",
-          who, fmt::join(sayings, ", "), apart.chi_squared, parts.size(), apart.chance, spread));
+          who, fmt::join(sayings, ", "), apart.chi_squared, parts.size() - 1, apart.chance, spread));
     };
     differ(result_.parts_by_flight, result_.spread_of_flights, "the thermometers of the flights");
     differ(result_.parts_by_climb, result_.spread_of_climbs, "climbs and descents");

@@ -365,6 +365,10 @@ TEST(Refit, RefusesWhatCannotBeDone) {
   EXPECT_THAT(message_of({made::shared(plan)}, made::model({})), HasSubstr("no coefficient is free"));
   plan.samples = 2;
   EXPECT_THAT(message_of({made::shared(plan)}, model), HasSubstr("2 samples are too few for 3 coefficients"));
+  // Twelve bins of four seconds tell no noise: an earlier fit stated errors of 1e-11.
+  plan.samples = 48;
+  EXPECT_THAT(message_of({made::shared(plan)}, model),
+              HasSubstr("48 samples, in 12 intervals of four seconds, are too few for 3 coefficients"));
   plan.samples = 100;
   FlightSamples other = made::flight(plan);
   other.aircraft = "N677F";

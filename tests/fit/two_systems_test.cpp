@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <pcor/effects/catalogue.hpp>
 #include <pcor/fit/refit.hpp>
 #include <pcor/simulate/simulate.hpp>
 
@@ -117,6 +118,23 @@ TEST(TwoSystems, AtTheTruthStayThere) {
       EXPECT_GT(change.own_error, 0.3) << pair.own.model.name << " seed " << seed;
     }
   }
+}
+
+// Of the same effect in both laws the flights tell the difference, and the mean keeps the typical size of
+// both over the root of two: that of a mean of two independent ones.
+TEST(TwoSystems, StateThePriorAsTheErrorOfWhatTheyHaveInCommon) {
+  const pcor::test::TemporaryDirectory directory;
+  const Pair pair = c130();
+  pcor::simulate_flight(pcor::read_scenario(pair.scenario), directory / "flight.nc");
+  const pcor::RefitResult fit = fit_both(pair, directory / "flight.nc");
+  for (std::size_t p = 0; p < 3; ++p) {
+    const pcor::FittedParameter& parameter = fit.parameters[p];
+    const std::string effect = parameter.name.substr(0, parameter.name.find('.'));
+    const double typical = pcor::effect_facts[pcor::effect_named(effect)].parameters[0].typical;
+    // The difference, known to a few per cent of that, adds next to nothing.
+    EXPECT_NEAR(parameter.standard_error, typical / std::sqrt(2.0), 0.05 * typical) << parameter.name;
+  }
+  EXPECT_TRUE(fit.warnings.empty());
 }
 
 TEST(TwoSystems, WithAWrongDifferenceMendTheDifferenceAlone) {

@@ -191,8 +191,6 @@ TEST(Coverage, IsTwoThirdsWithinOneAndNineteenOfTwentyWithinTwo) {
   for (std::size_t i = 0; i < compared.size(); ++i) {
     RecordProperty(compared[i].result + "_within_one",
                    std::to_string(share(shares[i].within_one, shares[i].count)));
-    std::printf("%s: %.3f within one, %.3f within two\n", compared[i].result.c_str(),
-                share(shares[i].within_one, shares[i].count), share(shares[i].within_two, shares[i].count));
     EXPECT_NEAR(share(shares[i].within_one, shares[i].count), 0.683, 2.0 * tolerance(0.683, 0.04))
         << compared[i].result;
   }

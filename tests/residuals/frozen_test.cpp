@@ -108,3 +108,10 @@ TEST(Frozen, IsNotLookedForWhereNothingIsLookedAt) {
 }
 
 }  // namespace
+
+TEST(Frozen, FromBeginningToEndIsASensorThatOughtToVary) {
+  const Series still(10800, 131.0);
+  const std::vector<bool> all(still.size(), true);
+  EXPECT_EQ(find_frozen(still, all, true).size(), 1U);
+  EXPECT_THAT(find_frozen(still, all), IsEmpty()) << "flaps may stay in for a whole flight";
+}

@@ -469,6 +469,14 @@ class Refit(ComparisonTest):
         # A hundred samples tell less than a thousand.
         self.assertGreater(errors_of(fit)["a1"], errors_of(self.refit())["a1"])
 
+    def test_slow_changes_can_be_followed(self):
+        fit = self.refit("--no-drift")
+        self.assert_true_law(fit)
+        self.assertEqual(fit["drift_rms_hpa"], 0.0)
+        for effect in fit["effects"]:
+            for name, error in effect["stderr"].items():
+                self.assertGreaterEqual(error, effect["stderr_jackknife"][name] * (1.0 - 1e-9))
+
     def test_a_stage_is_held_in_the_next(self):
         """The rest is as if the coefficient had been fixed where the stage left it, but for the weights: of the
         noise of a flight of twenty minutes, found with a coefficient more or less, which moves the others by

@@ -177,9 +177,9 @@ void print_result(const RefitResult& result) {
       result.rms, result.rms_over_pressure, result.rms_before, result.bulk_rms, result.noise_rms,
       result.outliers);
   fmt::print(
-      "R2 {:.4f}; condition number {:.0f}\nthe noise remembers itself and drifts: of a mean, {} samples tell "
-      "as "
-      "much as {:.0f} independent ones, and the standard errors allow for it\n",
+      "R2 {:.4f}; condition number {:.0f}\nwith memory and drift of the noise, {} samples tell as much of a "
+      "mean "
+      "as {:.0f} independent ones, and the standard errors allow for it\n",
       result.r_squared, result.condition_number, result.samples,
       static_cast<double>(result.samples) / result.samples_per_independent);
   if (result.omissions.size() > 1) {
@@ -288,6 +288,10 @@ std::function<void()> add_refit(CLI::App& program) {
                    "the others "
                    "to all samples, again and again until nothing moves: 'pitch manoeuvre: static-alpha'")
       ->type_name("REGIMES: NAMES");
+  command->add_flag(
+      "--no-drift", options->no_drift,
+      "take no slow change of the residuals for drift of the sensors: the fit follows all of it, and "
+      "its errors are those by jackknife, where they are larger");
   command->add_option("--holdout", options->holdout, "a flight that is not fitted, but tests the fit")
       ->type_name("T.nc");
   command

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <pcor/words/error.hpp>
 
 namespace pcor::tool {
@@ -13,9 +15,13 @@ void add_force_option(CLI::App& command, bool& force) {
 }
 
 void refuse_worse(const std::string& worse, bool force, ModelFile& model) {
+  // What was said of an earlier step does not hold for this one.
+  Provenance& all = model.provenance;
+  all.erase(std::remove_if(all.begin(), all.end(), [](const auto& entry) { return entry.first == "forced"; }),
+            all.end());
   if (worse.empty()) return;
   if (!force) throw Error(fmt::format("nothing was written: {}; --force writes it all the same", worse));
-  model.provenance.emplace_back("forced", ProvenanceValue{worse});
+  all.emplace_back("forced", ProvenanceValue{worse});
 }
 
 }  // namespace pcor::tool

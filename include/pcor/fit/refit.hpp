@@ -112,6 +112,7 @@ struct RefitResult {
   double condition_number = 0.0;
   double samples_per_independent = 1.0;
   std::array<std::size_t, mask_count> masks{};
+  std::size_t jackknife_parts = 0;  ///< flights, or parts of flights, that were left out one after another
   std::vector<Omission> omissions{};
   std::vector<FlightFit> flights{};
   Statistics
