@@ -9,8 +9,8 @@ namespace pcor::internal {
 
 /// Why the fit's own numbers call it worse than the coefficients of the file, a sentence without full stop:
 /// its residuals are larger, by more than 2 % on what was fitted (rms and robust deviation both, since a
-/// robust fit may leave outliers more) or by more than 5 % on a
-/// part that was held out. Empty where they are not.
+/// robust fit may leave outliers more) or by more than 5 % on a part that was held out. Empty where they are
+/// not.
 /// @param bulk_rms_before robust deviation with the coefficients of the file, hPa
 std::string why_worse(const RefitResult& result, double bulk_rms_before);
 
