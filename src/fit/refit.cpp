@@ -282,7 +282,7 @@ RefitResult fit_with_or_without_drift(const Sources& sources, const ModelFile& m
   other.warnings.insert(
       other.warnings.begin(),
       fmt::format(
-          "slow changes of the residuals, of {:.2f} hPa, are too many to be drift of the sensors alone: the "
+          "slow changes of the residuals, of {:.2f} hPa, are too large to be drift of the sensors alone: the "
           "fit follows them, its errors are those by jackknife, and the model lacks something; pcor "
           "diagnose tells what",
           result.drift_rms));

@@ -101,18 +101,16 @@ std::vector<std::string> fit_warnings(FitFlights& flights, const RefitResult& re
   if (share > many_outliers) {
     warnings.push_back(
         fmt::format("{:.0f} % of the samples count as outliers, and the fit does not look at them: the loss "
-                    "may hide what "
-                    "the model lacks; --loss none fits all of them",
+                    "may hide what the model lacks; --loss none fits all of them",
                     100.0 * share));
   }
   const double drift = flights.drift_rms();
   if (drift > least_drift && result.rms > much_larger * least_rms) {
-    warnings.push_back(fmt::format(
-        "slow changes of the residuals, of {:.2f} hPa, were taken for drift of the sensors and not followed; "
-        "coefficients that follow them leave an rms of {:.3f} hPa instead of {:.3f}. If they are what the "
-        "model "
-        "lacks, pcor diagnose tells; --no-drift follows them",
-        drift, least_rms, result.rms));
+    warnings.push_back(
+        fmt::format("slow changes of the residuals, of {:.2f} hPa, were taken for drift of the sensors and "
+                    "not followed; coefficients that follow them leave an rms of {:.3f} hPa instead of "
+                    "{:.3f}. If they are what the model lacks, pcor diagnose tells; --no-drift follows them",
+                    drift, least_rms, result.rms));
   }
   return warnings;
 }

@@ -210,15 +210,14 @@ void Processing::note_uncertainty() {
       !states({Where::dynamic_transducer, Where::static_line, Where::total_line, Where::pitot},
               {Q::dynamic_pressure})) {
     note(
-        "the uncertainties are without those of both pressure transducers, of which the model does not state "
-        "each; [uncertainty] takes static_pressure and dynamic_pressure");
+        "the uncertainties leave out the pressure transducers, since the model does not state those of both; "
+        "its table [uncertainty] takes static_pressure and dynamic_pressure");
   }
   if (chain_->has_temperature() && !states({Where::temperature, Where::recovery, Where::ambient_temperature},
                                            {Q::recovery_temperature, Q::ambient_temperature})) {
     note(
         "the uncertainties of temperature and airspeed are without that of the thermometer, of which the "
-        "model "
-        "states none");
+        "model states none");
   }
 }
 

@@ -461,8 +461,7 @@ class TemperatureCalibration {
     if (std::abs(at.correction) < told * at.standard_error) {
       result_.worse = fmt::format(
           "these flights do not tell the correction from none: where they know it best, at {:.0f} C, it is "
-          "{} "
-          "K, and {:g} standard errors, which chance makes once in a hundred times, are asked",
+          "{} K, and {:g} standard errors, which chance makes once in a hundred times, are asked",
           at.temperature, with_error(at.correction, at.standard_error), told);
       return;
     }
@@ -476,8 +475,7 @@ class TemperatureCalibration {
     if (std::abs(result_.least_squares_add) > seen * result_.least_squares_add_error) {
       result_.worse = fmt::format(
           "least squares on height contradicts the likelihood: it would add {} K to the correction, more "
-          "than "
-          "{:g} standard errors",
+          "than {:g} standard errors",
           with_error(result_.least_squares_add, result_.least_squares_add_error), seen);
       return;
     }
@@ -486,8 +484,7 @@ class TemperatureCalibration {
         if (!is_made_worse(part)) continue;
         result_.worse = fmt::format(
             "by itself {}, where the correction is {:+.2f} K: it makes that worse than none does by more "
-            "than "
-            "three standard errors",
+            "than three standard errors",
             saying(part), part.common);
         return;
       }
@@ -502,8 +499,7 @@ class TemperatureCalibration {
       const Disagreement apart = disagreement_of(parts);
       result_.warnings.push_back(fmt::format(
           "{} differ: {}; chance makes a chi-squared of {:.1f}, of {} degrees of freedom, with a probability "
-          "of {:.1g}, and the "
-          "limit is 0.01; the standard deviation between them, {:.2g} K, is in the errors",
+          "of {:.1g}, and the limit is 0.01; the standard deviation between them, {:.2g} K, is in the errors",
           who, fmt::join(sayings, ", "), apart.chi_squared, parts.size() - 1, apart.chance, spread));
     };
     differ(result_.parts_by_flight, result_.spread_of_flights, "the thermometers of the flights");
@@ -512,10 +508,8 @@ class TemperatureCalibration {
       if (!is_seen(error)) continue;
       result_.warnings.push_back(fmt::format(
           "the heights see an error of the law of the static pressure: {} of {} lacks {}, a range of {:.2f} "
-          "hPa "
-          "over the flights; it is not taken for the thermometer's, but as much may last unseen: refit the "
-          "law "
-          "first",
+          "hPa over the flights; it is not taken for the thermometer's, but as much may last unseen: refit "
+          "the law first",
           error.parameter, error.effect, with_error(error.change, error.standard_error), error.range));
     }
   }
@@ -543,8 +537,7 @@ class TemperatureCalibration {
     if (prior_.pressure[with_attack] > 0.0 && result_.law_errors.size() < 2) {
       notes.emplace_back(
           "the angle of attack is not known: an error of the law in proportion to it, which changes in a "
-          "climb, "
-          "is not taken off and may look like the thermometer's");
+          "climb, is not taken off and may look like the thermometer's");
     }
     if (options_.slope == IsobarSlope::none ||
         (options_.slope == IsobarSlope::fitted && options_.slope_size == 0.0)) {

@@ -89,10 +89,8 @@ ReportTable part_table(const TemperatureResult& result) {
   table.title = "Parts by themselves";
   table.caption =
       "What every flight says by itself, and climbs and descents: the common correction with a constant of "
-      "its "
-      "own, with the error of the noise alone. Where they differ by more than chance makes once in 100 "
-      "times, "
-      "the standard deviation between them is in the errors of the coefficients.";
+      "its own, with the error of the noise alone. Where they differ by more than chance makes once in 100 "
+      "times, the standard deviation between them is in the errors of the coefficients.";
   table.headers = {"part", "at, °C", "by itself, K", "std. error, K", "of all, K"};
   for (const std::vector<PartCorrection>* parts : {&result.parts_by_flight, &result.parts_by_climb}) {
     for (const PartCorrection& part : *parts)

@@ -178,8 +178,7 @@ void print_result(const RefitResult& result) {
       result.outliers);
   fmt::print(
       "R2 {:.4f}; condition number {:.0f}\nwith memory and drift of the noise, {} samples tell as much of a "
-      "mean "
-      "as {:.0f} independent ones, and the standard errors allow for it\n",
+      "mean as {:.0f} independent ones, and the standard errors allow for it\n",
       result.r_squared, result.condition_number, result.samples,
       static_cast<double>(result.samples) / result.samples_per_independent);
   if (result.omissions.size() > 1) {
@@ -283,10 +282,10 @@ std::function<void()> add_refit(CLI::App& program) {
   command->add_option("--free", options->free, "fit a coefficient that the model file holds fixed")
       ->type_name("NAME");
   command
-      ->add_option("--stage", options->stages,
-                   "fit these coefficients to these regimes alone, each interval with an offset of its own, "
-                   "the others "
-                   "to all samples, again and again until nothing moves: 'pitch manoeuvre: static-alpha'")
+      ->add_option(
+          "--stage", options->stages,
+          "fit these coefficients to these regimes alone, each interval with an offset of its own, the "
+          "others to all samples, again and again until nothing moves: 'pitch manoeuvre: static-alpha'")
       ->type_name("REGIMES: NAMES");
   command->add_flag(
       "--no-drift", options->no_drift,

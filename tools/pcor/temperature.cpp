@@ -302,12 +302,10 @@ std::function<void()> add_temperature(CLI::App& program) {
       ->check(is_amount())
       ->capture_default_str();
   command
-      ->add_option(
-          "--pressure-error", options->pressure_error,
-          "standard deviation of an error of the static pressure that lasts, hPa; it enters the standard "
-          "errors (without it: the rms that the law states, 0.3 if none, 0.3 for the transducer, and what "
-          "the "
-          "heights see to be wrong with the law)")
+      ->add_option("--pressure-error", options->pressure_error,
+                   "standard deviation of an error of the static pressure that lasts, hPa; it enters the "
+                   "standard errors (without it: the rms that the law states, 0.3 if none, 0.3 for the "
+                   "transducer, and what the heights see to be wrong with the law)")
       ->check(is_amount());
   command
       ->add_option("--min-climb-rate", options->least_climb_rate,
