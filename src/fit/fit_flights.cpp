@@ -221,7 +221,7 @@ Eigen::MatrixXd FitFlight::unweighted_factor(const Eigen::VectorXd& parameters) 
 std::size_t FitFlight::outliers(const Eigen::VectorXd& parameters, double limit) const {
   const Eigen::VectorXd innovations =
       white_rows(parameters, Eigen::VectorXd::Zero(as_index(offset_count_))).rightCols(1);
-  double count = static_cast<double>(spikes_);
+  auto count = static_cast<double>(spikes_);
   for (Eigen::Index i = 0; i < innovations.size(); ++i) {
     if (std::abs(innovations[i]) > limit) count += in_bin_[i];
   }

@@ -178,8 +178,9 @@ using Cost = std::function<double(const std::vector<double>&)>;
 /// The sizes of the first `parts` slow parts, of the rms of the residuals, with the least cost.
 std::vector<double> least_of(const Cost& cost, std::size_t parts) {
   constexpr double most = 5.0;
-  std::vector<double> sizes(parts, 0.25);
-  if (parts < 2) return std::vector<double>(parts, 0.0);  // in minutes there is no drift to be found
+  std::vector<double> sizes(parts, 0.0);
+  if (parts < 2) return sizes;  // in minutes there is no drift to be found
+  std::fill(sizes.begin(), sizes.end(), 0.25);
   nlopt::opt search(nlopt::LN_BOBYQA, static_cast<unsigned>(parts));
   search.set_lower_bounds(0.0);
   search.set_upper_bounds(most);

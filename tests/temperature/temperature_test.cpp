@@ -448,7 +448,8 @@ TEST_F(Temperature, InTurnComesToRest) {
   ASSERT_TRUE(found.converged);
   ASSERT_GT(found.rounds.size(), 1U);
   for (std::size_t i = 1; i < found.rounds.size(); ++i) {
-    // Below what counts as rest, 1e-3 hPa and 1e-3 K, the noise that each round finds anew moves them to and fro.
+    // Below what counts as rest, 1e-3 hPa and 1e-3 K, the noise that each round finds anew moves them to and
+    // fro.
     EXPECT_LT(found.rounds[i].defect_change, std::max(found.rounds[i - 1].defect_change, 1e-3));
     EXPECT_LT(found.rounds[i].temperature_change, std::max(found.rounds[i - 1].temperature_change, 1e-3));
   }
