@@ -7,7 +7,7 @@
 
 #include <pcor/words/utc.hpp>
 #include "fit/loss_function.hpp"
-#include "numerics/missing.hpp"
+#include "residuals/flight_statistics.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -31,11 +31,8 @@ struct Run {
 
 Run longest_run(const FitFlight& fit, const Eigen::VectorXd& values) {
   const FlightSamples& samples = fit.residuals().samples();
-  const std::vector<double> residual = fit.residuals().values(values.data());
-  std::vector<double> series(residual.size(), nan);
-  for (const std::size_t i : fit.kept()) series[i] = residual[i];
-  const NoiseFloor noise =
-      noise_floor(series, stretches_of(series, samples.time, samples.step), samples.step);
+  const std::vector<double> series = only_at(fit.residuals().values(values.data()), fit.kept());
+  const NoiseFloor noise = noise_of_flight(samples, series);
   Run longest{samples.name};
   Run now;
   for (const std::size_t i : fit.kept()) {

@@ -114,7 +114,7 @@ bool always_varies(Quantity quantity) {
   return std::find(varying.begin(), varying.end(), quantity) != varying.end();
 }
 
-/// "VLAMS stands still at 131.2 m/s, 2011-11-18 13:20:05 to 13:21:45 UTC (100 samples)".
+/// "VLAMS is frozen, at 131.2 m/s from 2011-11-18 13:20:05 to 13:21:45 UTC (100 samples)".
 std::string told_of(const std::string& variable, Quantity quantity, const std::vector<double>& values,
                     const std::vector<double>& time, const std::vector<Stretch>& frozen) {
   std::vector<std::string> spans;

@@ -74,8 +74,7 @@ std::string HeldOutPart::text() const {
   return fmt::format(
       "{}, held out, is off by {:+.3f} hPa (rms {:.3f} hPa), where the fit lets expect 0 +- {:.3f} hPa: "
       "something changes that the model does not have, be it with time, with the flight, or with what was "
-      "not "
-      "flown in the fit",
+      "not flown in the fit",
       flight, statistics.bias, statistics.rms, expected);
 }
 
