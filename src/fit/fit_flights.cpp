@@ -7,7 +7,6 @@
 #include <cmath>
 #include <deque>
 #include <future>
-#include <numeric>
 #include <thread>
 
 #include <pcor/words/error.hpp>
@@ -18,9 +17,10 @@
 namespace pcor::internal {
 namespace {
 
-std::size_t bytes_of(const FlightSamples& samples) {
+/// Of a flight that is kept; of two static systems its samples are kept twice.
+std::size_t bytes_of(const FlightSamples& samples, const Reference& reference) {
   const std::size_t columns = samples.model.columns.size() + samples.reference.columns.size() + 12;
-  return columns * samples.time.size() * sizeof(double);
+  return (reference.model() != nullptr ? 2 : 1) * columns * samples.time.size() * sizeof(double);
 }
 
 }  // namespace
@@ -33,8 +33,8 @@ FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask
   const FlightSamples& flight = residuals_.samples();
   kept_ = used_samples(residuals_.mask(), task.options.training_share);
   if (!setup.regimes.empty()) {
-    std::vector<int> inside(residuals_.size(),
-                            -1);  // number of the interval; the first that holds a sample counts
+    // Of each sample the number of its interval; the first that holds it counts.
+    std::vector<int> inside(residuals_.size(), -1);
     for (const Interval& interval : flight.intervals) {
       if (std::find(setup.regimes.begin(), setup.regimes.end(), interval.regime) == setup.regimes.end())
         continue;
@@ -53,6 +53,8 @@ FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask
   linear_ = task.reference.model() != nullptr ||
             std::all_of(setup.wanted.begin(), setup.wanted.end(),
                         [this](std::size_t parameter) { return residuals_.is_linear()[parameter]; });
+  if (const auto common = residuals_.at_common_pressures())
+    at_common_pressures_.emplace(common, task.model, task.reference, task.options.mask);
 }
 
 void FitFlight::prepare(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) {
@@ -70,7 +72,7 @@ void FitFlight::prepare(const Eigen::VectorXd& parameters, const Eigen::VectorXd
   }
   std::vector<double> series(flight.time.size(), nan);
   for (std::size_t i = 0; i < kept_.size(); ++i) {
-    const double offset = offset_.empty() ? 0.0 : offsets[offset_[i]] * (*static_pressure_)[kept_[i]];
+    const double offset = offset_.empty() ? 0.0 : offsets[offset_[i]] * static_pressure(i);
     series[kept_[i]] = residual[i] - offset;
   }
   spikes_ = 0;
@@ -93,7 +95,7 @@ void FitFlight::prepare(const Eigen::VectorXd& parameters, const Eigen::VectorXd
   whitening_.reset();
   kept_rows_.resize(0, 0);
   kept_white_rows_.resize(0, 0);
-  if (linear_) keep_rows(parameters);
+  if (linear_) kept_rows_ = rows_without_offsets(parameters);
 }
 
 void FitFlight::set_noise(const FitNoise& noise, std::size_t flight) {
@@ -124,8 +126,8 @@ void FitFlight::evaluate(const Residuals& residuals, std::size_t first, std::siz
 }
 
 /// Means over the bins of derivatives and residual.
-Eigen::MatrixXd FitFlight::binned(const Residuals& residuals, const Eigen::VectorXd& parameters,
-                                  const std::vector<std::size_t>& wanted) const {
+Eigen::MatrixXd FitFlight::means(const Residuals& residuals, const Eigen::VectorXd& parameters,
+                                 const std::vector<std::size_t>& wanted) const {
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(as_index(bins_.size()), as_index(wanted.size()) + 1);
   std::vector<double> store((wanted.size() + 1) * samples_per_chunk);
   for (std::size_t first = 0; first < kept_.size(); first += samples_per_chunk) {
@@ -142,64 +144,54 @@ Eigen::MatrixXd FitFlight::binned(const Residuals& residuals, const Eigen::Vecto
   return in_bin_.cwiseInverse().asDiagonal() * sums;
 }
 
-/// The derivatives of `recorded`, but for two static systems those at common pressures.
-Eigen::MatrixXd FitFlight::columns(const Eigen::VectorXd& parameters, const std::vector<std::size_t>& wanted,
-                                   const Eigen::MatrixXd& recorded) const {
-  if (const auto common = residuals_.at_common_pressures()) {
-    const Residuals elsewhere(common, task_->model, task_->reference, task_->options.mask);
-    return binned(elsewhere, parameters, wanted).leftCols(as_index(wanted.size()));
-  }
-  return recorded.leftCols(as_index(wanted.size()));
+/// The same, with the derivatives of two static systems at common pressures.
+Eigen::MatrixXd FitFlight::means(const Eigen::VectorXd& parameters,
+                                 const std::vector<std::size_t>& wanted) const {
+  if (!at_common_pressures_) return means(residuals_, parameters, wanted);
+  Eigen::MatrixXd result = means(*at_common_pressures_, parameters, wanted);
+  result.rightCols(1) = means(residuals_, parameters, {});
+  return result;
 }
 
-void FitFlight::keep_rows(const Eigen::VectorXd& parameters) {
+Eigen::MatrixXd FitFlight::rows_without_offsets(const Eigen::VectorXd& parameters) const {
   const Eigen::Index fitted = as_index(setup_->wanted.size());
-  const Eigen::MatrixXd recorded = binned(residuals_, parameters, setup_->wanted);
-  kept_rows_ = Eigen::MatrixXd::Zero(recorded.rows(), fitted + as_index(offset_count_) + 1);
-  kept_rows_.leftCols(fitted) = columns(parameters, setup_->wanted, recorded);
-  kept_rows_.rightCols(1) = recorded.rightCols(1);
+  const Eigen::MatrixXd now = means(parameters, setup_->wanted);
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(now.rows(), fitted + as_index(offset_count_) + 1);
+  result.leftCols(fitted) = now.leftCols(fitted);
+  result.rightCols(1) = now.rightCols(1);
   for (std::size_t i = 0; i < offset_.size(); ++i) {
-    if (bin_[i] >= 0)
-      kept_rows_(bin_[i], fitted + offset_[i]) -= (*static_pressure_)[kept_[i]] / in_bin_[bin_[i]];
+    if (bin_[i] >= 0) result(bin_[i], fitted + offset_[i]) -= static_pressure(i) / in_bin_[bin_[i]];
   }
+  return result;
+}
+
+/// The residual of rows at the parameters that were prepared, without offsets, to others and to these
+/// offsets.
+void FitFlight::move_residual(Eigen::MatrixXd& rows, const Eigen::VectorXd& parameters,
+                              const Eigen::VectorXd& offsets) const {
+  const Eigen::Index fitted = as_index(setup_->wanted.size());
+  if (linear_)
+    rows.rightCols(1) += rows.leftCols(fitted) * (parameters - prepared_parameters_)(setup_->wanted);
+  if (offset_count_ > 0) rows.rightCols(1) += rows.middleCols(fitted, as_index(offset_count_)) * offsets;
 }
 
 Eigen::MatrixXd FitFlight::rows(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) const {
-  const Eigen::Index fitted = as_index(setup_->wanted.size());
-  const Eigen::Index own = as_index(offset_count_);
-  Eigen::MatrixXd result;
-  if (linear_) {
-    result = kept_rows_;
-    result.rightCols(1) += kept_rows_.leftCols(fitted) * (parameters - prepared_parameters_)(setup_->wanted);
-  } else {
-    const Eigen::MatrixXd now = binned(residuals_, parameters, setup_->wanted);
-    result = Eigen::MatrixXd::Zero(now.rows(), fitted + own + 1);
-    result.leftCols(fitted) = now.leftCols(fitted);
-    result.rightCols(1) = now.rightCols(1);
-    for (std::size_t i = 0; i < offset_.size(); ++i) {
-      if (bin_[i] >= 0)
-        result(bin_[i], fitted + offset_[i]) -= (*static_pressure_)[kept_[i]] / in_bin_[bin_[i]];
-    }
-  }
-  if (own > 0) result.rightCols(1) += result.middleCols(fitted, own) * offsets;
+  Eigen::MatrixXd result = linear_ ? kept_rows_ : rows_without_offsets(parameters);
+  move_residual(result, parameters, offsets);
   return result;
 }
 
 Eigen::MatrixXd FitFlight::white_rows(const Eigen::VectorXd& parameters,
                                       const Eigen::VectorXd& offsets) const {
   if (!whitening_ || !linear_) return white(rows(parameters, offsets));
-  const Eigen::Index fitted = as_index(setup_->wanted.size());
-  const Eigen::Index own = as_index(offset_count_);
   Eigen::MatrixXd result = kept_white_rows_;
-  result.rightCols(1) +=
-      kept_white_rows_.leftCols(fitted) * (parameters - prepared_parameters_)(setup_->wanted);
-  if (own > 0) result.rightCols(1) += kept_white_rows_.middleCols(fitted, own) * offsets;
+  move_residual(result, parameters, offsets);
   return result;
 }
 
 Eigen::MatrixXd FitFlight::white_columns(const Eigen::VectorXd& parameters,
                                          const std::vector<std::size_t>& wanted) const {
-  return white(columns(parameters, wanted, binned(residuals_, parameters, wanted)));
+  return white(means(parameters, wanted).leftCols(as_index(wanted.size())));
 }
 
 Eigen::MatrixXd FitFlight::unweighted_factor(const Eigen::VectorXd& parameters) const {
@@ -238,15 +230,18 @@ FitFlights::FitFlights(std::vector<FlightSource> sources, const FitTask& task, F
   std::vector<std::array<std::size_t, mask_count>> masks(sources_.size());
   std::vector<std::vector<bool>> linear(sources_.size());
   std::vector<std::size_t> offsets(sources_.size());
+  std::vector<std::size_t> bins(sources_.size());
   visit([&](std::size_t number, std::size_t, FitFlight& fit) {
     kept[number] = fit.kept().size();
     masks[number] = fit.residuals().mask_counts();
     offsets[number] = fit.offsets();
+    bins[number] = fit.bins().size();
     linear[number] = fit.residuals().is_linear();
   });
   linear_ = linear.front();
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     samples_ += kept[i];
+    bins_ += bins[i];
     first_offset_[i] = offsets_;
     offsets_ += offsets[i];
     for (std::size_t m = 0; m < mask_count; ++m) masks_[m] += masks[i][m];
@@ -264,10 +259,10 @@ std::shared_ptr<const FlightSamples> FitFlights::samples_of(std::size_t number) 
 std::shared_ptr<FitFlight> FitFlights::made(std::size_t number,
                                             std::shared_ptr<const FlightSamples> samples) {
   if (cache_[number]) return cache_[number];
-  const std::size_t own_bytes = sources_[number].samples ? 0 : bytes_of(*samples);
+  const std::size_t own_bytes = sources_[number].samples ? 0 : bytes_of(*samples, task_.reference);
   auto fit = std::make_shared<FitFlight>(std::move(samples), task_, setup_);
-  if (noise_parameters_.size() > 0) {
-    fit->prepare(noise_parameters_, own(noise_offsets_, first_offset_[number], *fit));
+  if (prepared_parameters_.size() > 0) {
+    fit->prepare(prepared_parameters_, own(prepared_offsets_, first_offset_[number], *fit));
   } else {
     fit->prepare(setup_.values, Eigen::VectorXd::Zero(as_index(fit->offsets())));
   }
@@ -371,8 +366,8 @@ Eigen::MatrixXd FitFlights::unweighted_factor(const Eigen::VectorXd& parameters)
 
 void FitFlights::prepare(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) {
   // Flights that are read again are prepared again, at the same parameters.
-  noise_parameters_ = parameters;
-  noise_offsets_ = offsets;
+  prepared_parameters_ = parameters;
+  prepared_offsets_ = offsets;
   visit([&](std::size_t number, std::size_t first_offset, FitFlight& fit) {
     if (!cache_[number]) return;
     fit.prepare(parameters, own(offsets, first_offset, fit));
@@ -382,6 +377,7 @@ void FitFlights::prepare(const Eigen::VectorXd& parameters, const Eigen::VectorX
 
 void FitFlights::measure_noise(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets,
                                bool drift) {
+  if (!shares_noise_) noise_.reset();  // what is found anew need not be applied before
   prepare(parameters, offsets);
   if (shares_noise_) return;
   // How slow the noise is, is found from a few of many flights.
@@ -403,12 +399,6 @@ void FitFlights::measure_noise(const Eigen::VectorXd& parameters, const Eigen::V
   visit([&](std::size_t number, std::size_t, FitFlight& fit) {
     if (cache_[number]) fit.set_noise(*noise_, number);
   });
-}
-
-std::size_t FitFlights::bins() {
-  std::vector<std::size_t> parts(count(), 0);
-  visit([&](std::size_t number, std::size_t, FitFlight& fit) { parts[number] = fit.bins().size(); });
-  return std::accumulate(parts.begin(), parts.end(), std::size_t{0});
 }
 
 double FitFlights::drift_rms() const {

@@ -36,8 +36,9 @@ struct FlightSource {
 struct FitSetup {
   Eigen::VectorXd values{};           ///< of all parameters, from which it goes on
   std::vector<std::size_t> wanted{};  ///< the parameters that are fitted
-  std::vector<Regime> regimes{};      ///< only samples of these take part, where there are any
-  bool with_offsets = false;          ///< every interval of these regimes has its own offset of delta-p/p
+  /// Where there are any, only samples of these take part, and every interval has its own offset of
+  /// delta-p/p.
+  std::vector<Regime> regimes{};
 };
 
 /// The noise of the flights of a fit, and the times of the bins in which its level was found, s.
@@ -95,16 +96,18 @@ class FitFlight {
   void evaluate(const Residuals& residuals, std::size_t first, std::size_t count,
                 const Eigen::VectorXd& parameters, const std::vector<std::size_t>& wanted, double* residual,
                 double* derivatives) const;
-  Eigen::MatrixXd binned(const Residuals& residuals, const Eigen::VectorXd& parameters,
-                         const std::vector<std::size_t>& wanted) const;
-  Eigen::MatrixXd columns(const Eigen::VectorXd& parameters, const std::vector<std::size_t>& wanted,
-                          const Eigen::MatrixXd& recorded) const;
-  void keep_rows(const Eigen::VectorXd& parameters);
+  Eigen::MatrixXd means(const Residuals& residuals, const Eigen::VectorXd& parameters,
+                        const std::vector<std::size_t>& wanted) const;
+  Eigen::MatrixXd means(const Eigen::VectorXd& parameters, const std::vector<std::size_t>& wanted) const;
+  Eigen::MatrixXd rows_without_offsets(const Eigen::VectorXd& parameters) const;
+  void move_residual(Eigen::MatrixXd& rows, const Eigen::VectorXd& parameters,
+                     const Eigen::VectorXd& offsets) const;
 
   const FitTask* task_;
   const FitSetup* setup_;
   Residuals residuals_;
-  const std::vector<double>* static_pressure_;  // of the samples
+  std::optional<Residuals> at_common_pressures_;  // of two static systems
+  const std::vector<double>* static_pressure_;    // of the samples
   std::vector<std::size_t> kept_;
   std::vector<int> offset_;  // of each kept sample
   std::size_t offset_count_ = 0;
@@ -157,8 +160,8 @@ class FitFlights {
   const std::vector<bool>& is_linear() const { return linear_; }
   std::size_t samples() const { return samples_; }
   std::size_t offsets() const { return offsets_; }
-  /// Bins of all flights, as they are now.
-  std::size_t bins();
+  /// Bins of all flights at the values of the setup.
+  std::size_t bins() const { return bins_; }
   const std::array<std::size_t, mask_count>& masks() const { return masks_; }
 
   /// Visits every flight; `visit` is called by several threads, with the number of the flight and of its
@@ -209,11 +212,12 @@ class FitFlights {
   std::vector<bool> linear_;
   std::size_t samples_ = 0;
   std::size_t offsets_ = 0;
+  std::size_t bins_ = 0;
   std::array<std::size_t, mask_count> masks_{};
   std::shared_ptr<const FitNoise> noise_;
   bool shares_noise_ = false;
-  Eigen::VectorXd noise_parameters_;
-  Eigen::VectorXd noise_offsets_;
+  Eigen::VectorXd prepared_parameters_;
+  Eigen::VectorXd prepared_offsets_;
 };
 
 }  // namespace pcor::internal

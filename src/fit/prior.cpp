@@ -1,49 +1,25 @@
 #include "fit/prior.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "numerics/decompositions.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
-namespace {
 
-void add_stated(const ModelFile& file, const std::string& prefix, const std::vector<FitParameter>& parameters,
-                Eigen::MatrixXd& covariance) {
-  const auto place_of = [&](const std::string& name) {
-    const auto found = std::find_if(parameters.begin(), parameters.end(), [&](const FitParameter& parameter) {
-      return parameter.name == prefix + name;
-    });
-    return as_index(static_cast<std::size_t>(found - parameters.begin()));
+Eigen::MatrixXd stated_covariance(const ModelFile& model, const Reference& reference) {
+  const std::vector<double> own = uncertainty_of(model).covariance;
+  std::vector<double> other;
+  if (reference.model() != nullptr) other = uncertainty_of(*reference.model()).covariance;
+  const auto size_of = [](const std::vector<double>& matrix) {
+    return static_cast<Eigen::Index>(std::lround(std::sqrt(static_cast<double>(matrix.size()))));
   };
-  for (std::size_t e = 0; e < file.model.effects.size(); ++e) {
-    const std::vector<std::string> names = parameter_names(file.model.effects[e]);
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      const double error = file.fit(e, i).standard_error.value_or(0.0);
-      const Eigen::Index place = place_of(file.model.effects[e].id + "." + names[i]);
-      if (place < covariance.rows()) covariance(place, place) = error * error;
-    }
-  }
-  const std::vector<std::string>& names = file.covariance.parameters;
-  for (std::size_t a = 0; a < names.size(); ++a) {
-    for (std::size_t b = 0; b < names.size(); ++b) {
-      const Eigen::Index row = place_of(names[a]);
-      const Eigen::Index column = place_of(names[b]);
-      if (row < covariance.rows() && column < covariance.cols())
-        covariance(row, column) = file.covariance.matrix[a][b];
-    }
-  }
-}
-
-}  // namespace
-
-Eigen::MatrixXd stated_covariance(const ModelFile& model, const Reference& reference,
-                                  const std::vector<FitParameter>& parameters) {
-  const Eigen::Index size = as_index(parameters.size());
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
-  add_stated(model, "", parameters, covariance);
-  if (reference.model() != nullptr) add_stated(*reference.model(), "reference:", parameters, covariance);
+  const Eigen::Index first = size_of(own);
+  const Eigen::Index second = size_of(other);
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(first + second, first + second);
+  covariance.topLeftCorner(first, first) = Eigen::Map<const Eigen::MatrixXd>(own.data(), first, first);
+  covariance.bottomRightCorner(second, second) =
+      Eigen::Map<const Eigen::MatrixXd>(other.data(), second, second);
   return covariance;
 }
 

@@ -64,7 +64,7 @@ void require_one_kind(const Sources& sources, const RefitOptions& options) {
 
 FitTask task_of(const ModelFile& model, const Reference& reference, const RefitOptions& options) {
   FitTask task{model, reference, options, fit_parameters(model, reference, options), {}, {}, {}};
-  task.doubt = stated_covariance(model, reference, task.parameters);
+  task.doubt = stated_covariance(model, reference);
   task.start.resize(as_index(task.parameters.size()));
   for (std::size_t p = 0; p < task.parameters.size(); ++p) task.start[as_index(p)] = task.parameters[p].start;
   task.tell = [&progress = options.progress, passes = std::size_t{0}]() mutable {
@@ -96,7 +96,6 @@ void repeat_stages(Fitted& fitted, const Sources& sources, const FitTask& task,
     const bool last = s + 1 == stages.size();
     FitSetup setup{solution.values, stages[s]};
     if (!last) setup.regimes = task.options.stages[s].regimes;
-    setup.with_offsets = !last;
     fitted.own.push_back(std::make_unique<FitFlights>(sources, task, std::move(setup)));
     fitted.equations.push_back({fitted.own.back().get(), stages[s], {}});
   }

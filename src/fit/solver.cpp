@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t fewest_free_bins = 15;  // a minute: the deviation of the noise to a fifth
 
-void require_samples(FitFlights& flights) {
+void require_samples(const FitFlights& flights) {
   const FitSetup& setup = flights.setup();
   if (flights.samples() == 0 && !setup.regimes.empty()) {
     std::vector<std::string_view> names;
