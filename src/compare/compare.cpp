@@ -196,10 +196,11 @@ NoiseFloor lowest_noise(const FlightResiduals& flight) {
 FlightResiduals residuals_on(const Flight& flight, const std::vector<Contender>& contenders,
                              const MaskOptions& options, std::vector<std::string>& notes) {
   FlightResiduals result;
-  for (const auto& [name, model, reference] : contenders) {
+  for (const auto& [name, model, references] : contenders) {
+    const Reference& reference = first_of(references);
     const auto samples =
-        std::make_shared<const FlightSamples>(read_samples(flight, model, *reference, options));
-    const Residuals residuals(samples, model, *reference, options);
+        std::make_shared<const FlightSamples>(read_samples(flight, model, reference, options));
+    const Residuals residuals(samples, model, reference, options);
     const double* const parameters = residuals.parameters().data();
     result.values.push_back(residuals.values(parameters));
     result.reference_defects.push_back(residuals.wanted_defect(parameters));
@@ -215,7 +216,7 @@ FlightResiduals residuals_on(const Flight& flight, const std::vector<Contender>&
       result.dynamic_ratio.resize(q.size());
       for (std::size_t i = 0; i < q.size(); ++i) result.dynamic_ratio[i] = q[i] / result.static_pressure[i];
       result.total_pressure = total_pressure(samples->model);
-      if (reference->model() != nullptr) result.reference_total_pressure = total_pressure(samples->reference);
+      if (reference.model() != nullptr) result.reference_total_pressure = total_pressure(samples->reference);
     } else {
       for (std::size_t i = 0; i < result.mask.size(); ++i) {
         if (result.mask[i] == Mask::none) result.mask[i] = residuals.mask()[i];
@@ -236,7 +237,7 @@ Comparison compare(const std::vector<std::filesystem::path>& flights,
   if (flights.empty() || contenders.empty())
     throw Error("nothing to compare; give at least one flight and one model");
   Comparison result;
-  result.reference = contenders.front().reference->description();
+  result.reference = first_of(contenders.front().references).description();
   std::vector<Gathering> gatherings;
   for (const Contender& contender : contenders) gatherings.emplace_back(contender.name);
   std::vector<std::pair<std::string, std::string>> aircraft;

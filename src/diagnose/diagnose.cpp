@@ -225,7 +225,8 @@ void judge_held_out(Diagnosis& diagnosis) {
 }
 
 Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelFile& model,
-                   const Reference& reference, const DiagnoseOptions& options) {
+                   const References& references, const DiagnoseOptions& options) {
+  const Reference& reference = first_of(references);
   if (paths.empty()) throw Error("nothing to diagnose; give at least one flight");
   require_each_once(paths);
   std::vector<Flight> files;

@@ -291,17 +291,17 @@ RefitResult fit_with_or_without_drift(const Sources& sources, const ModelFile& m
 }  // namespace
 
 RefitResult refit(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
-                  const Reference& reference, const RefitOptions& options) {
+                  const References& references, const RefitOptions& options) {
   Sources sources;
   for (const std::filesystem::path& path : flights) sources.push_back({path, nullptr});
-  return fit_with_or_without_drift(sources, model, reference, options);
+  return fit_with_or_without_drift(sources, model, first_of(references), options);
 }
 
 RefitResult refit(const std::vector<std::shared_ptr<const FlightSamples>>& flights, const ModelFile& model,
-                  const Reference& reference, const RefitOptions& options) {
+                  const References& references, const RefitOptions& options) {
   Sources sources;
   for (const std::shared_ptr<const FlightSamples>& samples : flights) sources.push_back({{}, samples});
-  return fit_with_or_without_drift(sources, model, reference, options);
+  return fit_with_or_without_drift(sources, model, first_of(references), options);
 }
 
 }  // namespace pcor

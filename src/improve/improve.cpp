@@ -400,7 +400,7 @@ void hold(ModelFile& file, const std::vector<std::string>& parameters) {
 Improvement ImproveLoop::run(const ModelFile& model) const { return Climb(*this, model).run(); }
 
 Improvement improve(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
-                    const Reference& reference, const ImproveOptions& options) {
+                    const References& references, const ImproveOptions& options) {
   std::vector<std::filesystem::path> all = flights;
   all.insert(all.end(), options.refit.holdout.begin(), options.refit.holdout.end());
   const std::vector<std::string> variables = common_variables(all, options.refit.time_stamp);
@@ -424,7 +424,7 @@ Improvement improve(const std::vector<std::filesystem::path>& flights, const Mod
   ImproveLoop loop;
   loop.refit = [&](const ModelFile& file) {
     tell("fitting with " + last_of(file));
-    return refit(flights, file, reference, options.refit);
+    return refit(flights, file, references, options.refit);
   };
   loop.diagnose = [&](const ModelFile& file) {
     tell("looking for what is missing beside " + last_of(file));
@@ -433,7 +433,7 @@ Improvement improve(const std::vector<std::filesystem::path>& flights, const Mod
       const auto before = found.find(effect.id);
       if (before != found.end()) diagnose_with.explained += before->second.chi2;
     }
-    Diagnosis diagnosis = diagnose(flights, file, reference, diagnose_with);
+    Diagnosis diagnosis = diagnose(flights, file, references, diagnose_with);
     for (const Finding& finding : diagnosis.findings) found.insert_or_assign(finding.effect.id, finding);
     return diagnosis;
   };

@@ -37,7 +37,7 @@ struct Form {
   Pointer (*read)(const std::string& argument, const ModelFile& model);
 };
 
-/// All references. The first is that of an empty text.
+/// All references.
 constexpr std::array<Form, 3> forms{{
     {"lams", "", "the laser air-motion sensor; the default", read_lams},
     {"static", "OTHER.toml", "a second static system, by its model",
@@ -50,6 +50,11 @@ constexpr std::array<Form, 3> forms{{
 
 ModelSamples Reference::read(const Flight&, const std::vector<double>&, std::vector<std::string>&) const {
   return {};
+}
+
+const Reference& first_of(const References& references) {
+  if (references.empty()) throw Error("nothing to hold the model against; give at least one reference");
+  return *references.front();
 }
 
 void ReferenceOnSamples::mark_not_believed(std::vector<Mask>&, const std::vector<double>&,
@@ -77,7 +82,6 @@ std::string reference_forms() {
 }
 
 Pointer read_reference(const std::string& text, const ModelFile& model) {
-  if (text.empty()) return forms.front().read(text, model);
   const std::size_t colon = text.find(':');
   const std::string form = text.substr(0, colon);
   const std::string argument = colon == std::string::npos ? "" : text.substr(colon + 1);
@@ -86,6 +90,14 @@ Pointer read_reference(const std::string& text, const ModelFile& model) {
     if (each.form == form && fits) return each.read(argument, model);
   }
   throw Error(fmt::format("unknown reference '{}'; give {}", text, reference_forms()));
+}
+
+ChosenReferences read_references(const std::vector<std::string>& texts, const ModelFile& model,
+                                 const std::vector<std::filesystem::path>&) {
+  ChosenReferences chosen;
+  for (const std::string& text : texts) chosen.used.push_back(read_reference(text, model));
+  if (texts.empty()) chosen.used.push_back(read_reference("lams", model));
+  return chosen;
 }
 
 }  // namespace pcor

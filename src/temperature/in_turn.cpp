@@ -39,7 +39,7 @@ double defect_change(const std::vector<std::filesystem::path>& flights, const Mo
 }  // namespace
 
 CalibrationInTurn calibrate_in_turn(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
-                                    const Reference& reference, const RefitOptions& refit_options,
+                                    const References& references, const RefitOptions& refit_options,
                                     const TemperatureOptions& temperature_options) {
   if (temperature_options.archived) {
     throw Error(
@@ -56,7 +56,7 @@ CalibrationInTurn calibrate_in_turn(const std::vector<std::filesystem::path>& fl
     if (effect.id == calibration_id) coefficients = effect.parameters;
   }
   while (!result.converged && result.rounds.size() < most_rounds) {
-    result.pressure = refit(flights, current, reference, refit_options);
+    result.pressure = refit(flights, current, references, refit_options);
     result.temperature = fit_temperature(flights, result.pressure.model, options);
     if (result.rounds.empty()) {
       degrees = result.temperature.degrees;

@@ -40,12 +40,13 @@ const fs::path& flight_file() {
 Contender laser_contender(double added_to_a0 = 0.0) {
   ModelFile model = pcor::read_model(data / "scenarios" / "models" / "c130-psfd-eq18.toml");
   model.model.effects[0].parameters[0] += added_to_a0;
-  return {added_to_a0 == 0.0 ? "true law" : "shifted law", model, pcor::lams_reference()};
+  return {added_to_a0 == 0.0 ? "true law" : "shifted law", model, {pcor::lams_reference()}};
 }
 
 Contender pair_contender() {
-  return {"pair", pcor::read_model(data / "models" / "c130-psfd-eq18.toml"),
-          pcor::static_system_reference(pcor::read_model(data / "models" / "c130-psfrd-eq18.toml"))};
+  return {"pair",
+          pcor::read_model(data / "models" / "c130-psfd-eq18.toml"),
+          {pcor::static_system_reference(pcor::read_model(data / "models" / "c130-psfrd-eq18.toml"))}};
 }
 
 const pcor::PartStatistics* part_named(const std::vector<pcor::PartStatistics>& parts,
@@ -171,7 +172,7 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
   EXPECT_THAT(message_of({flight_file()}, laser_contender(), fast),
               testing::AllOf(HasSubstr("slower than the least airspeed"), HasSubstr("on the ground")));
   Contender absent = laser_contender();
-  absent.reference = pcor::pressure_reference("PS_B");
+  absent.references = {pcor::pressure_reference("PS_B")};
   EXPECT_THAT(message_of({flight_file()}, absent), testing::AllOf(HasSubstr("PS_B"), HasSubstr("PS_A")));
   EXPECT_THAT(message_of({}, laser_contender()), HasSubstr("at least one flight"));
 }
@@ -221,7 +222,7 @@ TEST_F(RealFlight, IsMendedByARefitOfBothSystems) {
   options.fit_reference = true;
   options.training_share = 0.5;
   options.mask.least_airspeed = 80.0;  // slower, flaps and gear are out, which no variable of the file tells
-  const pcor::RefitResult fit = pcor::refit({path_}, pair.model, *pair.reference, options);
+  const pcor::RefitResult fit = pcor::refit({path_}, pair.model, pair.references, options);
   ASSERT_EQ(fit.flights.size(), 2U);
   const pcor::FlightFit& second_half = fit.flights[1];
   ASSERT_TRUE(second_half.holdout);

@@ -69,7 +69,7 @@ std::filesystem::path flight(const std::string& scenario, unsigned seed, const s
 ModelFile model() { return pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
 
 Diagnosis diagnose(const Paths& flights, const DiagnoseOptions& options = {}) {
-  return pcor::diagnose(flights, model(), *pcor::lams_reference(), options);
+  return pcor::diagnose(flights, model(), {pcor::lams_reference()}, options);
 }
 
 /// A formula at the static ports with a coefficient k.
@@ -164,7 +164,7 @@ TEST(Diagnose, FindsTheSameWhereTheModelIsNotFitted) {
   off.model.effects[2].parameters[0] = 0.07;
   const Paths flights{flight("c130-eq18", 321, static_lag)};
   const Diagnosis fitted = diagnose(flights);
-  const Diagnosis diagnosis = pcor::diagnose(flights, off, *pcor::lams_reference());
+  const Diagnosis diagnosis = pcor::diagnose(flights, off, {pcor::lams_reference()});
   EXPECT_GT(diagnosis.rms_given, 1.2 * diagnosis.residual_rms);
   EXPECT_NEAR(diagnosis.residual_rms, fitted.residual_rms, 0.01);
   ASSERT_THAT(names_of(diagnosis), testing::ElementsAre("static-lag"));
@@ -329,7 +329,7 @@ TEST(Diagnose, AModelWithoutFreeCoefficientsIsDiagnosedToo) {
   fixed.fits.assign(3, pcor::EffectFit(1));
   for (pcor::EffectFit& fit : fixed.fits) fit[0].fixed = true;
   const Diagnosis diagnosis =
-      pcor::diagnose({flight("c130-eq18", 322, beta_odd)}, fixed, *pcor::lams_reference());
+      pcor::diagnose({flight("c130-eq18", 322, beta_odd)}, fixed, {pcor::lams_reference()});
   // The first is measured at the sensor, which is the residual to first order.
   EXPECT_NEAR(diagnosis.residual_rms, diagnosis.rms_given, 1e-3 * diagnosis.rms_given);
   EXPECT_THAT(names_of(diagnosis), testing::Contains("static-beta-odd"));
@@ -339,7 +339,7 @@ TEST(Diagnose, AgainstAStaticSystemFindsWhatOneOfThemHas) {
   const auto reference = pcor::static_system_reference(
       pcor::read_model(std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "models" / "c130-psfrd-eq18.toml"));
   const Diagnosis diagnosis =
-      pcor::diagnose({flight("c130-eq18", 361, "on = \"PSFD\"\n" + beta_odd)}, model(), *reference);
+      pcor::diagnose({flight("c130-eq18", 361, "on = \"PSFD\"\n" + beta_odd)}, model(), {reference});
   EXPECT_THAT(names_of(diagnosis), testing::Contains("static-beta-odd"));
 }
 

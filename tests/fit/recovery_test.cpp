@@ -62,7 +62,7 @@ Study study(const std::string& scenario_name, const std::string& model_name,
     scenario.seed = seed;
     pcor::simulate_flight(scenario, directory / "flight.nc");
     const pcor::RefitResult fit =
-        pcor::refit({directory / "flight.nc"}, model, *pcor::lams_reference(), options);
+        pcor::refit({directory / "flight.nc"}, model, {pcor::lams_reference()}, options);
     for (const pcor::FittedParameter& parameter : fit.parameters) {
       Record& record = result.records[parameter.name];
       record.truth = parameter.start;  // the model has the coefficients that the scenario flies with
@@ -112,7 +112,7 @@ TEST(Recovery, OfEquation20WithTheRawMachNumberIsSaidToBeCollinear) {
   pcor::simulate_flight(pcor::read_scenario(scenarios / "gv-eq20.toml"), directory / "flight.nc");
   const auto fit_of = [&](const char* name) {
     return pcor::refit({directory / "flight.nc"}, pcor::read_model(scenarios / "models" / name),
-                       *pcor::lams_reference());
+                       {pcor::lams_reference()});
   };
   const pcor::RefitResult raw = fit_of("gv-psf-eq20-raw-mach.toml");
   EXPECT_GT(raw.condition_number, 5.0 * fit_of("gv-psf-eq20.toml").condition_number);
@@ -140,7 +140,7 @@ TEST(Recovery, OfEffectsBeforeTheLaserFindsNoneThatIsNotThere) {
     for (std::uint64_t seed = 7000; seed < 7008; ++seed) {
       scenario.seed = seed;
       pcor::simulate_flight(scenario, directory / "flight.nc");
-      const pcor::RefitResult fit = pcor::refit({directory / "flight.nc"}, with, *pcor::lams_reference());
+      const pcor::RefitResult fit = pcor::refit({directory / "flight.nc"}, with, {pcor::lams_reference()});
       const pcor::FittedParameter& own = fit.parameters.back();
       if (own.value < 0.0) ++negative;
       if (own.at_bound) ++at_bound;
@@ -162,7 +162,7 @@ TEST(Recovery, OfAFlightWithoutManoeuvresIsExplained) {
   pcor::simulate_flight(pcor::read_scenario(scenarios / "c130-no-manoeuvres.toml"), directory / "flight.nc");
   const pcor::RefitResult fit =
       pcor::refit({directory / "flight.nc"}, pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml"),
-                  *pcor::lams_reference());
+                  {pcor::lams_reference()});
   for (const pcor::FittedParameter& parameter : fit.parameters) {
     // Not nonsense: where the coefficient is far off, its error says so.
     EXPECT_LT(std::abs(parameter.value - parameter.start), 4.0 * parameter.standard_error) << parameter.name;

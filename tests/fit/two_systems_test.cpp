@@ -90,7 +90,7 @@ Change change_of(const pcor::RefitResult& fit, const Pair& pair, const std::file
 pcor::RefitResult fit_both(const Pair& pair, const std::filesystem::path& flight) {
   pcor::RefitOptions options;
   options.fit_reference = true;
-  return pcor::refit({flight}, pair.own, *pcor::static_system_reference(pair.other), options);
+  return pcor::refit({flight}, pair.own, {pcor::static_system_reference(pair.other)}, options);
 }
 
 }  // namespace

@@ -77,14 +77,14 @@ TEST_P(PublishedLaw, GoesThroughEveryCommandOnAFlightThatHasAllVariables) {
   for (const std::string text : {"lams", "pressure:PS_A"}) {
     SCOPED_TRACE(text);
     const std::shared_ptr<const pcor::Reference> reference = pcor::read_reference(text, file);
-    const pcor::Comparison comparison = pcor::compare(flight(), {{"law", file, reference}});
+    const pcor::Comparison comparison = pcor::compare(flight(), {{"law", file, {reference}}});
     EXPECT_THAT(comparison.models.front().all.samples, Gt(500U));
-    EXPECT_THAT(pcor::refit(flight(), file, *reference).samples, Gt(500U));
-    const pcor::Diagnosis diagnosis = pcor::diagnose(flight(), file, *reference);
+    EXPECT_THAT(pcor::refit(flight(), file, {reference}).samples, Gt(500U));
+    const pcor::Diagnosis diagnosis = pcor::diagnose(flight(), file, {reference});
     EXPECT_THAT(diagnosis.candidates, Gt(10U));
     pcor::ImproveOptions once;
     once.most_steps = 1;
-    EXPECT_THAT(pcor::improve(flight(), file, *reference, once).steps, Not(IsEmpty()));
+    EXPECT_THAT(pcor::improve(flight(), file, {reference}, once).steps, Not(IsEmpty()));
   }
 }
 
@@ -94,7 +94,7 @@ TEST(Laws, NeedNoThermometerAgainstAPressure) {
                               Quantity::vapor_pressure, Quantity::dew_point, Quantity::lams_airspeed})
     file.variables.erase(role);
   const std::shared_ptr<const pcor::Reference> reference = pcor::read_reference("pressure:PS_A", file);
-  EXPECT_THAT(pcor::diagnose(flight(), file, *reference).candidates, Gt(10U));
+  EXPECT_THAT(pcor::diagnose(flight(), file, {reference}).candidates, Gt(10U));
 }
 
 INSTANTIATE_TEST_SUITE_P(Data, PublishedLaw, testing::ValuesIn(laws()), name_of);

@@ -82,10 +82,7 @@ inline pcor::ModelFile model(const std::vector<std::string>& effects) {
   return file;
 }
 
-inline const pcor::Reference& pressure_reference() {
-  static const auto reference = pcor::pressure_reference("PS_A");
-  return *reference;
-}
+inline pcor::References pressure_reference() { return {pcor::pressure_reference("PS_A")}; }
 
 /// The reference pressure of a flight that `flight` made, hPa.
 inline std::vector<double>& reference_pressure(pcor::FlightSamples& samples) {

@@ -444,7 +444,7 @@ TEST_F(Temperature, InTurnComesToRest) {
   ModelFile start = model();
   start.model.effects[0].parameters = {0.006};  // by 0.0019 of the pressure too much
   const CalibrationInTurn found =
-      calibrate_in_turn(flights, start, *pcor::lams_reference(), {}, of_degree(1));
+      calibrate_in_turn(flights, start, {pcor::lams_reference()}, {}, of_degree(1));
   ASSERT_TRUE(found.converged);
   ASSERT_GT(found.rounds.size(), 1U);
   for (std::size_t i = 1; i < found.rounds.size(); ++i) {
@@ -464,7 +464,7 @@ TEST_F(Temperature, InTurnComesToRest) {
   EXPECT_EQ(found.rounds.back().coefficients, found.temperature.likelihood.coefficients);
 
   const CalibrationInTurn again =
-      calibrate_in_turn(flights, found.temperature.model, *pcor::lams_reference(), {}, of_degree(1));
+      calibrate_in_turn(flights, found.temperature.model, {pcor::lams_reference()}, {}, of_degree(1));
   EXPECT_TRUE(again.converged);
   ASSERT_THAT(again.rounds, SizeIs(1));
   EXPECT_LT(again.rounds[0].defect_change, 1e-3);       // hPa, as promised
@@ -473,7 +473,7 @@ TEST_F(Temperature, InTurnComesToRest) {
 
 TEST_F(Temperature, InTurnSaysHowTheDegreeWasChosen) {
   const std::vector<fs::path> flights{fly(one_climb(), 1)};
-  const CalibrationInTurn found = calibrate_in_turn(flights, model(), *pcor::lams_reference(), {}, {});
+  const CalibrationInTurn found = calibrate_in_turn(flights, model(), {pcor::lams_reference()}, {}, {});
   EXPECT_TRUE(found.converged);
   EXPECT_THAT(found.temperature.degrees, SizeIs(4));  // none to quadratic
   EXPECT_THAT(found.temperature.notes_on_degree, ElementsAre(HasSubstr("none can be held out")));
@@ -485,12 +485,13 @@ TEST_F(Temperature, InTurnSaysHowTheDegreeWasChosen) {
 TEST_F(Temperature, InTurnSaysHowFarThePressureMoved) {
   const std::vector<fs::path> flights{fly(one_climb(), 1)};
   const CalibrationInTurn found =
-      calibrate_in_turn(flights, model(), *pcor::lams_reference(), {}, of_degree(1));
+      calibrate_in_turn(flights, model(), {pcor::lams_reference()}, {}, of_degree(1));
   ASSERT_TRUE(found.converged);
   // From the end with 0.001 of the pressure more back to it.
   ModelFile start = found.temperature.model;
   start.model.effects[0].parameters[0] += 0.001;
-  const CalibrationInTurn back = calibrate_in_turn(flights, start, *pcor::lams_reference(), {}, of_degree(1));
+  const CalibrationInTurn back =
+      calibrate_in_turn(flights, start, {pcor::lams_reference()}, {}, of_degree(1));
   const FlightAir air = read_flight_air(Flight(flights[0]), model());
   double squares = 0.0;
   double count = 0.0;
@@ -566,11 +567,11 @@ TEST_F(Temperature, MakesAReport) {
 
 TEST_F(Temperature, RefusesWhatTellsNothing) {
   EXPECT_THAT([] { fit_temperature({}, model()); }, ThrowsMessage<Error>(HasSubstr("at least one flight")));
-  EXPECT_THROW(calibrate_in_turn({}, model(), *pcor::lams_reference(), {}, {}), Error);
+  EXPECT_THROW(calibrate_in_turn({}, model(), {pcor::lams_reference()}, {}, {}), Error);
   TemperatureOptions archived;
   archived.archived = true;
   EXPECT_THAT(
-      [&] { calibrate_in_turn({fly(one_climb(), 3)}, model(), *pcor::lams_reference(), {}, archived); },
+      [&] { calibrate_in_turn({fly(one_climb(), 3)}, model(), {pcor::lams_reference()}, {}, archived); },
       ThrowsMessage<Error>(HasSubstr("as recorded")));
   const std::vector<fs::path> flights = fly_several(no_climb(), 1, 2);
   EXPECT_THAT([&] { fit_temperature({flights[0]}, model()); },

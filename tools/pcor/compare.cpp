@@ -190,7 +190,9 @@ void run(const Options& options) {
   std::vector<Contender> contenders;
   for (const std::string& path : options.models) {
     const ModelFile model = read_model(path);
-    contenders.push_back({model.model.name, model, read_reference(options.comparison.reference, model)});
+    contenders.push_back(
+        {model.model.name, model,
+         read_references(options.comparison.references, model, flight_paths(options.comparison)).used});
   }
   CompareOptions compare_options;
   compare_options.mask = mask_options(options.comparison);

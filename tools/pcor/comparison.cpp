@@ -26,9 +26,12 @@ CLI::Validator is_amount() {
 void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
   add_flight_options(command, options);
   command
-      .add_option("--reference", options.reference,
-                  "the measurement that the model is compared with: " + reference_forms())
-      ->type_name("REFERENCE");
+      .add_option(
+          "--reference", options.references,
+          "a measurement that the model is held against, several times for several: " + reference_forms())
+      ->type_name("REFERENCE")
+      ->expected(1)
+      ->take_all();
 }
 
 void add_flight_options(CLI::App& command, ComparisonOptions& options) {
@@ -84,8 +87,9 @@ std::vector<std::filesystem::path> flight_paths(const ComparisonOptions& options
 std::vector<std::filesystem::path> input_files(const ComparisonOptions& options) {
   std::vector<std::filesystem::path> files = flight_paths(options);
   const std::string prefix = "static:";
-  if (options.reference.compare(0, prefix.size(), prefix) == 0)
-    files.emplace_back(options.reference.substr(prefix.size()));
+  for (const std::string& reference : options.references) {
+    if (reference.compare(0, prefix.size(), prefix) == 0) files.emplace_back(reference.substr(prefix.size()));
+  }
   files.emplace_back(options.intervals);
   return files;
 }
@@ -93,7 +97,7 @@ std::vector<std::filesystem::path> input_files(const ComparisonOptions& options)
 std::string command_line(const ComparisonOptions& options) {
   std::string line;
   for (const std::string& flight : options.flights) line += quoted(flight) + " ";
-  if (!options.reference.empty()) line += "--reference " + quoted(options.reference) + " ";
+  for (const std::string& reference : options.references) line += "--reference " + quoted(reference) + " ";
   for (const std::string& regime : options.exclude) line += "--exclude " + quoted(regime) + " ";
   if (!options.intervals.empty()) line += "--intervals " + quoted(options.intervals) + " ";
   if (options.least_airspeed != MaskOptions{}.least_airspeed)

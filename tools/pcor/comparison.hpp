@@ -14,7 +14,7 @@ namespace pcor::tool {
 /// The options of every sub-command that holds a model against measurements.
 struct ComparisonOptions {
   std::vector<std::string> flights{};
-  std::string reference{};
+  std::vector<std::string> references{};
   std::vector<std::string> exclude{};
   std::string intervals{};
   double least_airspeed = MaskOptions{}.least_airspeed;

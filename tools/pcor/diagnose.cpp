@@ -163,7 +163,8 @@ void run(const Options& options) {
   require_writable(options.common.report);
   JsonResult json(options.common);
   const ModelFile model = read_model(options.model);
-  const auto reference = read_reference(options.comparison.reference, model);
+  const References references =
+      read_references(options.comparison.references, model, flight_paths(options.comparison)).used;
   DiagnoseOptions diagnose_with;
   diagnose_with.mask = mask_options(options.comparison);
   diagnose_with.time_stamp = time_stamp(options.comparison);
@@ -175,7 +176,7 @@ void run(const Options& options) {
   {
     Progress bar("diagnosing", !options.common.quiet);
     diagnose_with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
-    diagnosis = diagnose(flight_paths(options.comparison), model, *reference, diagnose_with);
+    diagnosis = diagnose(flight_paths(options.comparison), model, references, diagnose_with);
   }
   if (!options.common.report.empty()) write_report(diagnosis_report(diagnosis, model), options.common.report);
   json.write(as_json(diagnosis));

@@ -106,14 +106,15 @@ void run(const Options& options) {
   for (const std::string& output : {options.output, options.common.report}) require_writable(output);
   JsonResult json(options.common);
   const ModelFile model = read_model(options.model);
-  const auto reference = read_reference(options.comparison.reference, model);
+  const References references =
+      read_references(options.comparison.references, model, flight_paths(options.comparison)).used;
   ImproveOptions improve_with = improve_options(options, model);
   Improvement improvement;
   {
     std::optional<Progress> bar;
     improve_with.progress = [&](const std::string& what) { bar.emplace(what, !options.common.quiet); };
     improve_with.refit.progress = [&bar](std::size_t done, std::size_t total) { bar->show(done, total); };
-    improvement = improve(flight_paths(options.comparison), model, *reference, improve_with);
+    improvement = improve(flight_paths(options.comparison), model, references, improve_with);
   }
   refuse_worse(improvement.worse, options.force, improvement.model);
   save_model(improvement.model, options.output, inputs);

@@ -207,23 +207,24 @@ void print_next_step(const Options& options) {
     return;
   }
   ComparisonOptions fitted = options.comparison;
-  fitted.reference = "static:" + options.reference_output;
+  fitted.references.front() = "static:" + options.reference_output;
   fmt::print("\nwrote {} and {}\nTo see where they still fail: pcor compare {} -m {}\n", options.output,
              options.reference_output, command_line(fitted), quoted(options.output));
 }
 
-void write_fit_report(const RefitResult& result, const ModelFile& model,
-                      const std::shared_ptr<const Reference>& reference, const Options& options) {
+void write_fit_report(const RefitResult& result, const ModelFile& model, const References& references,
+                      const Options& options) {
   CompareOptions compare_options;
   compare_options.mask = mask_options(options.comparison);
   compare_options.time_stamp = time_stamp(options.comparison);
   std::vector<std::filesystem::path> flights = flight_paths(options.comparison);
   flights.insert(flights.end(), options.holdout.begin(), options.holdout.end());
-  const auto fitted = result.reference ? static_system_reference(*result.reference) : reference;
+  References fitted = references;
+  if (result.reference) fitted.front() = fitted.front()->with_model(*result.reference);
   const bool holds_out = !options.holdout.empty() || options.training_share < 1.0;
   const std::string part = holds_out ? ", fitted and held-out samples" : "";
   const Comparison comparison = compare(
-      flights, {{"before the fit" + part, model, reference}, {"after the fit" + part, result.model, fitted}},
+      flights, {{"before the fit" + part, model, references}, {"after the fit" + part, result.model, fitted}},
       compare_options);
   write_report(refit_report(result, comparison), options.common.report);
 }
@@ -238,15 +239,16 @@ void run(const Options& options) {
     require_writable(output);
   JsonResult json(options.common);
   const ModelFile model = read_model(options.model);
-  const auto reference = read_reference(options.comparison.reference, model);
+  const References references =
+      read_references(options.comparison.references, model, flight_paths(options.comparison)).used;
   RefitOptions refit_with = refit_options(options);
   RefitResult result;
   {
     Progress bar("fitting", !options.common.quiet);
     refit_with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
-    result = refit(flight_paths(options.comparison), model, *reference, refit_with);
+    result = refit(flight_paths(options.comparison), model, references, refit_with);
   }
-  if (!options.common.report.empty()) write_fit_report(result, model, reference, options);
+  if (!options.common.report.empty()) write_fit_report(result, model, references, options);
   json.write(as_json(result));
   if (wants_text(options.common)) print_result(result);
   refuse_worse(result.worse, options.force, result.model);

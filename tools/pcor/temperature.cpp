@@ -230,7 +230,7 @@ void run(const Options& options) {
   for (const std::string& output : {options.output, options.common.report}) require_writable(output);
   if (options.iterate && options.archived)
     throw Error("--iterate fits pressures again and needs flights as recorded; leave out --archived");
-  if (!options.iterate && !options.comparison.reference.empty())
+  if (!options.iterate && !options.comparison.references.empty())
     throw Error("--reference is what --iterate fits the pressures to; give both or none");
   JsonResult json(options.common);
   const ModelFile model = read_model(options.model);
@@ -244,8 +244,9 @@ void run(const Options& options) {
       RefitOptions refit_with;
       refit_with.mask = with.mask;
       refit_with.time_stamp = with.time_stamp;
-      const auto reference = read_reference(options.comparison.reference, model);
-      in_turn = calibrate_in_turn(flight_paths(options.comparison), model, *reference, refit_with, with);
+      const References references =
+          read_references(options.comparison.references, model, flight_paths(options.comparison)).used;
+      in_turn = calibrate_in_turn(flight_paths(options.comparison), model, references, refit_with, with);
       result = in_turn.temperature;
     } else {
       result = fit_temperature(flight_paths(options.comparison), model, with);

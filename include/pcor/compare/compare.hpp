@@ -85,11 +85,11 @@ struct CompareOptions {
 struct Contender {
   std::string name;  ///< in tables
   ModelFile model;
-  std::shared_ptr<const Reference> reference;
+  References references;
 };
 
-/// Holds every contender against its reference over the flights. A sample counts where all models have a
-/// residual, so the figures of models can be compared.
+/// Holds every contender against the first of its references over the flights. A sample counts where all
+/// models have a residual, so the figures of models can be compared.
 ///
 /// @throws Error if a flight cannot be read, a variable is absent, the flights are of different aircraft, or
 /// no sample is left: the message says which mask took how many.

@@ -215,6 +215,6 @@ void judge_held_out(Diagnosis& diagnosis);
 ///
 /// @throws Error if a flight cannot be read, a variable of the model is absent, or too few samples are left.
 Diagnosis diagnose(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
-                   const Reference& reference, const DiagnoseOptions& options = {});
+                   const References& references, const DiagnoseOptions& options = {});
 
 }  // namespace pcor

@@ -137,10 +137,10 @@ struct RefitResult {
 /// fewer than coefficients, bounds leave nothing, or coefficients cannot be told apart on these flights: the
 /// message names them and says which to fix.
 RefitResult refit(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
-                  const Reference& reference, const RefitOptions& options = {});
+                  const References& references, const RefitOptions& options = {});
 
 /// As above, for flights in memory.
 RefitResult refit(const std::vector<std::shared_ptr<const FlightSamples>>& flights, const ModelFile& model,
-                  const Reference& reference, const RefitOptions& options = {});
+                  const References& references, const RefitOptions& options = {});
 
 }  // namespace pcor

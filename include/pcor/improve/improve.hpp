@@ -51,6 +51,6 @@ struct Improvement {
 ///
 /// @throws Error as `refit` and `diagnose`.
 Improvement improve(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
-                    const Reference& reference, const ImproveOptions& options = {});
+                    const References& references, const ImproveOptions& options = {});
 
 }  // namespace pcor

@@ -3,6 +3,7 @@
 #include <pcor/laws/model_file.hpp>
 #include <pcor/residuals/samples.hpp>
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -32,6 +33,10 @@ class Reference {
   /// against it; null where it has none.
   virtual const ModelFile* model() const { return nullptr; }
 
+  /// The same reference with another model of its own; null where it has none. It reads all that the other
+  /// model reads.
+  virtual std::shared_ptr<const Reference> with_model(ModelFile) const { return nullptr; }
+
   /// The variables of a flight that it reads for itself, beside those of the model that is held against it.
   virtual std::vector<std::string> variables() const { return {}; }
 
@@ -47,6 +52,12 @@ class Reference {
                                                            const internal::ModelOnSamples& model) const = 0;
 };
 
+/// What a model is held against at once. The first one decides wherever a single figure is told.
+using References = std::vector<std::shared_ptr<const Reference>>;
+
+/// The first. @throws Error if there is none.
+const Reference& first_of(const References& references);
+
 /// LAMS: delta-p from the laser airspeed, memo eq. 11, from the same pressures as the model.
 std::shared_ptr<const Reference> lams_reference();
 
@@ -60,11 +71,22 @@ std::shared_ptr<const Reference> pressure_reference(std::string variable);
 /// ...".
 std::string reference_forms();
 
-/// The reference that `text` names, see `reference_forms`. An empty text is LAMS where `model` has a laser
-/// airspeed.
+/// The reference that `text` names, see `reference_forms`.
 ///
-/// @throws Error if the text is none of these, the file of a static system cannot be read, the model of a
-/// LAMS comparison has no `lams_airspeed`, or the text is empty and there is no laser.
+/// @throws Error if the text is none of these, the file of a static system cannot be read, or the model of a
+/// LAMS comparison has no `lams_airspeed`.
 std::shared_ptr<const Reference> read_reference(const std::string& text, const ModelFile& model);
+
+/// What a model is held against, and what it could have been.
+struct ChosenReferences {
+  References used{};
+  std::vector<std::string> not_used{};  ///< where no text named any: which else there are, and why not these
+};
+
+/// The references that `texts` name; without texts LAMS.
+///
+/// @throws Error as `read_reference`, or if there is no text and the flights and the model allow none.
+ChosenReferences read_references(const std::vector<std::string>& texts, const ModelFile& model,
+                                 const std::vector<std::filesystem::path>& flights);
 
 }  // namespace pcor

@@ -196,7 +196,7 @@ struct CalibrationInTurn {
 /// 0.001 K.
 /// @throws Error as `refit` and `fit_temperature`, and for archived flights, whose pressures are as they are.
 CalibrationInTurn calibrate_in_turn(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
-                                    const Reference& reference, const RefitOptions& refit_options,
+                                    const References& references, const RefitOptions& refit_options,
                                     const TemperatureOptions& temperature_options);
 
 /// "none", "constant", "linear" or "quadratic", for a degree of -1 to 2.

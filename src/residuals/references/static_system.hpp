@@ -57,6 +57,10 @@ class StaticSystemReference final : public Reference {
 
   const ModelFile* model() const override { return &system_; }
 
+  std::shared_ptr<const Reference> with_model(ModelFile system) const override {
+    return std::make_shared<StaticSystemReference>(std::move(system));
+  }
+
   std::vector<std::string> variables() const override {
     std::vector<std::string> names;
     for (const auto& [role, variable] : system_.variables) names.push_back(variable);
