@@ -61,7 +61,10 @@ std::string regimes_text(const RegimeSet& regimes) {
 /// The statistics of one model, gathered flight by flight.
 class Gathering {
  public:
-  explicit Gathering(std::string name) { result_.name = std::move(name); }
+  Gathering(std::string name, const Reference& reference) : is_static_(reference.is_static_pressure()) {
+    result_.name = std::move(name);
+    result_.reference = reference.name();
+  }
 
   void add(const FlightResiduals& flight, std::size_t model, const NoiseFloor& noise);
   ModelComparison finish();
@@ -71,6 +74,7 @@ class Gathering {
                  const std::vector<RegimeSet>& regimes);
 
   ModelComparison result_;
+  bool is_static_;
   ResidualSums all_;
   ResidualSums flaps_out_;
   double wanted_sum_ = 0.0;
@@ -137,7 +141,8 @@ ModelComparison Gathering::finish() {
   result_.flaps_out = flaps_out_.statistics();
   const auto count = static_cast<double>(all_.samples);
   const double variation = wanted_squares_ - wanted_sum_ * wanted_sum_ / count;
-  result_.r_squared = variation > count * smallest_variance ? 1.0 - all_.squares / variation : nan;
+  const bool varies = is_static_ && variation > count * smallest_variance;
+  result_.r_squared = varies ? 1.0 - all_.squares / variation : nan;
   result_.samples_per_independent = count / all_.independent;
   for (std::size_t r = 0; r < regime_count; ++r) {
     if (regimes_[r].samples > 0)
@@ -178,7 +183,8 @@ void fit_lines(Comparison& comparison) {
       reference_total.push_back(flight.reference_total_pressure[i]);
     }
   }
-  comparison.static_pressure = orthogonal_fit(pressure, reference_pressure);
+  if (comparison.is_static_pressure)
+    comparison.static_pressure = orthogonal_fit(pressure, reference_pressure);
   if (!total.empty()) comparison.total_pressure = ordinary_fit(total, reference_total);
 }
 
@@ -192,12 +198,13 @@ NoiseFloor lowest_noise(const FlightResiduals& flight) {
   return lowest;
 }
 
-/// The residuals of all models on one flight, where all of them have one.
+/// The residuals of all models to their references of that number on one flight, where all of them have one.
 FlightResiduals residuals_on(const Flight& flight, const std::vector<Contender>& contenders,
-                             const MaskOptions& options, std::vector<std::string>& notes) {
+                             std::size_t number, const MaskOptions& options,
+                             std::vector<std::string>& notes) {
   FlightResiduals result;
   for (const auto& [name, model, references] : contenders) {
-    const Reference& reference = first_of(references);
+    const Reference& reference = *references[number];
     const auto samples =
         std::make_shared<const FlightSamples>(read_samples(flight, model, reference, options));
     const Residuals residuals(samples, model, reference, options);
@@ -230,36 +237,69 @@ FlightResiduals residuals_on(const Flight& flight, const std::vector<Contender>&
   return result;
 }
 
+/// Holds every contender against its reference of that number. Without samples there are no models in the
+/// result.
+Comparison compare_with(std::size_t number, const std::vector<std::filesystem::path>& flights,
+                        const std::vector<Contender>& contenders, const CompareOptions& options,
+                        const std::function<void()>& tell) {
+  const Reference& first = *contenders.front().references[number];
+  Comparison result;
+  result.reference = first.description();
+  result.is_static_pressure = first.is_static_pressure();
+  std::vector<Gathering> gatherings;
+  for (const Contender& contender : contenders)
+    gatherings.emplace_back(contender.name, *contender.references[number]);
+  std::vector<std::pair<std::string, std::string>> aircraft;
+  for (const std::filesystem::path& path : flights) {
+    const Flight flight(path, options.time_stamp);
+    aircraft.emplace_back(path.filename().string(), flight.aircraft());
+    require_one_aircraft(aircraft);
+    FlightResiduals residuals = residuals_on(flight, contenders, number, options.mask, result.notes);
+    for (const Mask mask : residuals.mask) ++result.masks[static_cast<std::size_t>(mask)];
+    const NoiseFloor noise = lowest_noise(residuals);
+    for (std::size_t m = 0; m < contenders.size(); ++m) gatherings[m].add(residuals, m, noise);
+    result.flights.push_back(std::move(residuals));
+    tell();
+  }
+  if (result.masks[0] == 0) return result;
+  for (Gathering& gathering : gatherings) result.models.push_back(gathering.finish());
+  fit_lines(result);
+  return result;
+}
+
 }  // namespace
 
 Comparison compare(const std::vector<std::filesystem::path>& flights,
                    const std::vector<Contender>& contenders, const CompareOptions& options) {
   if (flights.empty() || contenders.empty())
     throw Error("nothing to compare; give at least one flight and one model");
-  Comparison result;
-  result.reference = first_of(contenders.front().references).description();
-  std::vector<Gathering> gatherings;
-  for (const Contender& contender : contenders) gatherings.emplace_back(contender.name);
-  std::vector<std::pair<std::string, std::string>> aircraft;
-  for (const std::filesystem::path& path : flights) {
-    const Flight flight(path, options.time_stamp);
-    aircraft.emplace_back(path.filename().string(), flight.aircraft());
-    require_one_aircraft(aircraft);
-    FlightResiduals residuals = residuals_on(flight, contenders, options.mask, result.notes);
-    for (const Mask mask : residuals.mask) ++result.masks[static_cast<std::size_t>(mask)];
-    const NoiseFloor noise = lowest_noise(residuals);
-    for (std::size_t m = 0; m < contenders.size(); ++m) gatherings[m].add(residuals, m, noise);
-    result.flights.push_back(std::move(residuals));
-    if (options.progress) options.progress(result.flights.size(), flights.size());
+  std::size_t references = contenders.front().references.size();
+  for (const Contender& contender : contenders) {
+    first_of(contender.references);
+    references = std::min(references, contender.references.size());
   }
+  const auto tell = [&, done = std::size_t{0}]() mutable {
+    ++done;
+    if (options.progress) options.progress(done, references * flights.size());
+  };
+  const std::function<void()> progress = tell;
+  Comparison result = compare_with(0, flights, contenders, options, progress);
   if (result.masks[0] == 0) {
     throw Error(
         fmt::format("{}: no sample is left to compare: {}; see the variables of the model and "
                     "--min-airspeed, --max-flaps, --exclude",
                     flights.size() == 1 ? flights.front().string() : "the flights", mask_text(result.masks)));
   }
-  for (Gathering& gathering : gatherings) result.models.push_back(gathering.finish());
-  fit_lines(result);
+  for (std::size_t number = 1; number < references; ++number) {
+    Comparison further = compare_with(number, flights, contenders, options, progress);
+    if (further.masks[0] == 0) {
+      result.notes.push_back(fmt::format("no sample is left to compare with the {}: {}", further.reference,
+                                         mask_text(further.masks)));
+      continue;
+    }
+    result.notes.insert(result.notes.end(), further.notes.begin(), further.notes.end());
+    result.further.push_back(std::move(further));
+  }
   std::sort(result.notes.begin(), result.notes.end());
   result.notes.erase(std::unique(result.notes.begin(), result.notes.end()), result.notes.end());
   return result;

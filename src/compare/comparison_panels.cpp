@@ -108,7 +108,7 @@ void ComparisonPanels::add_panels() {
   TimePanel time;
   time.title = "Residual in time";
   time.caption =
-      "Static pressure of the reference less that of the model; regimes are shaded. Drag over a time "
+      "The reference less the model; regimes are shaded. Drag over a time "
       "range, or choose a regime, and every picture shows its samples alone.";
   time.columns = residuals_;
   time.axis = "residual";
@@ -138,6 +138,7 @@ void ComparisonPanels::add_panels() {
   plane.colour = residuals_.back();
   plane.reverse_y = true;
   report_.items.emplace_back(std::move(plane));
+  if (!comparison_.is_static_pressure) return;
   TimePanel defect;
   defect.title = comparison_.models.size() == 1 ? "Delta-p of the reference and of the model"
                                                 : "Delta-p of the reference and of the models";
@@ -190,6 +191,7 @@ void ComparisonPanels::add_pairs() {
          "and the lines. ",
          "total", "reference_total", *comparison_.total_pressure);
   }
+  if (!comparison_.is_static_pressure) return;
   column("corrected", "static pressure of the model",
          [](const F& f) -> const V& { return f.corrected_pressure; });
   report_.columns.push_back(report_.columns.back());

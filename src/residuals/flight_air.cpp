@@ -13,6 +13,7 @@
 #include <pcor/physics/moist_air.hpp>
 #include <pcor/physics/standard_atmosphere.hpp>
 #include "numerics/missing.hpp"
+#include "residuals/ground_velocity.hpp"
 #include "residuals/masks.hpp"
 #include "roles/recorded_series.hpp"
 
@@ -89,24 +90,6 @@ void find_heights(const Flight& flight, const ModelFile& model, FlightAir& air) 
   }
 }
 
-void find_ground_velocity(const Flight& flight, FlightAir& air) {
-  const FlightMotion& motion = air.samples->motion;
-  if (!motion.ground_speed.empty() && !motion.ground_track.empty()) {
-    air.east_speed.resize(air.size());
-    air.north_speed.resize(air.size());
-    for (std::size_t i = 0; i < air.size(); ++i) {
-      const double track = motion.ground_track[i] * constants::radians_per_degree;
-      air.east_speed[i] = motion.ground_speed[i] * std::sin(track);
-      air.north_speed[i] = motion.ground_speed[i] * std::cos(track);
-    }
-  } else {
-    air.east_speed = read_usual(flight, usual_series("ground_speed_east")).values;
-    air.north_speed = read_usual(flight, usual_series("ground_speed_north")).values;
-    if (air.north_speed.empty()) air.east_speed.clear();
-    if (air.east_speed.empty()) air.north_speed.clear();
-  }
-}
-
 void find_tail_wind(FlightAir& air) {
   const std::vector<double>& heading = air.samples->motion.heading;
   if (heading.empty() || air.east_speed.empty() || air.airspeed.empty()) return;
@@ -134,7 +117,9 @@ FlightAir read_flight_air(const Flight& flight, const ModelFile& model, const Ma
   run_chain(*samples, model.model, air);
   air.samples = std::move(samples);
   find_heights(flight, model, air);
-  find_ground_velocity(flight, air);
+  GroundVelocity ground = read_ground_velocity(flight, model);
+  air.east_speed = std::move(ground.east);
+  air.north_speed = std::move(ground.north);
   find_tail_wind(air);
   return air;
 }

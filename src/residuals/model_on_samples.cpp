@@ -53,6 +53,15 @@ void ModelOnSamples::corrected_static_pressure(const std::vector<Batch::Input>& 
   for (std::size_t i = 0; i < count; ++i) out[i] += defect[i];
 }
 
+void ModelOnSamples::total_pressure(const std::vector<Batch::Input>& inputs, std::size_t count,
+                                    const double* parameters, double* out) const {
+  std::vector<double> dynamic(count);
+  batch_.run(inputs,
+             {{Quantity::port_static_pressure, out}, {Quantity::port_dynamic_pressure, dynamic.data()}},
+             count, parameters);
+  for (std::size_t i = 0; i < count; ++i) out[i] += dynamic[i];
+}
+
 /// A step of a linear parameter that changes delta-p by tenths of hPa.
 double ModelOnSamples::step_of(std::size_t parameter) const {
   std::size_t first = 0;

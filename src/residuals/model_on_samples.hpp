@@ -49,6 +49,29 @@ class ModelOnSamples {
     return state[Quantity::port_static_pressure] + state[Quantity::static_defect];
   }
 
+  /// One sample through the whole chain: corrected pressures, temperature, humidity and airspeed.
+  template <class S>
+  void air(std::size_t sample, const S* parameters, State<S>& state) const {
+    NoQualityFlags flags;
+    corrected_static_pressure(sample, parameters, state);
+    chain().correct(state, state[Quantity::static_defect], flags);
+    chain().air(state, parameters, flags);
+  }
+
+  /// The total pressure of one sample at the ports, hPa: static plus dynamic, in which delta-p cancels.
+  template <class S>
+  S total_pressure(std::size_t sample, const S* parameters) const {
+    State<S> state;
+    NoQualityFlags flags;
+    for (const Batch::Input& column : columns_) state[column.quantity] = S(column.values[sample]);
+    chain().measure(state, parameters, flags);
+    return state[Quantity::port_static_pressure] + state[Quantity::port_dynamic_pressure];
+  }
+
+  /// The same of a block.
+  void total_pressure(const std::vector<Batch::Input>& inputs, std::size_t count, const double* parameters,
+                      double* out) const;
+
   /// The corrected static pressure of a block, hPa.
   void corrected_static_pressure(const std::vector<Batch::Input>& inputs, std::size_t count,
                                  const double* parameters, double* out) const;

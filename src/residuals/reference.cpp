@@ -3,13 +3,17 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <filesystem>
 #include <string_view>
 #include <utility>
 
 #include <pcor/words/error.hpp>
+#include "residuals/references/height.hpp"
 #include "residuals/references/lams.hpp"
 #include "residuals/references/pressure.hpp"
 #include "residuals/references/static_system.hpp"
+#include "residuals/references/total_pressure.hpp"
+#include "residuals/references/wind.hpp"
 
 namespace pcor {
 
@@ -29,6 +33,23 @@ Pointer read_lams(const std::string&, const ModelFile& model) {
   return lams_reference();
 }
 
+/// A pair of pressures that no law corrects.
+ModelFile bare_pair(const std::string& static_pressure, const std::string& dynamic_pressure) {
+  ModelFile pair;
+  pair.model.name = static_pressure + "+" + dynamic_pressure;
+  pair.variables = {{Quantity::static_pressure, static_pressure},
+                    {Quantity::dynamic_pressure, dynamic_pressure}};
+  return pair;
+}
+
+/// Of a file, or of two variables with a + between them.
+Pointer read_total_pressure(const std::string& system, const ModelFile&) {
+  const std::size_t plus = system.find('+');
+  const bool is_pair = plus != std::string::npos && !std::filesystem::exists(system);
+  return total_pressure_reference(is_pair ? bare_pair(system.substr(0, plus), system.substr(plus + 1))
+                                          : read_model(system));
+}
+
 /// How a text names a reference: "form" or, where it takes an argument, "form:argument".
 struct Form {
   std::string_view form;
@@ -38,12 +59,18 @@ struct Form {
 };
 
 /// All references.
-constexpr std::array<Form, 3> forms{{
-    {"lams", "", "the laser air-motion sensor; the default", read_lams},
+constexpr std::array<Form, 6> forms{{
+    {"lams", "", "the laser air-motion sensor", read_lams},
     {"static", "OTHER.toml", "a second static system, by its model",
      [](const std::string& file, const ModelFile&) { return static_system_reference(read_model(file)); }},
     {"pressure", "VARIABLE", "a recorded static pressure",
      [](const std::string& variable, const ModelFile&) { return pressure_reference(variable); }},
+    {"total", "OTHER.toml", "the total pressure of a second system, by its model, or of STATIC+DYNAMIC",
+     read_total_pressure},
+    {"height", "", "hydrostatic heights against GPS in climbs",
+     [](const std::string&, const ModelFile& model) { return height_reference(model); }},
+    {"wind", "", "ground speeds in turns, reverse headings and speed runs",
+     [](const std::string&, const ModelFile& model) { return wind_reference(model); }},
 }};
 
 }  // namespace
@@ -70,6 +97,14 @@ Pointer pressure_reference(std::string variable) {
   return std::make_shared<PressureReference>(std::move(variable));
 }
 
+Pointer total_pressure_reference(ModelFile system) {
+  return std::make_shared<TotalPressureReference>(std::move(system));
+}
+
+Pointer height_reference(const ModelFile& model) { return std::make_shared<HeightReference>(model); }
+
+Pointer wind_reference(const ModelFile& model) { return std::make_shared<WindReference>(model); }
+
 std::string reference_forms() {
   std::string text;
   for (const Form& each : forms) {
@@ -90,14 +125,6 @@ Pointer read_reference(const std::string& text, const ModelFile& model) {
     if (each.form == form && fits) return each.read(argument, model);
   }
   throw Error(fmt::format("unknown reference '{}'; give {}", text, reference_forms()));
-}
-
-ChosenReferences read_references(const std::vector<std::string>& texts, const ModelFile& model,
-                                 const std::vector<std::filesystem::path>&) {
-  ChosenReferences chosen;
-  for (const std::string& text : texts) chosen.used.push_back(read_reference(text, model));
-  if (texts.empty()) chosen.used.push_back(read_reference("lams", model));
-  return chosen;
 }
 
 }  // namespace pcor

@@ -42,12 +42,13 @@ class ReferenceOnSamples {
   struct Block {
     const std::vector<Batch::Input>& model;
     const std::vector<Batch::Input>& reference;
+    const std::size_t* samples;  ///< which they are
     std::size_t count;
   };
 
   virtual ~ReferenceOnSamples() = default;
 
-  /// p(reference) - p(model), hPa.
+  /// Of the reference less the model, hPa.
   virtual void residuals(const Block& block, const double* parameters, double* out) const = 0;
   virtual void residuals(const std::size_t* samples, std::size_t count, const Jet* parameters,
                          Jet* out) const = 0;

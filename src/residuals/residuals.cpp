@@ -64,9 +64,11 @@ struct Residuals::Implementation {
         reference_columns(reference->columns()),
         parameters(model.parameters()),
         linear(model.linear()) {
+    if (!held_against.is_static_pressure()) linear.assign(linear.size(), false);
     if (const ModelOnSamples* const other = reference->model()) {
       parameters.insert(parameters.end(), other->parameters().begin(), other->parameters().end());
-      const std::vector<bool> more = other->linear();
+      std::vector<bool> more = other->linear();
+      if (!held_against.is_static_pressure()) more.assign(more.size(), false);
       linear.insert(linear.end(), more.begin(), more.end());
     }
   }
@@ -103,7 +105,10 @@ std::array<std::size_t, mask_count> Residuals::mask_counts() const {
 std::vector<double> Residuals::values(const double* parameters) const {
   const Implementation& own = *implementation_;
   std::vector<double> result(size());
-  own.reference->residuals({own.model.columns(), own.reference_columns, size()}, parameters, result.data());
+  std::vector<std::size_t> all(size());
+  std::iota(all.begin(), all.end(), 0);
+  own.reference->residuals({own.model.columns(), own.reference_columns, all.data(), size()}, parameters,
+                           result.data());
   return result;
 }
 
@@ -116,7 +121,7 @@ void Residuals::evaluate(const std::size_t* samples, std::size_t count, const do
   const std::vector<Batch::Input> inputs = gathered(own.model.columns(), samples, count, store);
   const std::vector<Batch::Input> reference_inputs =
       gathered(own.reference_columns, samples, count, reference_store);
-  own.reference->residuals({inputs, reference_inputs, count}, parameters, residual);
+  own.reference->residuals({inputs, reference_inputs, samples, count}, parameters, residual);
 
   const std::size_t of_model = own.model.parameters().size();
   std::vector<std::size_t> curved;  // places in `wanted`

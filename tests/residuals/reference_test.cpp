@@ -36,9 +36,11 @@ TEST(Reference, IsReadFromItsName) {
 }
 
 TEST(Reference, OfAnotherTextIsRefusedWithThoseThatThereAre) {
-  for (const char* form : {"lams (", ", static:OTHER.toml (", " or pressure:VARIABLE ("})
+  for (const char* form : {"lams (", ", static:OTHER.toml (", ", pressure:VARIABLE (", ", total:OTHER.toml (",
+                           ", height (", " or wind ("})
     EXPECT_THAT(reference_forms(), HasSubstr(form));
-  for (const char* text : {"static:", "pressure:", "lams:", "lams:V", "PS_A", ":", "static", "LAMS"})
+  for (const char* text :
+       {"static:", "pressure:", "lams:", "lams:V", "wind:", "total", "PS_A", ":", "static", "LAMS"})
     EXPECT_THAT(message_of(text, with_laser()), HasSubstr(reference_forms())) << text;
   EXPECT_THAT(message_of("static:absent.toml", with_laser()), HasSubstr("absent.toml"));
 }

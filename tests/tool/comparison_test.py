@@ -337,10 +337,25 @@ class ResidualFile(ComparisonTest):
 
 
 class References(ComparisonTest):
-    def test_lams_is_the_default(self):
+    def test_lams_is_the_first_of_all_that_the_flight_allows(self):
         silent, stated = self.compare(), self.compare("--reference", "lams")
         self.assertEqual(silent["reference"], "LAMS")
-        self.assertEqual(silent, stated)
+        self.assertEqual([model["reference"] for model in silent["models"]],
+                         ["lams", "total:PSFRD+QCFR", "height", "wind"])
+        self.assertEqual(silent["models"][:1], stated["models"])
+
+    def test_each_reference_has_its_own_table(self):
+        text = self.done("compare", ONE, "-m", self.model(), "--reference", "pressure:TRUE_PS", "--reference", "height",
+                         "--reference", "total:PSFRD+QCFR").stdout
+        self.assertIn("references: pressure:TRUE_PS, height, total:PSFRD+QCFR", text)
+        self.assertIn("residual = hydrostatic height against that of GPS", text)
+        self.assertIn("residual = total pressure of 'PSFRD+QCFR'", text)
+
+    def test_the_total_pressure_of_true_systems_is_one(self):
+        """Two pairs of transducers, of about 0.01 hPa each; static defects cancel, so no law is needed."""
+        result = self.compare("--reference", "total:PSFRD+QCFR")
+        self.assertLess(result["models"][0]["rms_hpa"], 0.05)
+        self.assertIsNone(result["models"][0]["r2"])
 
     def test_static_system(self):
         """Both laws are true, so what is left is the noise of two transducers, each about 0.01 hPa."""

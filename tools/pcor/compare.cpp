@@ -35,7 +35,7 @@ nlohmann::ordered_json as_json(const std::vector<PartStatistics>& parts) {
 }
 
 nlohmann::ordered_json as_json(const ModelComparison& model) {
-  nlohmann::ordered_json result{{"name", model.name}};
+  nlohmann::ordered_json result{{"name", model.name}, {"reference", model.reference}};
   result.update(as_json(model.all));
   result["rms_over_noise"] = model.all.rms_over_noise();
   result["r2"] = model.r_squared;
@@ -61,6 +61,9 @@ nlohmann::ordered_json as_json(const Comparison& comparison) {
   nlohmann::ordered_json result{{"reference", comparison.reference}};
   result["models"] = nlohmann::ordered_json::array();
   for (const ModelComparison& model : comparison.models) result["models"].push_back(as_json(model));
+  for (const Comparison& further : comparison.further) {
+    for (const ModelComparison& model : further.models) result["models"].push_back(as_json(model));
+  }
   const auto line = [](const LineFit& fit) {
     return nlohmann::ordered_json{{"slope", fit.slope},
                                   {"slope_stderr", fit.slope_error},
@@ -70,7 +73,7 @@ nlohmann::ordered_json as_json(const Comparison& comparison) {
                                   {"samples", fit.samples}};
   };
   if (comparison.total_pressure) result["total_pressure"] = line(*comparison.total_pressure);
-  result["static_pressure"] = line(comparison.static_pressure);
+  if (comparison.is_static_pressure) result["static_pressure"] = line(comparison.static_pressure);
   result["masks"] = masks_as_json(comparison.masks);
   nlohmann::ordered_json intervals = nlohmann::ordered_json::array();
   for (const FlightResiduals& flight : comparison.flights) {
@@ -124,6 +127,18 @@ void print_model(const ModelComparison& model, bool with_name) {
              model.r_squared, model.samples_per_independent);
 }
 
+/// Of a further reference: all samples and each regime.
+void print_further(const Comparison& comparison) {
+  fmt::print("\nresidual = {}, reference less model\n", comparison.reference);
+  fmt::print("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));
+  fmt::print("{:<32} {:>8} {:>9} {:>9} {:>9} {:>9} {:>7}\n", "residual, hPa", "samples", "bias", "scatter",
+             "rms", "noise", "ratio");
+  for (const ModelComparison& model : comparison.models) {
+    print_row(comparison.models.size() > 1 ? model.name : "all", model.all);
+    for (const PartStatistics& part : model.regimes) print_row("  " + part.name, part.statistics);
+  }
+}
+
 /// The residual of flight `number` goes to the file asked for, or beside it with the flight's name.
 std::filesystem::path residual_file(const Options& options, std::size_t number) {
   const std::filesystem::path wanted = options.residuals;
@@ -133,9 +148,14 @@ std::filesystem::path residual_file(const Options& options, std::size_t number) 
          (wanted.stem().string() + "-" + flight.stem().string() + wanted.extension().string());
 }
 
-void print(const Comparison& comparison, const Options& options) {
-  fmt::print("residual = static pressure of the reference ({}) less that of the model\n",
-             comparison.reference);
+void print(const Comparison& comparison, const ChosenReferences& references, const Options& options) {
+  print_references(references);
+  if (comparison.is_static_pressure) {
+    fmt::print("residual = static pressure of the reference ({}) less that of the model\n",
+               comparison.reference);
+  } else {
+    fmt::print("residual = {}, reference less model\n", comparison.reference);
+  }
   fmt::print("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));
   if (comparison.models.size() > 1)
     fmt::print("noise is that of the model that leaves least of it, one for all\n");
@@ -147,6 +167,7 @@ void print(const Comparison& comparison, const Options& options) {
         "{:.3f} hPa\n",
         total.slope, total.offset, total.rms);
   }
+  for (const Comparison& further : comparison.further) print_further(further);
   for (const std::string& note : comparison.notes) fmt::print("\nNote: {}.\n", note);
   const auto best = std::min_element(
       comparison.models.begin(), comparison.models.end(),
@@ -188,11 +209,13 @@ void run(const Options& options) {
   for (const std::filesystem::path& output : outputs) require_writable(output);
   JsonResult json(options.common);
   std::vector<Contender> contenders;
+  ChosenReferences references;  // of the first model, as the text tells them
   for (const std::string& path : options.models) {
     const ModelFile model = read_model(path);
-    contenders.push_back(
-        {model.model.name, model,
-         read_references(options.comparison.references, model, flight_paths(options.comparison)).used});
+    ChosenReferences own =
+        read_references(options.comparison.references, model, flight_paths(options.comparison));
+    contenders.push_back({model.model.name, model, own.used});
+    if (contenders.size() == 1) references = std::move(own);
   }
   CompareOptions compare_options;
   compare_options.mask = mask_options(options.comparison);
@@ -211,7 +234,7 @@ void run(const Options& options) {
   }
   if (!options.common.report.empty()) write_report(comparison_report(comparison), options.common.report);
   json.write(as_json(comparison));
-  if (wants_text(options.common)) print(comparison, options);
+  if (wants_text(options.common)) print(comparison, references, options);
 }
 
 }  // namespace

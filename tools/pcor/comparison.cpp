@@ -108,6 +108,13 @@ std::string command_line(const ComparisonOptions& options) {
   return line;
 }
 
+void print_references(const ChosenReferences& references) {
+  std::vector<std::string> names;
+  for (const auto& reference : references.used) names.push_back(reference->name());
+  if (names.size() > 1) fmt::print("references: {}\n", fmt::join(names, ", "));
+  for (const std::string& why_not : references.not_used) fmt::print("not used as a reference: {}\n", why_not);
+}
+
 nlohmann::ordered_json as_json(const Statistics& statistics) {
   return {{"samples", statistics.samples},
           {"bias_hpa", statistics.bias},

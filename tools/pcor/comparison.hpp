@@ -45,6 +45,9 @@ std::string command_line(const ComparisonOptions& options);
 
 std::vector<std::filesystem::path> flight_paths(const ComparisonOptions& options);
 
+/// Prints which references a model is held against and which not, where there are several to tell of.
+void print_references(const ChosenReferences& references);
+
 nlohmann::ordered_json as_json(const Statistics& statistics);
 
 /// Prints what the residual is where flaps are out, on a line of its own; nothing where none are.

@@ -30,11 +30,13 @@ struct WorstInterval {
   std::string regimes;  ///< what was flown, for example "climb, turn"
 };
 
-/// One model held against the reference over all flights.
+/// One model held against one reference over all flights.
 struct ModelComparison {
   std::string name;
+  std::string reference;  ///< as `Reference::name` has it
   Statistics all;
-  /// 1 - sum of squared residuals / sum of squared departures of the reference's delta-p from its mean.
+  /// 1 - sum of squared residuals / sum of squared departures of the reference's delta-p from its mean; NaN
+  /// for a reference that is no static pressure.
   double r_squared = 0.0;
   double samples_per_independent = 1.0;
   std::vector<PartStatistics> regimes;  ///< those that occur, in the order of `Regime`
@@ -62,23 +64,26 @@ struct FlightResiduals {
 };
 
 struct Comparison {
-  std::string reference;  ///< in words
+  std::string reference;           ///< in words
+  bool is_static_pressure = true;  ///< the reference; else the residual is of something else, in hPa
   std::vector<ModelComparison> models;
   std::vector<FlightResiduals> flights;
   /// The total pressures of two systems, of the reference against that of the model: static defects cancel in
   /// it (memo, figure 1). Where the reference is a static system.
   std::optional<LineFit> total_pressure{};
   /// The corrected static pressures, of the reference against that of the first model, as distances from the
-  /// line (memo, figure 2).
+  /// line (memo, figure 2). Where the reference is a static pressure.
   LineFit static_pressure;
   std::array<std::size_t, mask_count> masks{};  ///< samples with each reason, over all flights
   std::vector<std::string> notes;               ///< what a user should know, a sentence each
+  std::vector<Comparison> further{};            ///< with each of the further references
 };
 
 struct CompareOptions {
   MaskOptions mask;
   TimeStamp time_stamp = TimeStamp::begin;
-  std::function<void(std::size_t done, std::size_t total)> progress{};  ///< told after every flight
+  /// Told after every flight with every reference.
+  std::function<void(std::size_t done, std::size_t total)> progress{};
 };
 
 /// A model, and what it is held against.
@@ -88,8 +93,9 @@ struct Contender {
   References references;
 };
 
-/// Holds every contender against the first of its references over the flights. A sample counts where all
-/// models have a residual, so the figures of models can be compared.
+/// Holds every contender against the first of its references over the flights, then against each of the
+/// further ones. A sample counts where all models have a residual, so the figures of models can be compared.
+/// A further reference that leaves no sample is only noted.
 ///
 /// @throws Error if a flight cannot be read, a variable is absent, the flights are of different aircraft, or
 /// no sample is left: the message says which mask took how many.

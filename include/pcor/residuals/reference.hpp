@@ -17,8 +17,10 @@ class ReferenceOnSamples;
 
 /// What a model is held against.
 ///
-/// Every one says what the static pressure really was, so that what a model is off by, the residual, is
-/// p(reference) - p(model) in hPa: positive where delta-p of the model should be larger.
+/// The residual, what a model is off by, is in hPa and has the sign of the reference less the model. Most
+/// references say what the static pressure really was: the residual is positive where delta-p of the model
+/// should be larger. Others say something else that the pressures, the temperature and the speed of a model
+/// let expect: a total pressure, a difference of heights, a speed over the ground.
 ///
 /// A new one is a class in a file of its own in src/residuals/references, and a line in the list in
 /// src/residuals/reference.cpp.
@@ -28,6 +30,12 @@ class Reference {
 
   /// What it is in words, for example "static system 'C-130 PSFRD/QCFR, equation 18'".
   virtual std::string description() const = 0;
+
+  /// Its name in tables and in JSON results, as `--reference` takes it: "lams", "total:PSFRD+QCFR".
+  virtual std::string name() const = 0;
+
+  /// True where the residual is the static pressure of the reference less that of the model.
+  virtual bool is_static_pressure() const { return true; }
 
   /// The model that corrects it, whose parameters can be fitted together with those of the model that is held
   /// against it; null where it has none.
@@ -67,6 +75,28 @@ std::shared_ptr<const Reference> static_system_reference(ModelFile system);
 /// A variable that is a static pressure: of the avionics, or corrected already.
 std::shared_ptr<const Reference> pressure_reference(std::string variable);
 
+/// The total pressure of another pair of the aircraft, corrected by a model of its own: the residual is
+/// (p + q) of the pair less (p + q) of the model, hPa. Static defects cancel; errors of transducers, pitot
+/// tubes and total lines of either remain.
+std::shared_ptr<const Reference> total_pressure_reference(ModelFile system);
+
+/// The heights of GPS: by how much the height that pressure, temperature and humidity of the model say the
+/// aircraft climbed within a minute (hydrostatic equation) departs from that of GPS, in hPa of the pressure
+/// at its end. It sees the temperature and errors of the static pressure that change in a climb.
+///
+/// What it cannot know stays in its noise: the slope of surfaces of one pressure along the track, some metres
+/// in a minute, and the noise of the heights. @param model names altitude and latitude, where it does
+std::shared_ptr<const Reference> height_reference(const ModelFile& model);
+
+/// The speed over the ground along the heading: the true airspeed of the model less the speed over the
+/// ground, without what a wind of the quarter of an hour around it makes of that by the headings flown, in
+/// hPa of delta-p that would change the airspeed as much. It sees the airspeed where headings are turned, as
+/// in reverse headings and circles, and where it changes, as in speed runs.
+///
+/// What it cannot know stays in its noise: how the wind changes within the quarter of an hour. @param model
+/// names heading and ground velocity, where it does
+std::shared_ptr<const Reference> wind_reference(const ModelFile& model);
+
 /// The texts that name a reference, with what each is: "lams (the laser ...), static:OTHER.toml (...) or
 /// ...".
 std::string reference_forms();
@@ -83,9 +113,11 @@ struct ChosenReferences {
   std::vector<std::string> not_used{};  ///< where no text named any: which else there are, and why not these
 };
 
-/// The references that `texts` name; without texts LAMS.
+/// The references that `texts` name; without texts LAMS, and all else that the model and every flight allow:
+/// the total pressure of a second pair of pressures, heights, and wind.
 ///
-/// @throws Error as `read_reference`, or if there is no text and the flights and the model allow none.
+/// @throws Error as `read_reference`, or if there is no text and no LAMS: the others do not tell a static
+/// pressure by themselves.
 ChosenReferences read_references(const std::vector<std::string>& texts, const ModelFile& model,
                                  const std::vector<std::filesystem::path>& flights);
 

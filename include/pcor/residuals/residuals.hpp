@@ -16,9 +16,9 @@ namespace pcor {
 
 /// One model held against one reference on one flight.
 ///
-/// The residual is p(reference) - p(model), hPa. Its parameters are those of the model, in the order of
-/// `Chain::parameters`, and after them those of the reference's model where the reference is a static
-/// system: both can be fitted.
+/// The residual is that of the reference less the model, hPa. Its parameters are those of the model, in the
+/// order of `Chain::parameters`, and after them those of the reference's model where the reference is a
+/// static system: both can be fitted.
 class Residuals {
  public:
   /// @throws Error if the model, or that of the reference, cannot be used on the samples.
@@ -34,8 +34,8 @@ class Residuals {
   /// The parameters as the models' files have them.
   const std::vector<double>& parameters() const;
 
-  /// True for each parameter in which the residual is exactly linear: those of effects of the catalogue at
-  /// the static ports, where delta-p has no lower limit.
+  /// True for each parameter in which the residual is exactly linear: where it is a static pressure, those of
+  /// effects of the catalogue at the static ports, where delta-p has no lower limit.
   const std::vector<bool>& is_linear() const;
 
   /// Which samples take part with the parameters of the files.

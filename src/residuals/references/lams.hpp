@@ -110,6 +110,7 @@ class LamsOnSamples final : public ReferenceOnSamples, private NoisySensor {
 class LamsReference final : public Reference {
  public:
   std::string description() const override { return "LAMS"; }
+  std::string name() const override { return "lams"; }
   bool reads_laser() const override { return true; }
 
   std::unique_ptr<ReferenceOnSamples> on(const FlightSamples& samples,

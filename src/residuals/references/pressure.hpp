@@ -53,6 +53,7 @@ class PressureReference final : public Reference {
   explicit PressureReference(std::string variable) : variable_(std::move(variable)) {}
 
   std::string description() const override { return fmt::format("static pressure {}", variable_); }
+  std::string name() const override { return "pressure:" + variable_; }
   std::vector<std::string> variables() const override { return {variable_}; }
 
   ModelSamples read(const Flight& flight, const std::vector<double>&,

@@ -8,6 +8,7 @@
 
 #include <pcor/residuals/reference.hpp>
 #include "residuals/reference_on_samples.hpp"
+#include "residuals/references/second_system.hpp"
 #include "residuals/samples.hpp"
 
 namespace pcor::internal {
@@ -49,36 +50,21 @@ class StaticSystemOnSamples final : public ReferenceOnSamples {
   const ModelOnSamples& model_;
 };
 
-class StaticSystemReference final : public Reference {
+class StaticSystemReference final : public SecondSystem {
  public:
-  explicit StaticSystemReference(ModelFile system) : system_(std::move(system)) {}
+  using SecondSystem::SecondSystem;
 
-  std::string description() const override { return fmt::format("static system '{}'", system_.model.name); }
-
-  const ModelFile* model() const override { return &system_; }
+  std::string description() const override { return fmt::format("static system '{}'", system().model.name); }
+  std::string name() const override { return "static:" + system().model.name; }
 
   std::shared_ptr<const Reference> with_model(ModelFile system) const override {
     return std::make_shared<StaticSystemReference>(std::move(system));
   }
 
-  std::vector<std::string> variables() const override {
-    std::vector<std::string> names;
-    for (const auto& [role, variable] : system_.variables) names.push_back(variable);
-    return names;
-  }
-
-  ModelSamples read(const Flight& flight, const std::vector<double>& time,
-                    std::vector<std::string>& notes) const override {
-    return read_model_columns(flight, system_, false, time, notes);
-  }
-
   std::unique_ptr<ReferenceOnSamples> on(const FlightSamples& samples,
                                          const ModelOnSamples& model) const override {
-    return std::make_unique<StaticSystemOnSamples>(system_, samples, model);
+    return std::make_unique<StaticSystemOnSamples>(system(), samples, model);
   }
-
- private:
-  ModelFile system_;
 };
 
 }  // namespace pcor::internal

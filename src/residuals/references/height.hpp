@@ -1,0 +1,126 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pcor/physics/constants.hpp>
+#include <pcor/physics/geodesy.hpp>
+#include <pcor/physics/hydrostatic.hpp>
+#include <pcor/physics/moist_air.hpp>
+#include <pcor/words/error.hpp>
+#include "residuals/references/neighbours.hpp"
+#include "roles/recorded_series.hpp"
+
+namespace pcor::internal {
+
+/// How long the aircraft climbs between the heights that are compared, s: long enough that the climb is much
+/// more than the noise of GPS, and short enough that the surfaces of one pressure hardly slope on the way.
+inline constexpr double height_window = 60.0;
+
+/// The residual of sample i, with a and b half a window before and after it, is
+///
+///     r_i = p_i g0/(R T)_i [ sum_a^b dH - (H_b - H_a) ],   dH = hydrostatic_step times the mean temperature
+///
+/// with the geopotential heights H of GPS: where the step of the model is too large, its pressure has fallen
+/// too far. In hPa.
+class HeightOnSamples final : public OfNeighbours<HeightOnSamples> {
+ public:
+  HeightOnSamples(const FlightSamples& samples, const ModelOnSamples& model)
+      : OfNeighbours(model, samples.time.size()),
+        height_(*samples.reference.find(Quantity::altitude)),
+        time_(samples.time),
+        step_(samples.step) {}
+
+  std::size_t reach() const { return static_cast<std::size_t>(std::lround(0.5 * height_window / step_)); }
+
+  template <class S>
+  void find(const Span span, const std::size_t* samples, std::size_t count, const S* parameters,
+            S* out) const {
+    std::vector<S> risen(span.size(), S(0.0));       // m since the first sample
+    std::vector<S> pressure_of_height(span.size());  // hPa/m
+    std::vector<std::size_t> missing_steps(span.size(), 0);
+    S pressure_before;
+    S temperature_before;
+    for (std::size_t k = 0; k < span.size(); ++k) {
+      State<S> state;
+      law().air(span.first + k, parameters, state);
+      const S pressure = state[Quantity::corrected_static_pressure];
+      const S temperature = state[Quantity::ambient_temperature];
+      const S gas_constant = moist_air(state[Quantity::humidity]).gas_constant;
+      pressure_of_height[k] = pressure * S(constants::standard_gravity) / (gas_constant * temperature);
+      if (k > 0) {
+        const S rise = S(0.5) * (temperature_before + temperature) *
+                       hydrostatic_step(pressure_before, pressure, gas_constant);
+        const bool known = is_finite(rise) && is_next(span.first + k);
+        risen[k] = known ? S(risen[k - 1] + rise) : risen[k - 1];
+        missing_steps[k] = missing_steps[k - 1] + (known ? 0 : 1);
+      }
+      pressure_before = pressure;
+      temperature_before = temperature;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      out[i] = missing<S>();
+      if (samples[i] < span.first + reach() || samples[i] + reach() >= span.end) continue;
+      const std::size_t from = samples[i] - span.first - reach();
+      const std::size_t to = from + 2 * reach();
+      if (missing_steps[from] != missing_steps[to]) continue;
+      const double climbed = height_[span.first + to] - height_[span.first + from];
+      out[i] = pressure_of_height[samples[i] - span.first] * (risen[to] - risen[from] - S(climbed));
+    }
+  }
+
+  std::vector<Batch::Input> columns() const override { return {{Quantity::altitude, height_.data()}}; }
+
+ private:
+  bool is_next(std::size_t sample) const { return time_[sample] - time_[sample - 1] < 1.5 * step_; }
+
+  const std::vector<double>& height_;  // geopotential, m
+  const std::vector<double>& time_;
+  double step_;
+};
+
+class HeightReference final : public Reference {
+ public:
+  explicit HeightReference(ModelFile model) : model_(std::move(model)) {}
+
+  std::string description() const override { return "hydrostatic height against that of GPS"; }
+  std::string name() const override { return "height"; }
+  bool is_static_pressure() const override { return false; }
+
+  ModelSamples read(const Flight& flight, const std::vector<double>&,
+                    std::vector<std::string>&) const override {
+    RecordedSeries height = read_role(flight, model_, Quantity::altitude);
+    const RecordedSeries latitude = read_role(flight, model_, Quantity::latitude);
+    if (height.values.empty() || latitude.values.empty()) {
+      throw Error(Error::Code::variable,
+                  flight.path().string() +
+                      ": no height of GPS and latitude with units (GGALT, GGLAT and the like), which the "
+                      "reference height needs; name them in the table [variables] of the model");
+    }
+    for (std::size_t i = 0; i < height.values.size(); ++i)
+      height.values[i] = geopotential_height(latitude.values[i], height.values[i]);
+    ModelSamples samples;
+    samples.columns = {{Quantity::altitude, std::move(height.values)}};
+    samples.variables = {{Quantity::altitude, height.variable}};
+    return samples;
+  }
+
+  std::unique_ptr<ReferenceOnSamples> on(const FlightSamples& samples,
+                                         const ModelOnSamples& model) const override {
+    if (!model.chain().has_temperature()) {
+      throw Error(Error::Code::model,
+                  "the model names no temperature, so it says nothing of heights; give it its "
+                  "recovery_temperature or ambient_temperature in the table [variables]");
+    }
+    return std::make_unique<HeightOnSamples>(samples, model);
+  }
+
+ private:
+  ModelFile model_;
+};
+
+}  // namespace pcor::internal

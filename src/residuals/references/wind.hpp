@@ -1,0 +1,185 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pcor/physics/constants.hpp>
+#include <pcor/words/error.hpp>
+#include "numerics/missing.hpp"
+#include "residuals/ground_velocity.hpp"
+#include "residuals/references/neighbours.hpp"
+#include "roles/recorded_series.hpp"
+
+namespace pcor::internal {
+
+/// How long one wind is taken for, s: that of a pair of reverse headings, or of some circles.
+inline constexpr double wind_window = 900.0;
+
+/// The residual of sample i is
+///
+///     r_i = (d_i - w_i)/s_i,   d = V cos(beta) cos(gamma) - (ground velocity along the heading)
+///
+/// with the true airspeed V of the model, the sideslip beta, the angle of climb gamma, and w the part of d
+/// that a constant wind over the window makes, W_e sin(heading) + W_n cos(heading), by least squares with a
+/// constant beside it, which stays. s is the airspeed that 1 hPa of delta-p takes away, m/s per hPa, for a
+/// given temperature:
+///
+///     s = V/2 (2/7) (1 + q/p)^(-5/7) (p + q)/p^2 / ((1 + q/p)^(2/7) - 1)
+///
+/// Source: memo eq. 5-7, differentiated with the total pressure kept.
+class WindOnSamples final : public OfNeighbours<WindOnSamples> {
+ public:
+  WindOnSamples(const FlightSamples& samples, const ModelOnSamples& model)
+      : OfNeighbours(model, samples.time.size()),
+        along_(*samples.reference.find(Quantity::ground_speed)),
+        heading_(*samples.reference.find(Quantity::heading)),
+        motion_(samples.motion),
+        static_pressure_(*samples.model.find(Quantity::static_pressure)),
+        dynamic_pressure_(*samples.model.find(Quantity::dynamic_pressure)),
+        reach_(static_cast<std::size_t>(std::lround(0.5 * wind_window / samples.step))) {}
+
+  std::size_t reach() const { return reach_; }
+
+  template <class S>
+  void find(const Span span, const std::size_t* samples, std::size_t count, const S* parameters,
+            S* out) const {
+    std::vector<Sums<S>> sums(span.size() + 1);  // over the samples before
+    std::vector<S> difference(span.size(), missing<S>());
+    for (std::size_t k = 0; k < span.size(); ++k) {
+      sums[k + 1] = sums[k];
+      const std::size_t sample = span.first + k;
+      if (!is_flying(sample)) continue;
+      State<S> state;
+      law().air(sample, parameters, state);
+      difference[k] = state[Quantity::corrected_airspeed] * S(along_heading(sample)) - S(along_[sample]);
+      if (is_finite(difference[k])) sums[k + 1].add(heading_[sample], difference[k]);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      out[i] = missing<S>();
+      if (!is_flying(samples[i])) continue;
+      const std::size_t k = samples[i] - span.first;
+      const Sums<S>& before = sums[k - std::min(k, reach())];
+      const Sums<S>& after = sums[std::min(k + reach() + 1, span.size())];
+      const S left = difference[k] - after.wind_along(heading_[samples[i]], before);
+      out[i] = left / S(speed_of_defect(samples[i]));
+    }
+  }
+
+ private:
+  /// Of least squares for the wind and a constant.
+  template <class S>
+  struct Sums {
+    Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+    std::array<S, 3> products{S(0.0), S(0.0), S(0.0)};
+
+    void add(double heading, const S& difference) {
+      const Eigen::Vector3d columns = columns_at(heading, 1.0);
+      moments += columns * columns.transpose();
+      for (std::size_t k = 0; k < 3; ++k)
+        products[k] = products[k] + S(columns[static_cast<Eigen::Index>(k)]) * difference;
+    }
+
+    /// The part of the wind along a heading, m/s, of the samples since `before`.
+    S wind_along(double heading, const Sums& before) const {
+      // On one heading wind and constant are one: a wind is some 30 m/s, an error of the airspeed 1 m/s, and
+      // the mean of all samples is known to 1 m/s.
+      const Eigen::Vector3d prior(1.0 / 900.0, 1.0 / 900.0, 1.0);
+      Eigen::Matrix3d matrix = moments - before.moments;
+      matrix.diagonal() += prior;
+      const Eigen::Vector3d weights = matrix.llt().solve(columns_at(heading, 0.0));
+      S along(0.0);
+      for (std::size_t k = 0; k < 3; ++k)
+        along = along + S(weights[static_cast<Eigen::Index>(k)]) * (products[k] - before.products[k]);
+      return along;
+    }
+
+    static Eigen::Vector3d columns_at(double heading, double constant) {
+      const double angle = heading * constants::radians_per_degree;
+      return {std::sin(angle), std::cos(angle), constant};
+    }
+  };
+
+  /// On the ground wheels make the speed, and slow flow gives none.
+  bool is_flying(std::size_t sample) const {
+    constexpr double least_airspeed = 40.0;  // m/s
+    return !motion_.airspeed.empty() && motion_.airspeed[sample] > least_airspeed;
+  }
+
+  /// The part of the airspeed that is along the heading and level.
+  double along_heading(std::size_t sample) const {
+    double part = 1.0;
+    if (!motion_.sideslip.empty() && std::isfinite(motion_.sideslip[sample]))
+      part = std::cos(motion_.sideslip[sample] * constants::radians_per_degree);
+    if (motion_.vertical_speed.empty()) return part;
+    const double climb = motion_.vertical_speed[sample] / motion_.airspeed[sample];
+    return std::abs(climb) < 1.0 ? part * std::sqrt(1.0 - climb * climb) : part;
+  }
+
+  double speed_of_defect(std::size_t sample) const {
+    const double p = static_pressure_[sample];
+    const double q = dynamic_pressure_[sample];
+    const double ratio = 1.0 + q / p;
+    return motion_.airspeed[sample] / 7.0 * std::pow(ratio, -5.0 / 7.0) * (p + q) / (p * p) /
+           (std::pow(ratio, 2.0 / 7.0) - 1.0);
+  }
+
+  const std::vector<double>& along_;    // ground velocity along the heading, m/s
+  const std::vector<double>& heading_;  // deg
+  const FlightMotion& motion_;
+  const std::vector<double>& static_pressure_;
+  const std::vector<double>& dynamic_pressure_;
+  std::size_t reach_;
+};
+
+class WindReference final : public Reference {
+ public:
+  explicit WindReference(ModelFile model) : model_(std::move(model)) {}
+
+  std::string description() const override { return "airspeed against ground speed and a steady wind"; }
+  std::string name() const override { return "wind"; }
+  bool is_static_pressure() const override { return false; }
+
+  ModelSamples read(const Flight& flight, const std::vector<double>&,
+                    std::vector<std::string>&) const override {
+    RecordedSeries heading = read_role(flight, model_, Quantity::heading);
+    GroundVelocity ground = read_ground_velocity(flight, model_);
+    if (heading.values.empty() || ground.east.empty()) {
+      throw Error(Error::Code::variable,
+                  flight.path().string() +
+                      ": no true heading and velocity over the ground with units (THDG, GGSPD, GGTRK and the "
+                      "like), which the reference wind needs; name them in the table [variables] of the "
+                      "model");
+    }
+    std::vector<double>& along = ground.east;
+    for (std::size_t i = 0; i < along.size(); ++i) {
+      const double angle = heading.values[i] * constants::radians_per_degree;
+      along[i] = ground.east[i] * std::sin(angle) + ground.north[i] * std::cos(angle);
+    }
+    ModelSamples samples;
+    samples.columns = {{Quantity::heading, std::move(heading.values)},
+                       {Quantity::ground_speed, std::move(along)}};
+    return samples;
+  }
+
+  std::unique_ptr<ReferenceOnSamples> on(const FlightSamples& samples,
+                                         const ModelOnSamples& model) const override {
+    if (!model.chain().has_temperature()) {
+      throw Error(
+          Error::Code::model,
+          "the model names no temperature, so it has no airspeed; give it its recovery_temperature or "
+          "ambient_temperature in the table [variables]");
+    }
+    return std::make_unique<WindOnSamples>(samples, model);
+  }
+
+ private:
+  ModelFile model_;
+};
+
+}  // namespace pcor::internal

@@ -1,0 +1,89 @@
+#include <gmock/gmock.h>
+#include <pcor/residuals/reference.hpp>
+#include <pcor/words/error.hpp>
+
+#include <cmath>
+#include <vector>
+
+#include "support/made_air.hpp"
+
+using pcor::Quantity;
+
+namespace {
+
+/// Climbs at 5 m/s.
+pcor::FlightSamples climb() {
+  std::vector<double> height;
+  for (int i = 0; i < 1800; ++i) height.push_back(1000.0 + 5.0 * i);
+  pcor::FlightSamples flight = made::air_flight(height, std::vector<double>(height.size(), 130.0));
+  flight.reference.columns = {{Quantity::altitude, height}};
+  return flight;
+}
+
+std::vector<double> residuals(const pcor::FlightSamples& flight, const pcor::ModelFile& model) {
+  return made::residuals_of(flight, model, *pcor::height_reference(model));
+}
+
+/// p g/(R T), hPa/m.
+double pressure_of_height(double pressure) {
+  return pressure * pcor::constants::standard_gravity /
+         (pcor::constants::gas_constant_dry_air * made::air_temperature);
+}
+
+}  // namespace
+
+TEST(Height, OfTheHydrostaticEquationLeavesNothing) {
+  const std::vector<double> left = residuals(climb(), made::air_model());
+  for (std::size_t i = 30; i + 30 < left.size(); ++i) ASSERT_NEAR(left[i], 0.0, 1e-9) << i;
+  EXPECT_TRUE(std::isnan(left[29])) << "half a minute is needed on either side";
+}
+
+TEST(Height, SeesAThermometerThatIsOffInEveryClimb) {
+  // 300 m in a minute: the warm model takes them for 300 m (1 + 1/260).
+  pcor::FlightSamples flight = climb();
+  for (double& temperature : flight.model.columns[2].second) temperature += 1.0;
+  const std::vector<double> left = residuals(flight, made::air_model());
+  const std::vector<double>& p = *flight.model.find(Quantity::static_pressure);
+  for (const std::size_t i : {200U, 900U, 1500U}) {
+    const double expected = pressure_of_height(p[i]) * 300.0 / (made::air_temperature + 1.0);
+    EXPECT_NEAR(left[i], expected, 1e-6) << i;
+  }
+}
+
+TEST(Height, DoesNotSeeADefectThatIsAConstantPartOfThePressure) {
+  for (const double value : residuals(climb(), made::air_model({{"static-constant", 0.01}}))) {
+    if (std::isnan(value)) continue;
+    ASSERT_NEAR(value, 0.0, 1e-9);
+  }
+}
+
+TEST(Height, SeesAZeroOfTheStaticPressureGrowWithHeight) {
+  // A hPa taken off every reading makes a climb larger, by p d(1/p) in a minute: rho g 300 m / p.
+  const pcor::FlightSamples flight = climb();
+  const std::vector<double> left = residuals(flight, made::air_model({{"psfd-bias", 1.0}}));
+  const std::vector<double>& p = *flight.model.find(Quantity::static_pressure);
+  for (const std::size_t i : {200U, 900U, 1500U})
+    EXPECT_NEAR(left[i], pressure_of_height(p[i]) * 300.0 / p[i], 5e-4) << "to second order; " << i;
+}
+
+TEST(Height, HasTheDerivativesOfItsResiduals) {
+  const pcor::ModelFile model = made::air_model({{"psfd-bias", 0.3}});
+  // Centred differences of a step of 1e-3 hPa are right to 1e-9 / 1e-3.
+  EXPECT_LT(made::derivative_error(climb(), model, *pcor::height_reference(model), 1e-3), 1e-5);
+}
+
+TEST(Height, DoesNotReachOverGapsAndMissingValues) {
+  pcor::FlightSamples flight = climb();
+  flight.model.columns[2].second[900] = std::nan("");
+  for (std::size_t i = 1200; i < flight.time.size(); ++i) flight.time[i] += 100.0;
+  const std::vector<double> left = residuals(flight, made::air_model());
+  for (const std::size_t i : {870U, 900U, 930U, 1171U, 1229U}) EXPECT_TRUE(std::isnan(left[i])) << i;
+  for (const std::size_t i : {869U, 931U, 1169U, 1230U}) EXPECT_FALSE(std::isnan(left[i])) << i;
+}
+
+TEST(Height, AsksForATemperature) {
+  pcor::FlightSamples flight = climb();
+  flight.model.columns.pop_back();
+  flight.model.roles.pop_back();
+  EXPECT_THROW(residuals(flight, made::air_model()), pcor::Error);
+}
