@@ -40,8 +40,8 @@ void find_gain(const FlightSamples& samples, const std::vector<double>& before,
 Compared compared(const Residuals& residuals, const FitTask& task, const Eigen::VectorXd& values,
                   double training_share) {
   const FlightSamples& samples = residuals.samples();
-  const std::vector<double> before = residuals.values(task.start.data());
-  const std::vector<double> after = residuals.values(values.data());
+  const std::vector<double> before = residuals.values(own_parameters(residuals, task, task.start).data());
+  const std::vector<double> after = residuals.values(own_parameters(residuals, task, values).data());
   const std::vector<std::size_t> fitted = used_samples(residuals.mask(), training_share);
   std::vector<std::size_t> held_out = used_samples(residuals.mask());
   held_out.erase(held_out.begin(), held_out.begin() + static_cast<std::ptrdiff_t>(fitted.size()));
@@ -53,6 +53,7 @@ Compared compared(const Residuals& residuals, const FitTask& task, const Eigen::
     const std::vector<double> is = only_at(after, part);
     result.parts.push_back({samples.name, held, sums_of_flight(samples, was, noise).statistics(),
                             sums_of_flight(samples, is, noise).statistics()});
+    result.parts.back().reference = task.reference.name();
     find_gain(samples, was, is, noise, result.parts.back());
     const std::vector<double> means = means_of_blocks(samples, is);
     if (held) {
@@ -64,6 +65,23 @@ Compared compared(const Residuals& residuals, const FitTask& task, const Eigen::
   add(fitted, false);
   add(held_out, true);
   return result;
+}
+
+/// The flights that take part, and those that are held out.
+std::vector<Compared> compared(FitFlights& flights, const Eigen::VectorXd& values) {
+  const FitTask& task = flights.task();
+  std::vector<Compared> each(flights.count());
+  flights.visit([&](std::size_t number, std::size_t, FitFlight& fit) {
+    each[number] = compared(fit.residuals(), task, values, task.options.training_share);
+  });
+  for (const std::filesystem::path& path : task.options.holdout) {
+    const Flight file(path, task.options.time_stamp);
+    const auto samples = std::make_shared<const FlightSamples>(
+        read_samples(file, task.model, task.reference, task.options.mask));
+    const Residuals residuals(samples, task.model, task.reference, task.options.mask);
+    each.push_back(compared(residuals, task, values, 0.0));
+  }
+  return each;
 }
 
 }  // namespace
@@ -78,24 +96,15 @@ double BeforeAndAfter::noise_rms(std::size_t samples) const {
 }
 
 BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& values) {
-  const FitTask& task = flights.task();
-  std::vector<Compared> each(flights.count());
+  std::vector<Compared> each = compared(flights, values);
   flights.visit([&](std::size_t number, std::size_t, FitFlight& fit) {
     const FlightSamples& samples = fit.residuals().samples();
     Compared& one = each[number];
-    one = compared(fit.residuals(), task, values, task.options.training_share);
     one.flaps_out = flaps_out(fit.residuals(), values.data());
     for (const std::string& note : samples.notes) one.notes.push_back(samples.name + ": " + note);
     for (const Interval& interval : samples.intervals)
       one.flown.set(static_cast<std::size_t>(interval.regime));
   });
-  for (const std::filesystem::path& path : task.options.holdout) {
-    const Flight file(path, task.options.time_stamp);
-    const auto samples = std::make_shared<const FlightSamples>(
-        read_samples(file, task.model, task.reference, task.options.mask));
-    const Residuals residuals(samples, task.model, task.reference, task.options.mask);
-    each.push_back(compared(residuals, task, values, 0.0));
-  }
   std::vector<std::vector<double>> fitted;
   ResidualSums with_flaps;
   for (const Compared& one : each) {
@@ -116,6 +125,10 @@ BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& valu
   for (const Compared& one : each) {
     all.notes.insert(all.notes.end(), one.notes.begin(), one.notes.end());
     all.flown |= one.flown;
+  }
+  for (const std::unique_ptr<FitFlights>& with : flights.further()) {
+    for (const Compared& one : compared(*with, values))
+      all.further.insert(all.further.end(), one.parts.begin(), one.parts.end());
   }
   return all;
 }

@@ -11,6 +11,7 @@ namespace pcor::internal {
 /// The flights with the coefficients of the files and with those of the fit.
 struct BeforeAndAfter {
   std::vector<FlightFit> flights{};  ///< the parts that were fitted and those that were held out
+  std::vector<FlightFit> further{};  ///< the same with each further reference
   std::vector<std::string> notes{};  ///< of flights that took part
   RegimeSet flown{};                 ///< in flights that took part
   Statistics flaps_out{};            ///< of flights that took part

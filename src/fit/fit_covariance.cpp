@@ -84,12 +84,13 @@ struct Sums {
   std::vector<Eigen::MatrixXd> derivatives;  ///< of the scores by all parameters, of each block
   std::vector<Eigen::VectorXd> score;        ///< of each block
   Eigen::MatrixXd covariance;                ///< of the sum of the scores
-  double influence_ratio = 1.0;              ///< of the variance of the influence to the slope of the loss
+  double squares = 0.0;                      ///< of the influence
+  double slopes = 0.0;                       ///< of the loss
 };
 
-/// @param all the parameters of all equations and those that are held
-Sums sums_of(const FitEquations& equations, const std::vector<std::size_t>& all, const Blocks& blocks) {
-  FitFlights& flights = *equations.flights;
+/// Of one reference. @param all the parameters of all equations and those that are held
+Sums sums_of(FitFlights& flights, const FitEquations& equations, const std::vector<std::size_t>& all,
+             const Blocks& blocks) {
   const Solution& solution = equations.solution;
   const std::unique_ptr<ceres::LossFunction> loss =
       loss_function(flights.task().options.loss, solution.deviation);
@@ -173,7 +174,28 @@ Sums sums_of(const FitEquations& equations, const std::vector<std::size_t>& all,
       whole.score[b] += each[f].score[b];
     }
   }
-  whole.influence_ratio = square_sum / slope_sum;
+  whole.squares = square_sum;
+  whole.slopes = slope_sum;
+  return whole;
+}
+
+/// Of all references together: the innovations of one tell nothing of those of another.
+Sums sums_of(const FitEquations& equations, const std::vector<std::size_t>& all, const Blocks& blocks) {
+  Sums whole;
+  for (FitFlights* const flights : equations.flights->joint()) {
+    const Sums more = sums_of(*flights, equations, all, blocks);
+    if (whole.score.empty()) {
+      whole = more;
+      continue;
+    }
+    for (std::size_t b = 0; b < blocks.count(); ++b) {
+      whole.derivatives[b] += more.derivatives[b];
+      whole.score[b] += more.score[b];
+    }
+    whole.covariance += more.covariance;
+    whole.squares += more.squares;
+    whole.slopes += more.slopes;
+  }
   return whole;
 }
 
@@ -230,7 +252,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations,
     if (first + own < fitted) {
       // The last equations weigh all samples by the inverse covariance of the noise, so what the noise does
       // to them and to an earlier stage together is the derivative of that stage by their parameters.
-      const Eigen::MatrixXd across = sums.influence_ratio * here.middleCols(fitted - of_last, of_last);
+      const Eigen::MatrixXd across = sums.squares / sums.slopes * here.middleCols(fitted - of_last, of_last);
       score.block(first, fitted - of_last, own, of_last) = across;
       score.block(fitted - of_last, first, of_last, own) = across.transpose();
     }

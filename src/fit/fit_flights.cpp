@@ -7,6 +7,7 @@
 #include <cmath>
 #include <deque>
 #include <future>
+#include <iterator>
 #include <thread>
 
 #include <pcor/words/error.hpp>
@@ -24,6 +25,21 @@ std::size_t bytes_of(const FlightSamples& samples, const Reference& reference) {
 }
 
 }  // namespace
+
+std::size_t shared_parameters(const Residuals& residuals, const FitTask& task) {
+  std::size_t of_model = task.model.model.additions.size();
+  for (const ModelEffect& effect : task.model.model.effects) of_model += effect.parameters.size();
+  return task.shares_system ? residuals.parameters().size() : of_model;
+}
+
+Eigen::VectorXd own_parameters(const Residuals& residuals, const FitTask& task,
+                               const Eigen::VectorXd& parameters) {
+  const std::vector<double>& file = residuals.parameters();
+  Eigen::VectorXd own = Eigen::Map<const Eigen::VectorXd>(file.data(), as_index(file.size()));
+  const Eigen::Index shared = as_index(shared_parameters(residuals, task));
+  own.head(shared) = parameters.head(shared);
+  return own;
+}
 
 FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask& task, const FitSetup& setup)
     : task_(&task),
@@ -50,7 +66,7 @@ FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask
                 kept_.end());
     for (const std::size_t i : kept_) offset_.push_back(inside[i]);
   }
-  linear_ = task.reference.model() != nullptr ||
+  linear_ = task.reference.model() != nullptr || !task.reference.is_static_pressure() ||
             std::all_of(setup.wanted.begin(), setup.wanted.end(),
                         [this](std::size_t parameter) { return residuals_.is_linear()[parameter]; });
   if (const auto common = residuals_.at_common_pressures())
@@ -118,10 +134,26 @@ void FitFlight::evaluate(const Residuals& residuals, std::size_t first, std::siz
                          const Eigen::VectorXd& parameters, const std::vector<std::size_t>& wanted,
                          double* residual, double* derivatives) const {
   const std::size_t* const samples = kept_.data() + first;
+  const Eigen::VectorXd own = own_parameters(residuals, *task_, parameters);
+  const std::size_t shared = shared_parameters(residuals, *task_);
+  std::vector<std::size_t> known;
+  std::copy_if(wanted.begin(), wanted.end(), std::back_inserter(known),
+               [shared](std::size_t parameter) { return parameter < shared; });
   if (linear_) {
-    residuals.evaluate(samples, count, parameters.data(), wanted, residual, derivatives);
+    residuals.evaluate(samples, count, own.data(), known, residual, derivatives);
   } else {
-    residuals.evaluate_at_sensor(samples, count, parameters.data(), wanted, residual, derivatives);
+    residuals.evaluate_at_sensor(samples, count, own.data(), known, residual, derivatives);
+  }
+  // Nothing depends on what this reference does not know.
+  std::size_t from = known.size();
+  for (std::size_t k = wanted.size(); k-- > 0 && from <= k;) {
+    double* const column = derivatives + k * count;
+    if (wanted[k] < shared) {
+      --from;
+      std::copy_n(derivatives + from * count, count, column);
+    } else {
+      std::fill_n(column, count, 0.0);
+    }
   }
 }
 
@@ -246,6 +278,34 @@ FitFlights::FitFlights(std::vector<FlightSource> sources, const FitTask& task, F
     offsets_ += offsets[i];
     for (std::size_t m = 0; m < mask_count; ++m) masks_[m] += masks[i][m];
   }
+  if (!setup_.regimes.empty()) return;
+  for (const FitTask& with : task_.further) {
+    further_.push_back(std::make_unique<FitFlights>(sources_, with, setup_));
+    if (further_.back()->sees_parameters()) seeing_.push_back(further_.back().get());
+  }
+}
+
+/// Whether any derivative is not zero, and the bins are enough to find the noise.
+bool FitFlights::sees_parameters() {
+  constexpr std::size_t fewest_bins = 100;
+  if (bins_ < fewest_bins) return false;
+  std::vector<double> largest(count(), 0.0);
+  visit([&](std::size_t number, std::size_t, FitFlight& fit) {
+    const Eigen::MatrixXd rows = fit.rows(setup_.values, Eigen::VectorXd());
+    if (rows.rows() > 0)
+      largest[number] = rows.leftCols(as_index(setup_.wanted.size())).cwiseAbs().maxCoeff();
+  });
+  return std::any_of(largest.begin(), largest.end(), [](double each) { return each > 0.0; });
+}
+
+std::vector<FitFlights*> FitFlights::joint() {
+  std::vector<FitFlights*> all{this};
+  all.insert(all.end(), seeing_.begin(), seeing_.end());
+  return all;
+}
+
+bool FitFlights::keeps_derivatives() const {
+  return task_.reference.model() != nullptr || !task_.reference.is_static_pressure() || !seeing_.empty();
 }
 
 std::shared_ptr<const FlightSamples> FitFlights::samples_of(std::size_t number) const {
@@ -348,6 +408,13 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const Eigen::Vec
     whole.bins += part.bins;
     if (part.bins > 0) curvature += part.curvature * static_cast<double>(part.bins);
   }
+  for (FitFlights* const other : seeing_) {
+    const Reduction more = other->reduce(parameters, offsets, loss);
+    sum.add(more.factor);
+    whole.cost += more.cost;
+    whole.bins += more.bins;
+    curvature += more.curvature * static_cast<double>(more.bins);
+  }
   whole.curvature = curvature / static_cast<double>(whole.bins);
   whole.factor = sum.factor();
   whole.valid = std::isfinite(whole.cost) && whole.factor.allFinite();
@@ -368,6 +435,7 @@ void FitFlights::prepare(const Eigen::VectorXd& parameters, const Eigen::VectorX
   // Flights that are read again are prepared again, at the same parameters.
   prepared_parameters_ = parameters;
   prepared_offsets_ = offsets;
+  for (FitFlights* const other : seeing_) other->prepare(parameters, offsets);
   visit([&](std::size_t number, std::size_t first_offset, FitFlight& fit) {
     if (!cache_[number]) return;
     fit.prepare(parameters, own(offsets, first_offset, fit));
@@ -377,6 +445,7 @@ void FitFlights::prepare(const Eigen::VectorXd& parameters, const Eigen::VectorX
 
 void FitFlights::measure_noise(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets,
                                bool drift) {
+  for (FitFlights* const other : seeing_) other->measure_noise(parameters, offsets, drift);
   if (!shares_noise_) noise_.reset();  // what is found anew need not be applied before
   prepare(parameters, offsets);
   if (shares_noise_) return;
@@ -408,7 +477,8 @@ double FitFlights::drift_rms() const {
   return std::sqrt(squares);
 }
 
-double FitFlights::deviation(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) {
+std::vector<double> FitFlights::innovations(const Eigen::VectorXd& parameters,
+                                            const Eigen::VectorXd& offsets) {
   std::vector<std::vector<double>> parts(count());
   visit([&](std::size_t number, std::size_t first_offset, FitFlight& fit) {
     const Eigen::VectorXd innovations =
@@ -417,6 +487,15 @@ double FitFlights::deviation(const Eigen::VectorXd& parameters, const Eigen::Vec
   });
   std::vector<double> all;
   for (const std::vector<double>& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+double FitFlights::deviation(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) {
+  std::vector<double> all;
+  for (FitFlights* const each : joint()) {
+    const std::vector<double> more = each->innovations(parameters, offsets);
+    all.insert(all.end(), more.begin(), more.end());
+  }
   return robust_deviation(std::move(all));
 }
 

@@ -47,12 +47,20 @@ struct FitNoise {
   std::vector<std::vector<double>> time{};  ///< of each flight
 };
 
-/// One flight of a fit: the samples that take part, in bins of a few seconds, and their residuals and
-/// derivatives in units of the noise and without its memory.
+/// How many of the first parameters of a fit the residuals have as their first.
+std::size_t shared_parameters(const Residuals& residuals, const FitTask& task);
+
+/// The parameters of residuals, as a fit has them where it has them, else as their file.
+Eigen::VectorXd own_parameters(const Residuals& residuals, const FitTask& task,
+                               const Eigen::VectorXd& parameters);
+
+/// One flight of a fit with one reference: the samples that take part, in bins of a few seconds, and their
+/// residuals and derivatives in units of the noise and without its memory.
 ///
 /// Derivatives by the coefficients of two static systems are those at common pressures
 /// (`Residuals::at_common_pressures`), and stay until the flight is prepared again: the solution is where
-/// they are at right angles to the residual, which is a method of instruments, not of least squares.
+/// they are at right angles to the residual, which is a method of instruments, not of least squares. Those of
+/// residuals that are no static pressure stay as well: they hardly change, and take long to find.
 class FitFlight {
  public:
   FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask& task, const FitSetup& setup);
@@ -148,6 +156,16 @@ class FitFlights {
   const FitTask& task() const { return task_; }
   const FitSetup& setup() const { return setup_; }
 
+  /// The same flights with each further reference.
+  const std::vector<std::unique_ptr<FitFlights>>& further() const { return further_; }
+
+  /// These and those of the further references that see some of the wanted parameters: what is fitted. What
+  /// is said of flights, samples, masks and single figures is of the first reference.
+  std::vector<FitFlights*> joint();
+
+  /// True where derivatives stay until the flights are prepared again.
+  bool keeps_derivatives() const;
+
   std::size_t count() const { return sources_.size(); }
 
   /// What a flight is called.
@@ -171,7 +189,7 @@ class FitFlights {
   Reduction reduce(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets,
                    const ceres::LossFunction* loss);
 
-  /// The factor of rows (derivatives, residual) in hPa, all samples alike.
+  /// The factor of rows (derivatives, residual) in hPa, all samples alike, of the first reference.
   Eigen::MatrixXd unweighted_factor(const Eigen::VectorXd& parameters);
 
   /// Prepares every flight at these parameters; the noise stays.
@@ -188,6 +206,7 @@ class FitFlights {
   void share_noise(const FitFlights& others) {
     noise_ = others.noise_;
     shares_noise_ = true;
+    for (std::size_t i = 0; i < further_.size(); ++i) further_[i]->share_noise(*others.further_[i]);
   }
 
   bool shares_noise() const { return shares_noise_; }
@@ -195,7 +214,11 @@ class FitFlights {
   /// The robust deviation of the innovations; 1 where the noise is right.
   double deviation(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets);
 
+  /// The innovations.
+  std::vector<double> innovations(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets);
+
  private:
+  bool sees_parameters();
   std::shared_ptr<const FlightSamples> samples_of(std::size_t number) const;
   std::shared_ptr<FitFlight> made(std::size_t number, std::shared_ptr<const FlightSamples> samples);
   Eigen::VectorXd own(const Eigen::VectorXd& offsets, std::size_t first, const FitFlight& fit) const {
@@ -218,6 +241,8 @@ class FitFlights {
   bool shares_noise_ = false;
   Eigen::VectorXd prepared_parameters_;
   Eigen::VectorXd prepared_offsets_;
+  std::vector<std::unique_ptr<FitFlights>> further_;
+  std::vector<FitFlights*> seeing_;  // of the further ones, those that see some parameter
 };
 
 }  // namespace pcor::internal

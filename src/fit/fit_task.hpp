@@ -17,6 +17,11 @@ struct FitTask {
   Eigen::VectorXd start;  ///< their values in the files
   Eigen::MatrixXd doubt;  ///< the covariance of these values as the files state it; zero where they do not
   std::function<void()> tell;  ///< to be called after every pass over the flights
+  /// The same fit with each of the further references; without such of their own.
+  std::vector<FitTask> further{};
+  /// Whether the parameters after those of the model are of this reference's system, too. Those of a system
+  /// that only a further reference reads stay as its file has them.
+  bool shares_system = true;
 
   bool uses_prior() const { return options.use_prior || options.fit_reference; }
 };

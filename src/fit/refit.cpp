@@ -33,7 +33,8 @@ void require_sense(const Sources& sources, const Reference& reference, const Ref
   if (sources.empty()) throw Error("no flight to fit; give at least one");
   if (options.fit_reference && reference.model() == nullptr) {
     throw Error(
-        "only a static system can be fitted together with the model; give --reference static:OTHER.toml");
+        "only a static system can be fitted together with the model, and it is the first of the references; "
+        "give --reference static:OTHER.toml");
   }
   if (!(options.training_share > 0.0 && options.training_share <= 1.0)) {
     throw Error("the share of samples that is fitted has to be above 0 and at most 1");
@@ -62,7 +63,14 @@ void require_one_kind(const Sources& sources, const RefitOptions& options) {
   require_one_aircraft(aircraft);
 }
 
-FitTask task_of(const ModelFile& model, const Reference& reference, const RefitOptions& options) {
+/// Whether two references are of one system, and have its law.
+bool share_system(const Reference& a, const Reference& b) {
+  if (a.model() == nullptr || b.model() == nullptr) return false;
+  return a.model()->model.name == b.model()->model.name && a.model()->variables == b.model()->variables;
+}
+
+FitTask task_of(const ModelFile& model, const References& references, const RefitOptions& options) {
+  const Reference& reference = first_of(references);
   FitTask task{model, reference, options, fit_parameters(model, reference, options), {}, {}, {}};
   task.doubt = stated_covariance(model, reference);
   task.start.resize(as_index(task.parameters.size()));
@@ -71,6 +79,11 @@ FitTask task_of(const ModelFile& model, const Reference& reference, const RefitO
     ++passes;
     if (progress) progress(std::min(passes, passes_expected - 1), passes_expected);
   };
+  for (std::size_t i = 1; i < references.size(); ++i) {
+    FitTask with{model, *references[i], options, task.parameters, task.start, task.doubt, [] {}};
+    with.shares_system = share_system(reference, *references[i]);
+    task.further.push_back(std::move(with));
+  }
   return task;
 }
 
@@ -215,21 +228,37 @@ std::vector<std::string> notes_of(const RefitResult& result, const FitTask& task
   return notes;
 }
 
-RefitResult fit(const Sources& sources, const ModelFile& model, const Reference& reference,
+/// "LAMS, hydrostatic height against that of GPS": what was fitted.
+std::string reference_text(FitFlights& flights) {
+  std::vector<std::string> descriptions;
+  for (const FitFlights* const each : flights.joint())
+    descriptions.push_back(each->task().reference.description());
+  return fmt::format("{}", fmt::join(descriptions, ", "));
+}
+
+/// The factor of rows (derivatives, residual) of all references, in hPa, all samples alike.
+Reduction unweighted(FitFlights& flights, const Eigen::VectorXd& values) {
+  TriangularFactor sum(as_index(flights.setup().wanted.size()) + 1);
+  for (FitFlights* const each : flights.joint()) sum.add(each->unweighted_factor(values));
+  Reduction result;
+  result.factor = sum.factor();
+  return result;
+}
+
+RefitResult fit(const Sources& sources, const ModelFile& model, const References& references,
                 const RefitOptions& options) {
+  const Reference& reference = first_of(references);
   require_sense(sources, reference, options);
   require_one_kind(sources, options);
-  const FitTask task = task_of(model, reference, options);
+  const FitTask task = task_of(model, references, options);
   const Fitted fitted = fit_in_stages(sources, task);
   const Solution& solution = fitted.solution;
   FitFlights& flights = *fitted.flights;
 
   RefitResult result;
-  result.reference_text = reference.description();
+  result.reference_text = reference_text(flights);
   result.masks = flights.masks();
-  Reduction alike;
-  alike.factor = flights.unweighted_factor(solution.values);
-  result.condition_number = condition_number(alike, task, fitted.parameters);
+  result.condition_number = condition_number(unweighted(flights, solution.values), task, fitted.parameters);
   FitCovariance covariance = fit_covariance(fitted.equations, fitted.held);
   result.jackknife_parts = covariance.blocks;
   // Slow changes that are followed are in no model of the noise; the jackknife sees them.
@@ -252,6 +281,7 @@ RefitResult fit(const Sources& sources, const ModelFile& model, const Reference&
   BeforeAndAfter compared = before_and_after(flights, solution.values);
   result.noise_rms = compared.noise_rms(result.samples);
   result.flights = std::move(compared.flights);
+  result.further = std::move(compared.further);
   result.flaps_out = compared.flaps_out;
   list_coefficients(result, task, fitted, covariance);
   result.drift_rms = flights.drift_rms();
@@ -271,12 +301,12 @@ RefitResult fit(const Sources& sources, const ModelFile& model, const Reference&
 /// A fit that takes slow changes for drift, and where that leaves more than the coefficients of the file do,
 /// one that follows them: then they are what the model lacks.
 RefitResult fit_with_or_without_drift(const Sources& sources, const ModelFile& model,
-                                      const Reference& reference, const RefitOptions& options) {
-  RefitResult result = fit(sources, model, reference, options);
+                                      const References& references, const RefitOptions& options) {
+  RefitResult result = fit(sources, model, references, options);
   if (result.worse.empty() || !options.drift || !(result.drift_rms > 0.0)) return result;
   RefitOptions following = options;
   following.drift = false;
-  RefitResult other = fit(sources, model, reference, following);
+  RefitResult other = fit(sources, model, references, following);
   if (!other.worse.empty()) return result;
   other.warnings.insert(
       other.warnings.begin(),
@@ -294,14 +324,15 @@ RefitResult refit(const std::vector<std::filesystem::path>& flights, const Model
                   const References& references, const RefitOptions& options) {
   Sources sources;
   for (const std::filesystem::path& path : flights) sources.push_back({path, nullptr});
-  return fit_with_or_without_drift(sources, model, first_of(references), options);
+  return fit_with_or_without_drift(sources, model, references, options);
 }
 
 RefitResult refit(const std::vector<std::shared_ptr<const FlightSamples>>& flights, const ModelFile& model,
                   const References& references, const RefitOptions& options) {
   Sources sources;
   for (const std::shared_ptr<const FlightSamples>& samples : flights) sources.push_back({{}, samples});
-  return fit_with_or_without_drift(sources, model, first_of(references), options);
+  first_of(references);
+  return fit_with_or_without_drift(sources, model, {references.front()}, options);
 }
 
 }  // namespace pcor

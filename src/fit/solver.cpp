@@ -97,7 +97,7 @@ class Solver {
     for (int round = 0; round < rounds; ++round) {
       const Eigen::VectorXd before = unknowns_;
       const bool settled = settles_with(loss);
-      if (task_.reference.model() == nullptr) {
+      if (!flights_.keeps_derivatives()) {
         if (settled) break;
         continue;
       }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -108,6 +109,18 @@ nlohmann::ordered_json effects_as_json(const std::vector<FittedParameter>& param
 
 using tool::as_json;
 
+nlohmann::ordered_json as_json(const std::vector<FlightFit>& flights) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const FlightFit& flight : flights) {
+    json.push_back({{"name", flight.flight},
+                    {"reference", flight.reference},
+                    {"holdout", flight.holdout},
+                    {"before", as_json(flight.before)},
+                    {"after", as_json(flight.after)}});
+  }
+  return json;
+}
+
 nlohmann::ordered_json as_json(const RefitResult& result) {
   nlohmann::ordered_json json;
   json["effects"] = effects_as_json(result.parameters);
@@ -128,13 +141,8 @@ nlohmann::ordered_json as_json(const RefitResult& result) {
   for (const Omission& omission : result.omissions)
     json["omissions"].push_back(
         {{"effect", omission.effect}, {"rms_hpa", omission.rms}, {"r2", omission.r_squared}});
-  json["flights"] = nlohmann::ordered_json::array();
-  for (const FlightFit& flight : result.flights) {
-    json["flights"].push_back({{"name", flight.flight},
-                               {"holdout", flight.holdout},
-                               {"before", as_json(flight.before)},
-                               {"after", as_json(flight.after)}});
-  }
+  json["flights"] = as_json(result.flights);
+  json["further"] = as_json(result.further);
   json["masks"] = masks_as_json(result.masks);
   if (!result.worse.empty()) json["worse"] = result.worse;
   json["warnings"] = result.warnings;
@@ -143,17 +151,29 @@ nlohmann::ordered_json as_json(const RefitResult& result) {
   return json;
 }
 
-void print_flights(const RefitResult& result) {
+void print_flights(const std::vector<FlightFit>& flights) {
   fmt::print("\n{:<32} {:>8} {:>10} {:>10} {:>10} {:>10} {:>9}\n", "flight, hPa", "samples", "rms before",
              "rms after", "bias after", "scatter", "noise");
-  for (const FlightFit& flight : result.flights) {
+  for (const FlightFit& flight : flights) {
     fmt::print("{:<32} {:>8} {:>10.3f} {:>10.3f} {:>+10.3f} {:>10.3f} {:>9.3f}\n",
                flight.flight + (flight.holdout ? " (held out)" : ""), flight.after.samples, flight.before.rms,
                flight.after.rms, flight.after.bias, flight.after.scatter(), flight.after.noise_rms);
   }
 }
 
-void print_result(const RefitResult& result) {
+/// The flights with each further reference.
+void print_further(const std::vector<FlightFit>& further) {
+  for (auto first = further.begin(); first != further.end();) {
+    const auto end = std::find_if(
+        first, further.end(), [&](const FlightFit& flight) { return flight.reference != first->reference; });
+    fmt::print("\nreference {}", first->reference);
+    print_flights({first, end});
+    first = end;
+  }
+}
+
+void print_result(const RefitResult& result, const ChosenReferences& references) {
+  print_references(references);
   for (const std::string& warning : result.warnings) fmt::print("Warning: {}.\n\n", warning);
   fmt::print("reference: {}\n", result.reference_text);
   fmt::print("fitted to {} samples; not used: {}\n", result.samples, mask_text(result.masks));
@@ -196,7 +216,8 @@ void print_result(const RefitResult& result) {
       fmt::print("  {} and {}: {:+.3f}\n", result.covariance_names[b], result.covariance_names[a], r);
     }
   }
-  print_flights(result);
+  print_flights(result.flights);
+  print_further(result.further);
   for (const std::string& note : result.notes) fmt::print("\nNote: {}.\n", note);
 }
 
@@ -220,7 +241,11 @@ void write_fit_report(const RefitResult& result, const ModelFile& model, const R
   std::vector<std::filesystem::path> flights = flight_paths(options.comparison);
   flights.insert(flights.end(), options.holdout.begin(), options.holdout.end());
   References fitted = references;
-  if (result.reference) fitted.front() = fitted.front()->with_model(*result.reference);
+  for (std::shared_ptr<const Reference>& reference : fitted) {
+    const ModelFile* const system = reference->model();
+    if (result.reference && system != nullptr && system->variables == result.reference->variables)
+      reference = reference->with_model(*result.reference);
+  }
   const bool holds_out = !options.holdout.empty() || options.training_share < 1.0;
   const std::string part = holds_out ? ", fitted and held-out samples" : "";
   const Comparison comparison = compare(
@@ -239,18 +264,18 @@ void run(const Options& options) {
     require_writable(output);
   JsonResult json(options.common);
   const ModelFile model = read_model(options.model);
-  const References references =
-      read_references(options.comparison.references, model, flight_paths(options.comparison)).used;
+  const ChosenReferences references =
+      read_references(options.comparison.references, model, flight_paths(options.comparison));
   RefitOptions refit_with = refit_options(options);
   RefitResult result;
   {
     Progress bar("fitting", !options.common.quiet);
     refit_with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
-    result = refit(flight_paths(options.comparison), model, references, refit_with);
+    result = refit(flight_paths(options.comparison), model, references.used, refit_with);
   }
-  if (!options.common.report.empty()) write_fit_report(result, model, references, options);
+  if (!options.common.report.empty()) write_fit_report(result, model, references.used, options);
   json.write(as_json(result));
-  if (wants_text(options.common)) print_result(result);
+  if (wants_text(options.common)) print_result(result, references);
   refuse_worse(result.worse, options.force, result.model);
   if (result.reference) refuse_worse(result.worse, options.force, *result.reference);
   save_model(result.model, options.output, inputs);

@@ -88,6 +88,7 @@ struct FlightFit {
   /// between minutes.
   double gain = 0.0;
   double gain_error = 0.0;
+  std::string reference{};  ///< as `Reference::name` has it
 };
 
 struct RefitResult {
@@ -115,6 +116,7 @@ struct RefitResult {
   std::size_t jackknife_parts = 0;  ///< flights, or parts of flights, that were left out one after another
   std::vector<Omission> omissions{};
   std::vector<FlightFit> flights{};
+  std::vector<FlightFit> further{};  ///< the same with each further reference, flight by flight
   Statistics
       flaps_out;  ///< of samples that are in no fit because flaps are out, with the fitted coefficients
   std::string reference_text{};
@@ -124,7 +126,9 @@ struct RefitResult {
   std::vector<std::string> notes{};     ///< what a user should know, a sentence each, the gravest first
 };
 
-/// Fits the free coefficients of `model` to the flights.
+/// Fits the free coefficients of `model` to the flights, with all references at once: the sum of their
+/// likelihoods, each with a noise of its own. A reference that no free coefficient changes takes no part.
+/// Figures of the result that are of one residual are those of the first reference.
 ///
 /// Generalised least squares with robust weights: residuals and derivatives are averaged over four seconds
 /// and whitened by one model of the noise (an autoregression whose level changes every five minutes, and slow
@@ -139,7 +143,7 @@ struct RefitResult {
 RefitResult refit(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
                   const References& references, const RefitOptions& options = {});
 
-/// As above, for flights in memory.
+/// As above, for flights in memory, which hold what the first reference reads: the others take no part.
 RefitResult refit(const std::vector<std::shared_ptr<const FlightSamples>>& flights, const ModelFile& model,
                   const References& references, const RefitOptions& options = {});
 

@@ -1,0 +1,91 @@
+#include <gmock/gmock.h>
+#include <pcor/fit/refit.hpp>
+#include <pcor/roles/with_effects.hpp>
+#include <pcor/simulate/simulate.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "support/temporary_directory.hpp"
+
+using pcor::FittedParameter;
+using pcor::ModelFile;
+using pcor::References;
+using pcor::RefitResult;
+
+namespace {
+
+const std::filesystem::path scenarios = std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
+
+constexpr double gain = 0.01;
+
+/// A quarter of an hour in which QCF reads 1 % too much.
+const std::filesystem::path& flight_file() {
+  static const pcor::test::TemporaryDirectory directory;
+  static const std::filesystem::path path = [] {
+    std::ifstream file(scenarios / "c130-short.toml");
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    const std::string effect = "\n[[effect]]\nid = \"qcf-gain\"\non = \"PSFD\"\ngain = 0.01\n";
+    pcor::simulate_flight(pcor::parse_scenario(text + effect, "c130-short"), directory / "short.nc");
+    return directory / "short.nc";
+  }();
+  return path;
+}
+
+ModelFile law() { return pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
+
+ModelFile law_with_gain() { return pcor::with_effects(law(), {pcor::neutral_effect("qcf-gain")}, {}); }
+
+RefitResult fit(const ModelFile& model, const std::vector<std::string>& references) {
+  return pcor::refit({flight_file()}, model, pcor::read_references(references, model, {}).used);
+}
+
+const FittedParameter& parameter(const RefitResult& fit, const std::string& name) {
+  return *std::find_if(fit.parameters.begin(), fit.parameters.end(),
+                       [&name](const FittedParameter& each) { return each.name == name; });
+}
+
+}  // namespace
+
+TEST(SeveralReferences, FindTogetherWhatOneCannotTell) {
+  // The laser takes a gain of QCF for static-qp; total pressures do not.
+  const FittedParameter alone = parameter(fit(law_with_gain(), {"lams"}), "qcf-gain.gain");
+  const FittedParameter both = parameter(fit(law_with_gain(), {"lams", "total:PSFRD+QCFR"}), "qcf-gain.gain");
+  EXPECT_FALSE(alone.standard_error < 10.0 * both.standard_error) << "alone it may end at a bound";
+  EXPECT_NEAR(both.value, gain, 4.0 * both.standard_error) << "once in 16,000";
+  EXPECT_LT(std::abs(both.value - gain), 0.1 * gain);
+}
+
+TEST(SeveralReferences, ThatSeeNoCoefficientChangeNothing) {
+  const RefitResult alone = fit(law(), {"lams"});
+  const RefitResult both = fit(law(), {"lams", "total:PSFRD+QCFR"});
+  for (std::size_t p = 0; p < alone.parameters.size(); ++p) {
+    EXPECT_EQ(both.parameters[p].value, alone.parameters[p].value);
+    EXPECT_EQ(both.parameters[p].standard_error, alone.parameters[p].standard_error);
+  }
+  EXPECT_EQ(both.reference_text, "LAMS");
+  ASSERT_EQ(both.further.size(), 1U);
+  EXPECT_EQ(both.further.front().reference, "total:PSFRD+QCFR");
+  // 1 % of some 65 hPa.
+  EXPECT_NEAR(both.further.front().after.bias, -0.65, 0.25);
+  EXPECT_EQ(both.further.front().after.rms, both.further.front().before.rms);
+}
+
+TEST(SeveralReferences, TellSingleFiguresOfTheFirst) {
+  const RefitResult alone = fit(law(), {"pressure:TRUE_PS"});
+  const RefitResult both = fit(law(), {"pressure:TRUE_PS", "lams"});
+  EXPECT_EQ(both.samples, alone.samples);
+  EXPECT_EQ(both.masks, alone.masks);
+  EXPECT_EQ(both.flights.size(), 1U);
+  EXPECT_EQ(both.further.size(), 1U);
+  EXPECT_THAT(both.reference_text, testing::AllOf(testing::HasSubstr("TRUE_PS"), testing::HasSubstr("LAMS")));
+  // The laser errs by 30 times as much as the transducer.
+  for (std::size_t p = 0; p < alone.parameters.size(); ++p) {
+    EXPECT_NEAR(both.parameters[p].value, alone.parameters[p].value,
+                2.0 * alone.parameters[p].standard_error);
+  }
+}
