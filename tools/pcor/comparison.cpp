@@ -108,6 +108,12 @@ std::string command_line(const ComparisonOptions& options) {
   return line;
 }
 
+ChosenReferences references_to_fit(const ComparisonOptions& options, const ModelFile& model) {
+  std::vector<std::string> texts = options.references;
+  if (texts.empty()) texts.emplace_back("lams");
+  return read_references(texts, model, flight_paths(options));
+}
+
 void print_references(const ChosenReferences& references) {
   std::vector<std::string> names;
   for (const auto& reference : references.used) names.push_back(reference->name());

@@ -163,8 +163,7 @@ void run(const Options& options) {
   require_writable(options.common.report);
   JsonResult json(options.common);
   const ModelFile model = read_model(options.model);
-  const References references =
-      read_references(options.comparison.references, model, flight_paths(options.comparison)).used;
+  const References references = references_to_fit(options.comparison, model).used;
   DiagnoseOptions diagnose_with;
   diagnose_with.mask = mask_options(options.comparison);
   diagnose_with.time_stamp = time_stamp(options.comparison);

@@ -106,8 +106,7 @@ void run(const Options& options) {
   for (const std::string& output : {options.output, options.common.report}) require_writable(output);
   JsonResult json(options.common);
   const ModelFile model = read_model(options.model);
-  const References references =
-      read_references(options.comparison.references, model, flight_paths(options.comparison)).used;
+  const References references = references_to_fit(options.comparison, model).used;
   ImproveOptions improve_with = improve_options(options, model);
   Improvement improvement;
   {

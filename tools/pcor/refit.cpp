@@ -264,8 +264,7 @@ void run(const Options& options) {
     require_writable(output);
   JsonResult json(options.common);
   const ModelFile model = read_model(options.model);
-  const ChosenReferences references =
-      read_references(options.comparison.references, model, flight_paths(options.comparison));
+  const ChosenReferences references = references_to_fit(options.comparison, model);
   RefitOptions refit_with = refit_options(options);
   RefitResult result;
   {

@@ -244,10 +244,7 @@ void run(const Options& options) {
       RefitOptions refit_with;
       refit_with.mask = with.mask;
       refit_with.time_stamp = with.time_stamp;
-      // The heights are what the temperature is fitted to; the pressures are fitted without them.
-      std::vector<std::string> texts = options.comparison.references;
-      if (texts.empty()) texts.emplace_back("lams");
-      const References references = read_references(texts, model, flight_paths(options.comparison)).used;
+      const References references = references_to_fit(options.comparison, model).used;
       in_turn = calibrate_in_turn(flight_paths(options.comparison), model, references, refit_with, with);
       result = in_turn.temperature;
     } else {

@@ -1,0 +1,239 @@
+#include "fit/fit_flights.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "numerics/missing.hpp"
+#include "numerics/spikes.hpp"
+#include "residuals/masks.hpp"
+
+namespace pcor::internal {
+
+std::size_t shared_parameters(const Residuals& residuals, const FitTask& task) {
+  std::size_t of_model = task.model.model.additions.size();
+  for (const ModelEffect& effect : task.model.model.effects) of_model += effect.parameters.size();
+  return task.shares_system ? residuals.parameters().size() : of_model;
+}
+
+Eigen::VectorXd own_parameters(const Residuals& residuals, const FitTask& task,
+                               const Eigen::VectorXd& parameters) {
+  const std::vector<double>& file = residuals.parameters();
+  Eigen::VectorXd own = Eigen::Map<const Eigen::VectorXd>(file.data(), as_index(file.size()));
+  const Eigen::Index shared = as_index(shared_parameters(residuals, task));
+  own.head(shared) = parameters.head(shared);
+  return own;
+}
+
+FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask& task, const FitSetup& setup)
+    : task_(&task),
+      setup_(&setup),
+      residuals_(std::move(samples), task.model, task.reference, task.options.mask),
+      static_pressure_(residuals_.samples().model.find(Quantity::static_pressure)) {
+  const FlightSamples& flight = residuals_.samples();
+  kept_ = used_samples(residuals_.mask(), task.options.training_share);
+  if (!setup.regimes.empty()) {
+    // Of each sample the number of its interval; the first that holds it counts.
+    std::vector<int> inside(residuals_.size(), -1);
+    for (const Interval& interval : flight.intervals) {
+      if (std::find(setup.regimes.begin(), setup.regimes.end(), interval.regime) == setup.regimes.end())
+        continue;
+      bool any = false;
+      for (const std::size_t i : kept_) {
+        if (inside[i] >= 0 || flight.time[i] < interval.begin || flight.time[i] >= interval.end) continue;
+        inside[i] = static_cast<int>(offset_count_);
+        any = true;
+      }
+      if (any) ++offset_count_;
+    }
+    kept_.erase(std::remove_if(kept_.begin(), kept_.end(), [&](std::size_t i) { return inside[i] < 0; }),
+                kept_.end());
+    for (const std::size_t i : kept_) offset_.push_back(inside[i]);
+  }
+  linear_ = task.reference.model() != nullptr || !task.reference.is_static_pressure() ||
+            std::all_of(setup.wanted.begin(), setup.wanted.end(),
+                        [this](std::size_t parameter) { return residuals_.is_linear()[parameter]; });
+  if (const auto common = residuals_.at_common_pressures())
+    at_common_pressures_.emplace(common, task.model, task.reference, task.options.mask);
+}
+
+void FitFlight::prepare(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) {
+  const auto same = [](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+    return a.size() == b.size() && a == b;
+  };
+  if (same(parameters, prepared_parameters_) && same(offsets, prepared_offsets_)) return;
+  prepared_parameters_ = parameters;
+  prepared_offsets_ = offsets;
+  const FlightSamples& flight = residuals_.samples();
+  std::vector<double> residual(kept_.size());
+  for (std::size_t first = 0; first < kept_.size(); first += samples_per_chunk) {
+    const std::size_t count = std::min(samples_per_chunk, kept_.size() - first);
+    evaluate(residuals_, first, count, parameters, {}, residual.data() + first, nullptr);
+  }
+  std::vector<double> series(flight.time.size(), nan);
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    const double offset = offset_.empty() ? 0.0 : offsets[offset_[i]] * static_pressure(i);
+    series[kept_[i]] = residual[i] - offset;
+  }
+  spikes_ = 0;
+  if (task_->options.loss != Loss::none) {
+    const std::vector<double> nothing(series.size(), 0.0);
+    const std::vector<double> calm = without_outliers(series, nothing, flight.time, flight.step, spikes_);
+    for (const std::size_t i : kept_) {
+      if (calm[i] != series[i]) series[i] = nan;
+    }
+  }
+  bins_ = Binning(series, flight.time, flight.step);
+  bin_.assign(kept_.size(), -1);
+  in_bin_ = Eigen::VectorXd::Zero(as_index(bins_.size()));
+  std::size_t i = 0;
+  for (std::size_t k = 0; k < bins_.records().size(); ++k) {
+    while (kept_[i] != bins_.records()[k]) ++i;
+    bin_[i] = bins_.bins()[k];
+    in_bin_[bin_[i]] += 1.0;
+  }
+  whitening_.reset();
+  kept_rows_.resize(0, 0);
+  kept_white_rows_.resize(0, 0);
+  if (linear_) kept_rows_ = rows_without_offsets(parameters);
+}
+
+void FitFlight::set_noise(const FitNoise& noise, std::size_t flight) {
+  NoiseModel model;
+  model.coefficients = noise.model.coefficients;
+  model.slow = noise.model.slow;
+  const std::vector<double>& time = noise.time[flight];
+  const Eigen::VectorXd& level = noise.model.level[flight];
+  Eigen::VectorXd& own = model.level.emplace_back(as_index(bins_.size()));
+  for (std::size_t i = 0; i < bins_.size(); ++i) {
+    const auto after = std::upper_bound(time.begin(), time.end(), bins_.time()[i] + 1e-6);
+    own[as_index(i)] = level[std::max<std::ptrdiff_t>(after - time.begin() - 1, 0)];
+  }
+  whitening_.emplace(bins_, model, 0);
+  if (kept_rows_.size() > 0) kept_white_rows_ = (*whitening_)(kept_rows_);
+}
+
+/// Through the chain; for LAMS, where some effect is not at the static ports, in the laser's own measure.
+void FitFlight::evaluate(const Residuals& residuals, std::size_t first, std::size_t count,
+                         const Eigen::VectorXd& parameters, const std::vector<std::size_t>& wanted,
+                         double* residual, double* derivatives) const {
+  const std::size_t* const samples = kept_.data() + first;
+  const Eigen::VectorXd own = own_parameters(residuals, *task_, parameters);
+  const std::size_t shared = shared_parameters(residuals, *task_);
+  std::vector<std::size_t> known;
+  std::copy_if(wanted.begin(), wanted.end(), std::back_inserter(known),
+               [shared](std::size_t parameter) { return parameter < shared; });
+  if (linear_) {
+    residuals.evaluate(samples, count, own.data(), known, residual, derivatives);
+  } else {
+    residuals.evaluate_at_sensor(samples, count, own.data(), known, residual, derivatives);
+  }
+  // Nothing depends on what this reference does not know.
+  std::size_t from = known.size();
+  for (std::size_t k = wanted.size(); k-- > 0 && from <= k;) {
+    double* const column = derivatives + k * count;
+    if (wanted[k] < shared) {
+      --from;
+      std::copy_n(derivatives + from * count, count, column);
+    } else {
+      std::fill_n(column, count, 0.0);
+    }
+  }
+}
+
+/// Means over the bins of derivatives and residual.
+Eigen::MatrixXd FitFlight::means(const Residuals& residuals, const Eigen::VectorXd& parameters,
+                                 const std::vector<std::size_t>& wanted) const {
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(as_index(bins_.size()), as_index(wanted.size()) + 1);
+  std::vector<double> store((wanted.size() + 1) * samples_per_chunk);
+  for (std::size_t first = 0; first < kept_.size(); first += samples_per_chunk) {
+    const std::size_t count = std::min(samples_per_chunk, kept_.size() - first);
+    double* const residual = store.data() + wanted.size() * count;
+    evaluate(residuals, first, count, parameters, wanted, residual, store.data());
+    for (std::size_t c = 0; c <= wanted.size(); ++c) {
+      const double* const column = store.data() + c * count;
+      for (std::size_t i = 0; i < count; ++i) {
+        if (bin_[first + i] >= 0) sums(bin_[first + i], as_index(c)) += column[i];
+      }
+    }
+  }
+  return in_bin_.cwiseInverse().asDiagonal() * sums;
+}
+
+/// The same, with the derivatives of two static systems at common pressures.
+Eigen::MatrixXd FitFlight::means(const Eigen::VectorXd& parameters,
+                                 const std::vector<std::size_t>& wanted) const {
+  if (!at_common_pressures_) return means(residuals_, parameters, wanted);
+  Eigen::MatrixXd result = means(*at_common_pressures_, parameters, wanted);
+  result.rightCols(1) = means(residuals_, parameters, {});
+  return result;
+}
+
+Eigen::MatrixXd FitFlight::rows_without_offsets(const Eigen::VectorXd& parameters) const {
+  const Eigen::Index fitted = as_index(setup_->wanted.size());
+  const Eigen::MatrixXd now = means(parameters, setup_->wanted);
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(now.rows(), fitted + as_index(offset_count_) + 1);
+  result.leftCols(fitted) = now.leftCols(fitted);
+  result.rightCols(1) = now.rightCols(1);
+  for (std::size_t i = 0; i < offset_.size(); ++i) {
+    if (bin_[i] >= 0) result(bin_[i], fitted + offset_[i]) -= static_pressure(i) / in_bin_[bin_[i]];
+  }
+  return result;
+}
+
+/// The residual of rows at the parameters that were prepared, without offsets, to others and to these
+/// offsets.
+void FitFlight::move_residual(Eigen::MatrixXd& rows, const Eigen::VectorXd& parameters,
+                              const Eigen::VectorXd& offsets) const {
+  const Eigen::Index fitted = as_index(setup_->wanted.size());
+  if (linear_)
+    rows.rightCols(1) += rows.leftCols(fitted) * (parameters - prepared_parameters_)(setup_->wanted);
+  if (offset_count_ > 0) rows.rightCols(1) += rows.middleCols(fitted, as_index(offset_count_)) * offsets;
+}
+
+Eigen::MatrixXd FitFlight::rows(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) const {
+  Eigen::MatrixXd result = linear_ ? kept_rows_ : rows_without_offsets(parameters);
+  move_residual(result, parameters, offsets);
+  return result;
+}
+
+Eigen::MatrixXd FitFlight::white_rows(const Eigen::VectorXd& parameters,
+                                      const Eigen::VectorXd& offsets) const {
+  if (!whitening_ || !linear_) return white(rows(parameters, offsets));
+  Eigen::MatrixXd result = kept_white_rows_;
+  move_residual(result, parameters, offsets);
+  return result;
+}
+
+Eigen::MatrixXd FitFlight::white_columns(const Eigen::VectorXd& parameters,
+                                         const std::vector<std::size_t>& wanted) const {
+  return white(means(parameters, wanted).leftCols(as_index(wanted.size())));
+}
+
+Eigen::MatrixXd FitFlight::unweighted_factor(const Eigen::VectorXd& parameters) const {
+  const std::vector<std::size_t>& wanted = setup_->wanted;
+  const std::vector<double> ones(samples_per_chunk, 1.0);
+  std::vector<double> store((wanted.size() + 1) * samples_per_chunk);
+  TriangularFactor factor(as_index(wanted.size()) + 1);
+  for (std::size_t first = 0; first < kept_.size(); first += samples_per_chunk) {
+    const std::size_t count = std::min(samples_per_chunk, kept_.size() - first);
+    std::vector<const double*> columns;
+    for (std::size_t c = 0; c <= wanted.size(); ++c) columns.push_back(store.data() + c * count);
+    evaluate(residuals_, first, count, parameters, wanted, store.data() + wanted.size() * count,
+             store.data());
+    factor.add(columns, ones.data(), count);
+  }
+  return factor.factor();
+}
+
+std::size_t FitFlight::outliers(const Eigen::VectorXd& parameters, double limit) const {
+  const Eigen::VectorXd innovations =
+      white_rows(parameters, Eigen::VectorXd::Zero(as_index(offset_count_))).rightCols(1);
+  auto count = static_cast<double>(spikes_);
+  for (Eigen::Index i = 0; i < innovations.size(); ++i) {
+    if (std::abs(innovations[i]) > limit) count += in_bin_[i];
+  }
+  return static_cast<std::size_t>(count);
+}
+
+}  // namespace pcor::internal
