@@ -136,6 +136,30 @@ TEST(Catalogue, HoldsTheTermsOfTheMemoUnderTheirNames) {
   }
 }
 
+TEST(Catalogue, HoldsZeroGainAndDriftAtEveryPlaceThatHasThem) {
+  // Findings name these ids, families and places, and scripts read them.
+  struct Row {
+    const char *id, *family, *place;
+  };
+  for (const auto& [id, family, place] : {Row{"psfd-bias", "zero", "p-transducer"},
+                                          {"qcf-zero", "zero", "q-transducer"},
+                                          {"static-constant", "zero", "port"},
+                                          {"temp-offset", "zero", "thermometer"},
+                                          {"psfd-gain", "gain", "p-transducer"},
+                                          {"qcf-gain", "gain", "q-transducer"},
+                                          {"psfd-drift", "drift", "p-transducer"},
+                                          {"qcf-drift", "drift", "q-transducer"},
+                                          {"time-drift", "drift", "port"},
+                                          {"temp-drift", "drift", "thermometer"},
+                                          {"psfd-thermal", "thermal drift", "p-transducer"},
+                                          {"transducer-thermal", "thermal drift", "q-transducer"}}) {
+    ASSERT_NE(effect_named(id), pcor::catalogue_size) << id;
+    const EffectFacts& facts = effect_facts[effect_named(id)];
+    EXPECT_EQ(facts.family, family) << id;
+    EXPECT_EQ(place_of(facts), place) << id;
+  }
+}
+
 TEST(Catalogue, KnowsEveryEffectOfPressureCalibrationOnce) {
   // What is known of airborne pressure calibration with a laser: a term of a model can describe it, or there
   // is a reason why none can.
@@ -236,6 +260,7 @@ TEST_P(EveryEffect, IsNamedInLowerCaseWithHyphens) {
 TEST_P(EveryEffect, IsDocumented) {
   const EffectFacts& facts = GetParam();
   EXPECT_FALSE(facts.title.empty());
+  EXPECT_THAT(std::string(facts.family), MatchesRegex("[A-Za-z]+( [a-z]+)*"));
   EXPECT_FALSE(facts.formula.empty());
   EXPECT_FALSE(facts.size.empty());
   EXPECT_FALSE(facts.look_alikes.empty());

@@ -18,6 +18,7 @@ TEST(Where, NamesResolveToTheirPlace) {
     EXPECT_TRUE(names.emplace(where_facts[i].name).second) << where_facts[i].name;
     EXPECT_FALSE(where_facts[i].unit.empty());
     EXPECT_FALSE(where_facts[i].adds_to.empty());
+    EXPECT_FALSE(where_facts[i].place.empty());
     EXPECT_EQ(&facts_of(static_cast<Where>(i)), &where_facts[i]);
   }
   EXPECT_EQ(where_named("wing"), Where::count);
@@ -41,6 +42,15 @@ TEST(Where, UnitsAreThoseOfWhatTheyAddTo) {
   EXPECT_EQ(facts_of(Where::beam_speed).unit, facts_of(Quantity::lams_airspeed).unit);
   EXPECT_EQ(facts_of(Where::recovery).unit, "1");
   EXPECT_EQ(facts_of(Where::attack_ratio).unit, facts_of(Quantity::attack_ratio).unit);
+}
+
+TEST(EffectFacts, ClockIsAPlaceOfItsOwn) {
+  EffectFacts facts;
+  facts.family = "lag";
+  facts.where = Where::beam_speed;
+  EXPECT_EQ(place_of(facts), "laser");
+  facts.family = "clock";
+  EXPECT_EQ(place_of(facts), "clock");
 }
 
 TEST(EffectFacts, CountsWhatIsNamed) {

@@ -49,6 +49,8 @@ nlohmann::ordered_json as_json(const EffectFacts& facts) {
   nlohmann::ordered_json effect;
   effect["id"] = facts.id;
   effect["title"] = facts.title;
+  effect["family"] = facts.family;
+  effect["place"] = place_of(facts);
   effect["where"] = facts_of(facts.where).name;
   effect["unit"] = facts_of(facts.where).unit;
   effect["formula"] = facts.formula;
@@ -83,6 +85,7 @@ std::string_view text_of(GasConstants constants) {
 void print_one(const EffectFacts& facts) {
   const WhereFacts& where = facts_of(facts.where);
   fmt::print("{}: {}\n\n", facts.id, facts.title);
+  fmt::print("  family       {}\n  place        {}\n", facts.family, place_of(facts));
   fmt::print("  formula      {}  [{}]\n  acts on      {}\n", facts.formula, where.unit, where.adds_to);
   for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
     const ParameterFacts& parameter = facts.parameters[i];
@@ -114,9 +117,11 @@ void print_one(const EffectFacts& facts) {
 }
 
 void print_all() {
-  fmt::print("{:<18} {:<20} {:<70} {}\n", "effect", "where", "what", "formula");
+  fmt::print("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", "effect", "family", "place", "where", "what",
+             "formula");
   for (const EffectFacts& facts : effect_facts) {
-    fmt::print("{:<18} {:<20} {:<70} {}\n", facts.id, facts_of(facts.where).name, facts.title, facts.formula);
+    fmt::print("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", facts.id, facts.family, place_of(facts),
+               facts_of(facts.where).name, facts.title, facts.formula);
   }
   fmt::print("\nKnown errors that no term of a model can describe\n\n");
   for (const EffectWithoutTrace& effect : effects_without_trace)

@@ -9,11 +9,12 @@ struct AdifDrift {
     EffectFacts facts;
     facts.id = "adif-drift";
     facts.title = "change of the zero or the sensitivity of the radome";
+    facts.family = "drift";
     facts.where = Where::attack_ratio;
     facts.formula = "-(gain * attack_ratio + offset + per_hour * time / 3600)";
-    facts.parameters[0] = {"gain", "1", 0.0, -0.3, 0.3, 0.05};
-    facts.parameters[1] = {"offset", "1", 0.0, -0.06, 0.06, 0.01};
-    facts.parameters[2] = {"per_hour", "1/h", 0.0, -0.03, 0.03, 0.005};
+    facts.parameters[0] = {"gain", "1", 0.0, -2.0, 2.0, 0.05};
+    facts.parameters[1] = {"offset", "1", 0.0, -0.5, 0.5, 0.01};
+    facts.parameters[2] = {"per_hour", "1/h", 0.0, -0.5, 0.5, 0.005};
     facts.needs = {Quantity::attack_ratio, Quantity::time, Quantity::count, Quantity::count};
     facts.size =
         "slope 13.85 to 16.0 from flight to flight (C-130): 5 % of a ratio of 0.25 is 0.19 hPa at 700 hPa";

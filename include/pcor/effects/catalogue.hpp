@@ -21,6 +21,10 @@
 #include <pcor/effects/load_factor.hpp>
 #include <pcor/effects/pitot_angle.hpp>
 #include <pcor/effects/psfd_bias.hpp>
+#include <pcor/effects/psfd_drift.hpp>
+#include <pcor/effects/psfd_gain.hpp>
+#include <pcor/effects/psfd_thermal.hpp>
+#include <pcor/effects/qcf_drift.hpp>
 #include <pcor/effects/qcf_gain.hpp>
 #include <pcor/effects/qcf_lag.hpp>
 #include <pcor/effects/qcf_zero.hpp>
@@ -43,6 +47,7 @@
 #include <pcor/effects/static_transonic.hpp>
 #include <pcor/effects/temp_calibration.hpp>
 #include <pcor/effects/temp_deice_heat.hpp>
+#include <pcor/effects/temp_drift.hpp>
 #include <pcor/effects/temp_lag.hpp>
 #include <pcor/effects/temp_offset.hpp>
 #include <pcor/effects/temp_wetting.hpp>
@@ -79,8 +84,12 @@ using Catalogue = std::tuple<effects::StaticLag,            //
                              effects::QcfLag,               //
                              effects::QcfZero,              //
                              effects::QcfGain,              //
+                             effects::QcfDrift,             //
                              effects::PsfdBias,             //
+                             effects::PsfdGain,             //
+                             effects::PsfdDrift,            //
                              effects::TransducerThermal,    //
+                             effects::PsfdThermal,          //
                              effects::TotalLag,             //
                              effects::StaticLeak,           //
                              effects::LineHead,             //
@@ -93,6 +102,7 @@ using Catalogue = std::tuple<effects::StaticLag,            //
                              effects::LamsCloud,            //
                              effects::ClockSkew,            //
                              effects::TempOffset,           //
+                             effects::TempDrift,            //
                              effects::TempLag,              //
                              effects::TempDeiceHeat,        //
                              effects::TempWetting,          //

@@ -9,9 +9,10 @@ struct ClockSkew {
     EffectFacts facts;
     facts.id = "clock-skew";
     facts.title = "clock of the laser is late";
+    facts.family = "clock";
     facts.where = Where::beam_speed;
     facts.formula = "seconds * airspeed_rate";
-    facts.parameters[0] = {"seconds", "s", 0.0, -4.0, 4.0, 0.5};
+    facts.parameters[0] = {"seconds", "s", 0.0, -60.0, 60.0, 0.5};
     facts.needs = {Quantity::airspeed_rate, Quantity::count, Quantity::count, Quantity::count};
     facts.size = "0.08 to 2 s between the clocks of one aircraft: 0.27 to 0.5 hPa/s in a speed run";
     facts.look_alikes = "qcf-lag, total-lag, temp-lag, lams-volume";

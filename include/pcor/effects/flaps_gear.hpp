@@ -9,9 +9,10 @@ struct FlapsGear {
     EffectFacts facts;
     facts.id = "flaps-gear";
     facts.title = "flaps, and the gear that goes with them";
+    facts.family = "configuration";
     facts.where = Where::static_defect;
     facts.formula = "defect * flaps / 50";
-    facts.parameters[0] = {"defect", "hPa", 0.0, -9.0, 9.0, 1.5};
+    facts.parameters[0] = {"defect", "hPa", 0.0, -50.0, 50.0, 1.5};
     facts.needs = {Quantity::flaps, Quantity::count, Quantity::count, Quantity::count};
     facts.size = "C-130 1.3 to 1.7 hPa with flaps at 50 % and more; GV unknown";
     facts.look_alikes = "static-alpha-quad, ground-effect, pcor-regime";

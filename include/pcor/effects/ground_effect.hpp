@@ -10,9 +10,10 @@ struct GroundEffect {
     EffectFacts facts;
     facts.id = "ground-effect";
     facts.title = "image of the wing vortices in the ground";
+    facts.family = "ground effect";
     facts.where = Where::static_defect;
     facts.formula = "defect * (span / (4 * max(height_above_ground, span / 4)))^2";
-    facts.parameters[0] = {"defect", "hPa", 0.0, -2.0, 2.0, 0.3};
+    facts.parameters[0] = {"defect", "hPa", 0.0, -20.0, 20.0, 0.3};
     facts.parameters[1] = {"span", "m", 40.0, 10.0, 80.0, 40.0, true};
     facts.needs = {Quantity::height_above_ground, Quantity::count, Quantity::count, Quantity::count};
     facts.size =

@@ -9,10 +9,11 @@ struct HumidityError {
     EffectFacts facts;
     facts.id = "humidity-error";
     facts.title = "error of the humidity";
+    facts.family = "humidity";
     facts.where = Where::humidity;
     facts.constants = GasConstants::moist;
     facts.formula = "-gain * vapor_pressure";
-    facts.parameters[0] = {"gain", "1", 0.0, -0.6, 0.6, 0.1};
+    facts.parameters[0] = {"gain", "1", 0.0, -10.0, 1.0, 0.1};
     facts.needs = {Quantity::vapor_pressure, Quantity::count, Quantity::count, Quantity::count};
     facts.size =
         "10 % where the pressure in the cavity of a mirror is 10 % off (GV); only where the model uses moist "

@@ -9,6 +9,7 @@ struct HumidityNeglected {
     EffectFacts facts;
     facts.id = "humidity-neglected";
     facts.title = "dry constants in moist air";
+    facts.family = "humidity";
     facts.where = Where::humidity;
     facts.constants = GasConstants::dry;
     facts.formula = "fraction * vapor_pressure";

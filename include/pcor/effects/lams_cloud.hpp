@@ -10,9 +10,10 @@ struct LamsCloud {
     EffectFacts facts;
     facts.id = "lams-cloud";
     facts.title = "the laser reads low in cloud";
+    facts.family = "cloud";
     facts.where = Where::beam_speed;
     facts.formula = "if(liquid_water > 0.05, -error, 0)";
-    facts.parameters[0] = {"error", "m/s", 0.0, -6.0, 0.0, -0.5};
+    facts.parameters[0] = {"error", "m/s", 0.0, -50.0, 0.0, -0.5};
     facts.needs = {Quantity::liquid_water, Quantity::count, Quantity::count, Quantity::count};
     facts.size = "-0.5 to -2 m/s: 0.5 to 2 hPa";
     facts.look_alikes = "temp-wetting";

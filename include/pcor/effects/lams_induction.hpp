@@ -9,9 +9,10 @@ struct LamsInduction {
     EffectFacts facts;
     facts.id = "lams-induction";
     facts.title = "flow ahead of the aircraft that changes with the angle of attack";
+    facts.family = "beam speed";
     facts.where = Where::beam_speed;
     facts.formula = "per_attack * attack * lams_airspeed";
-    facts.parameters[0] = {"per_attack", "1/deg", 0.0, -0.003, 0.003, 0.0005};
+    facts.parameters[0] = {"per_attack", "1/deg", 0.0, -0.05, 0.05, 0.0005};
     facts.needs = {Quantity::attack, Quantity::lams_airspeed, Quantity::count, Quantity::count};
     facts.size =
         "-0.5 to -2 m/s (GV, inboard-down beam at 20 m), -0.35 to -0.55 m/s (C-130); the constant part is "

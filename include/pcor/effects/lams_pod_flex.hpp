@@ -10,9 +10,10 @@ struct LamsPodFlex {
     EffectFacts facts;
     facts.id = "lams-pod-flex";
     facts.title = "the wing bends under load and turns the laser pod";
+    facts.family = "beam angle";
     facts.where = Where::beam_elevation;
     facts.formula = "per_g * normal_acceleration / 9.80665";
-    facts.parameters[0] = {"per_g", "deg", 0.0, -2.0, 2.0, 0.3};
+    facts.parameters[0] = {"per_g", "deg", 0.0, -45.0, 45.0, 0.3};
     facts.needs = {Quantity::normal_acceleration, Quantity::count, Quantity::count, Quantity::count};
     facts.size =
         "0.1 to 0.5 deg, estimated; the part that follows the fuel needs the mass of the aircraft and stays "

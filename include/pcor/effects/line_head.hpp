@@ -10,12 +10,13 @@ struct LineHead {
     EffectFacts facts;
     facts.id = "line-head";
     facts.title = "weight and inertia of the air in the static line";
+    facts.family = "load factor";
     facts.where = Where::static_line;
     facts.formula =
         "-(aft * longitudinal_acceleration + below * (9.80665 + normal_acceleration)) * static_pressure / "
         "(8314.462618 / 28.9637 * 290)";
-    facts.parameters[0] = {"aft", "m", 0.0, -30.0, 30.0, 5.0};
-    facts.parameters[1] = {"below", "m", 0.0, -6.0, 6.0, 1.0};
+    facts.parameters[0] = {"aft", "m", 0.0, -60.0, 60.0, 5.0};
+    facts.parameters[1] = {"below", "m", 0.0, -20.0, 20.0, 1.0};
     facts.needs = {Quantity::longitudinal_acceleration, Quantity::normal_acceleration,
                    Quantity::static_pressure, Quantity::count};
     facts.size =

@@ -10,9 +10,10 @@ struct LoadFactor {
     EffectFacts facts;
     facts.id = "load-factor";
     facts.title = "static-port error in accelerated flight";
+    facts.family = "load factor";
     facts.where = Where::static_defect;
     facts.formula = "per_g * normal_acceleration / 9.80665";
-    facts.parameters[0] = {"per_g", "hPa", 0.0, -8.0, 8.0, 1.0};
+    facts.parameters[0] = {"per_g", "hPa", 0.0, -50.0, 50.0, 1.0};
     facts.needs = {Quantity::normal_acceleration, Quantity::count, Quantity::count, Quantity::count};
     facts.size = "0.2 to 1 hPa for 0.4 g, estimated; King Air above 1.5 hPa in accelerated flight";
     facts.look_alikes = "static-alpha, static-lag, lams-pod-flex";

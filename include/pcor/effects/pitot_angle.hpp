@@ -9,9 +9,10 @@ struct PitotAngle {
     EffectFacts facts;
     facts.id = "pitot-angle";
     facts.title = "loss of total pressure where the flow meets the pitot at an angle";
+    facts.family = "flow angle";
     facts.where = Where::pitot;
     facts.formula = "k * dynamic_pressure * (attack^2 + sideslip^2)";
-    facts.parameters[0] = {"k", "1/deg2", 0.0, 0.0, 0.0006, 0.0001};
+    facts.parameters[0] = {"k", "1/deg2", 0.0, 0.0, 0.01, 0.0001};
     facts.needs = {Quantity::dynamic_pressure, Quantity::attack, Quantity::sideslip, Quantity::count};
     facts.size = "below 0.2 % of q at 5 deg, below 1 % at 10 deg, always low: -0.12 and -0.6 hPa (C-130)";
     facts.look_alikes = "static-alpha-quad, static-beta-even, lams-elevation, qcr-angle";

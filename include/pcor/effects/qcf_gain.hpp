@@ -9,9 +9,10 @@ struct QcfGain {
     EffectFacts facts;
     facts.id = "qcf-gain";
     facts.title = "span error of the dynamic transducer";
+    facts.family = "gain";
     facts.where = Where::dynamic_transducer;
     facts.formula = "-gain * dynamic_pressure";
-    facts.parameters[0] = {"gain", "1", 0.0, -0.03, 0.03, 0.005};
+    facts.parameters[0] = {"gain", "1", 0.0, -0.5, 0.5, 0.005};
     facts.needs = {Quantity::dynamic_pressure, Quantity::count, Quantity::count, Quantity::count};
     facts.size = "estimated 0.1 to 0.5 %: 0.06 to 0.35 hPa";
     facts.look_alikes = "lams-scale, temp-offset, static-qp, static-mach2, qcf-zero";

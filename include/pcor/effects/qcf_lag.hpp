@@ -9,9 +9,10 @@ struct QcfLag {
     EffectFacts facts;
     facts.id = "qcf-lag";
     facts.title = "response and filter of the differential transducer";
+    facts.family = "lag";
     facts.where = Where::dynamic_transducer;
     facts.formula = "tau * dynamic_pressure_rate";
-    facts.parameters[0] = {"tau", "s", 0.0, 0.0, 1.5, 0.1};
+    facts.parameters[0] = {"tau", "s", 0.0, 0.0, 30.0, 0.1};
     facts.needs = {Quantity::dynamic_pressure_rate, Quantity::count, Quantity::count, Quantity::count};
     facts.size = "QCF answers in 0.05 s and is 0.02 s late: 0.03 hPa in a speed run of 0.3 m/s2";
     facts.look_alikes = "clock-skew, total-lag";

@@ -9,10 +9,11 @@ struct QcrAngle {
     EffectFacts facts;
     facts.id = "qcr-angle";
     facts.title = "loss of radome dynamic pressure at flow angles";
+    facts.family = "flow angle";
     facts.where = Where::radome;
     facts.formula = "attack_loss * attack^2 + sideslip_loss * sideslip^2";
-    facts.parameters[0] = {"attack_loss", "hPa/deg2", 0.0, 0.0, 0.17, 0.0273};
-    facts.parameters[1] = {"sideslip_loss", "hPa/deg2", 0.0, 0.0, 0.35, 0.0562};
+    facts.parameters[0] = {"attack_loss", "hPa/deg2", 0.0, 0.0, 2.0, 0.0273};
+    facts.parameters[1] = {"sideslip_loss", "hPa/deg2", 0.0, 0.0, 2.0, 0.0562};
     facts.needs = {Quantity::attack, Quantity::sideslip, Quantity::count, Quantity::count};
     facts.size =
         "GV 0.44 hPa at 4 deg of attack, 0.9 hPa at 4 deg of sideslip; it moves delta-p only through the "

@@ -9,6 +9,7 @@ struct RecoveryFactorError {
     EffectFacts facts;
     facts.id = "recovery-factor";
     facts.title = "error of the recovery factor";
+    facts.family = "recovery";
     facts.where = Where::recovery;
     facts.formula = "da";
     facts.parameters[0] = {"da", "1", 0.0, -0.2, 0.2, 0.01};

@@ -12,9 +12,10 @@ struct RollStatic {
     EffectFacts facts;
     facts.id = "roll-static";
     facts.title = "left and right static ports differ in turns";
+    facts.family = "roll";
     facts.where = Where::static_defect;
     facts.formula = "defect * sin(roll * pi / 180)";
-    facts.parameters[0] = {"defect", "hPa", 0.0, -2.0, 2.0, 0.3};
+    facts.parameters[0] = {"defect", "hPa", 0.0, -20.0, 20.0, 0.3};
     facts.needs = {Quantity::roll, Quantity::count, Quantity::count, Quantity::count};
     facts.size = "0 to 0.3 hPa, estimated";
     facts.look_alikes = "lams-azimuth, static-beta-odd, horizontal-gradient";

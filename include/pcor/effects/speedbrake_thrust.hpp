@@ -9,9 +9,10 @@ struct SpeedbrakeThrust {
     EffectFacts facts;
     facts.id = "speedbrake-thrust";
     facts.title = "thrust of the engines and propellers";
+    facts.family = "thrust";
     facts.where = Where::static_defect;
     facts.formula = "defect * engine_torque / 100";
-    facts.parameters[0] = {"defect", "hPa", 0.0, -3.0, 3.0, 0.5};
+    facts.parameters[0] = {"defect", "hPa", 0.0, -50.0, 50.0, 0.5};
     facts.needs = {Quantity::engine_torque, Quantity::count, Quantity::count, Quantity::count};
     facts.size = "C-130 propwash 0.2 to 1 hPa at full torque, estimated";
     facts.look_alikes = "static-lag, horizontal-gradient, static-alpha";

@@ -9,9 +9,10 @@ struct StaticAlpha {
     EffectFacts facts;
     facts.id = "static-alpha";
     facts.title = "static-port error with the angle of attack, as the radome ratio";
+    facts.family = "attack";
     facts.where = Where::static_defect;
     facts.formula = "a1 * attack_ratio * static_pressure";
-    facts.parameters[0] = {"a1", "1", 0.0, -0.13, 0.13, 0.0213};
+    facts.parameters[0] = {"a1", "1", 0.0, -2.0, 2.0, 0.0213};
     facts.needs = {Quantity::attack_ratio, Quantity::static_pressure, Quantity::count, Quantity::count};
     facts.size = "C-130 PSFD 0.0213, 1 hPa/deg at 700 hPa; PSFRD 0.0089";
     facts.look_alikes = "lams-elevation, pitot-angle, adif-drift";

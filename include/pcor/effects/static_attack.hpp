@@ -9,9 +9,10 @@ struct StaticAttack {
     EffectFacts facts;
     facts.id = "static-attack";
     facts.title = "static-port error with the angle of attack in degrees";
+    facts.family = "attack";
     facts.where = Where::static_defect;
     facts.formula = "a3 * attack * static_pressure";
-    facts.parameters[0] = {"a3", "1/deg", 0.0, -0.01, 0.01, 0.0014};
+    facts.parameters[0] = {"a3", "1/deg", 0.0, -0.1, 0.1, 0.0014};
     facts.needs = {Quantity::attack, Quantity::static_pressure, Quantity::count, Quantity::count};
     facts.size = "C-130 PSFD 0.00137/deg, PSFRD 0.0005/deg; GV 0.00215/deg";
     facts.look_alikes = "lams-elevation, pitot-angle, adif-drift";

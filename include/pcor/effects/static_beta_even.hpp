@@ -9,9 +9,10 @@ struct StaticBetaEven {
     EffectFacts facts;
     facts.id = "static-beta-even";
     facts.title = "static-port error with sideslip, ports joined left to right";
+    facts.family = "sideslip";
     facts.where = Where::static_defect;
     facts.formula = "b2 * sideslip^2 * static_pressure";
-    facts.parameters[0] = {"b2", "1/deg2", 0.0, -2e-4, 2e-4, -2e-5};
+    facts.parameters[0] = {"b2", "1/deg2", 0.0, -0.02, 0.02, -2e-5};
     facts.needs = {Quantity::sideslip, Quantity::static_pressure, Quantity::count, Quantity::count};
     facts.size = "estimated 1e-5 to 4e-5 /deg2: -0.1 to -0.4 hPa at 4 deg";
     facts.look_alikes = "pitot-angle, lams-azimuth";

@@ -9,9 +9,10 @@ struct StaticConstant {
     EffectFacts facts;
     facts.id = "static-constant";
     facts.title = "static-port error that is a constant fraction of the pressure";
+    facts.family = "zero";
     facts.where = Where::static_defect;
     facts.formula = "a0 * static_pressure";
-    facts.parameters[0] = {"a0", "1", 0.0, -0.05, 0.05, 0.004};
+    facts.parameters[0] = {"a0", "1", 0.0, -0.5, 0.5, 0.004};
     facts.needs = {Quantity::static_pressure, Quantity::count, Quantity::count, Quantity::count};
     facts.size = "C-130 0.004: 3 hPa at 700 hPa";
     facts.look_alikes = "psfd-bias, qcf-zero";

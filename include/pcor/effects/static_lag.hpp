@@ -9,9 +9,10 @@ struct StaticLag {
     EffectFacts facts;
     facts.id = "static-lag";
     facts.title = "pneumatic lag of the static line";
+    facts.family = "lag";
     facts.where = Where::static_line;
     facts.formula = "tau * static_pressure_rate";
-    facts.parameters[0] = {"tau", "s", 0.0, 0.0, 1.5, 0.15};
+    facts.parameters[0] = {"tau", "s", 0.0, 0.0, 30.0, 0.15};
     facts.needs = {Quantity::static_pressure_rate, Quantity::count, Quantity::count, Quantity::count};
     facts.size = "0.05 to 0.3 s: 0.05 to 0.3 hPa at a climb of 10 m/s";
     facts.look_alikes = "total-lag, temp-lag, speedbrake-thrust";

@@ -9,9 +9,10 @@ struct StaticLeak {
     EffectFacts facts;
     facts.id = "static-leak";
     facts.title = "leak from the pressurised cabin into the static line";
+    facts.family = "leak";
     facts.where = Where::static_line;
     facts.formula = "-fraction * (cabin_pressure - static_pressure)";
-    facts.parameters[0] = {"fraction", "1", 0.0, 0.0, 0.003, 0.0005};
+    facts.parameters[0] = {"fraction", "1", 0.0, 0.0, 1.0, 0.0005};
     facts.needs = {Quantity::cabin_pressure, Quantity::static_pressure, Quantity::count, Quantity::count};
     facts.size = "1e-4 to 1e-3, estimated: 0.06 to 0.55 hPa (GV at 250 hPa, cabin at 800)";
     facts.look_alikes = "qcf-zero, temp-deice-heat, static-constant";

@@ -9,6 +9,7 @@ struct StaticMach {
     EffectFacts facts;
     facts.id = "static-mach";
     facts.title = "static-port error with the Mach number";
+    facts.family = "Mach number";
     facts.where = Where::static_defect;
     facts.formula = "m1 * mach * static_pressure";
     facts.parameters[0] = {"m1", "1", 0.0, -2.0, 2.0, 0.03};

@@ -9,6 +9,7 @@ struct StaticMach2 {
     EffectFacts facts;
     facts.id = "static-mach2";
     facts.title = "static-port error with the square of the Mach number";
+    facts.family = "Mach number";
     facts.where = Where::static_defect;
     facts.formula = "m2 * mach^2 * static_pressure";
     facts.parameters[0] = {"m2", "1", 0.0, -2.0, 2.0, 0.02};

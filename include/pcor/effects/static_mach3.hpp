@@ -9,6 +9,7 @@ struct StaticMach3 {
     EffectFacts facts;
     facts.id = "static-mach3";
     facts.title = "static-port error with the cube of the Mach number";
+    facts.family = "Mach number";
     facts.where = Where::static_defect;
     facts.formula = "m3 * mach^3 * static_pressure";
     facts.parameters[0] = {"m3", "1", 0.0, -2.0, 2.0, -0.09};

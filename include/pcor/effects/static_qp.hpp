@@ -9,6 +9,7 @@ struct StaticQp {
     EffectFacts facts;
     facts.id = "static-qp";
     facts.title = "static-port error with the ratio of dynamic to static pressure";
+    facts.family = "Mach number";
     facts.where = Where::static_defect;
     facts.formula = "a2 * dynamic_ratio * static_pressure";
     facts.parameters[0] = {"a2", "1", 0.0, -2.0, 2.0, 0.03};

@@ -10,9 +10,10 @@ struct StaticTransonic {
     EffectFacts facts;
     facts.id = "static-transonic";
     facts.title = "supersonic pocket near the static port at high Mach number";
+    facts.family = "Mach number";
     facts.where = Where::static_defect;
     facts.formula = "strength * max(mach - onset, 0)^2 * static_pressure";
-    facts.parameters[0] = {"strength", "1", 0.0, -5.0, 5.0, 1.0};
+    facts.parameters[0] = {"strength", "1", 0.0, -100.0, 100.0, 1.0};
     facts.parameters[1] = {"onset", "1", 0.82, 0.7, 0.95, 0.82, true};
     facts.needs = {Quantity::mach, Quantity::static_pressure, Quantity::count, Quantity::count};
     facts.size = "estimated 0.1 to 1 hPa on the GV from Mach 0.82 to 0.86";

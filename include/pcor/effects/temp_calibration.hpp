@@ -10,6 +10,7 @@ struct TempCalibration {
     EffectFacts facts;
     facts.id = "temp-calibration";
     facts.title = "calibration of the ambient temperature";
+    facts.family = "zero";
     facts.where = Where::ambient_temperature;
     facts.formula = "a0 + a1 * (ambient_temperature - 273.15) + a2 * (ambient_temperature - 273.15)^2";
     facts.parameters[0] = {"a0", "K", 0.0, -5.0, 5.0, 0.5};

@@ -12,11 +12,12 @@ struct TempDeiceHeat {
     EffectFacts facts;
     facts.id = "temp-deice-heat";
     facts.title = "heat of the de-icing in a heated thermometer";
+    facts.family = "heating";
     facts.where = Where::temperature;
     facts.formula =
         "-scale * 10^(-1.7841 * log10(max(0.26959 * static_pressure * mach * (1 + mach^2 / 5) / "
         "recovery_temperature, 0.18)) - 1.4025)";
-    facts.parameters[0] = {"scale", "1", 0.0, 0.0, 3.0, 1.0};
+    facts.parameters[0] = {"scale", "1", 0.0, 0.0, 20.0, 1.0};
     facts.needs = {Quantity::static_pressure, Quantity::mach, Quantity::recovery_temperature,
                    Quantity::count};
     facts.size =

@@ -9,9 +9,10 @@ struct TempLag {
     EffectFacts facts;
     facts.id = "temp-lag";
     facts.title = "slow thermometer";
+    facts.family = "lag";
     facts.where = Where::temperature;
     facts.formula = "tau * recovery_temperature_rate";
-    facts.parameters[0] = {"tau", "s", 0.0, 0.0, 15.0, 2.3};
+    facts.parameters[0] = {"tau", "s", 0.0, 0.0, 120.0, 2.3};
     facts.needs = {Quantity::recovery_temperature_rate, Quantity::count, Quantity::count, Quantity::count};
     facts.size = "heated 2.3 s, unheated 0.03 and 0.45 s: 0.15 K at a climb of 10 m/s";
     facts.look_alikes = "static-lag, total-lag, clock-skew";

@@ -10,9 +10,10 @@ struct TempWetting {
     EffectFacts facts;
     facts.id = "temp-wetting";
     facts.title = "the thermometer is wet in cloud and cools";
+    facts.family = "cloud";
     facts.where = Where::temperature;
     facts.formula = "if(liquid_water > 0.05, -error, 0)";
-    facts.parameters[0] = {"error", "K", 0.0, -6.0, 0.0, -1.0};
+    facts.parameters[0] = {"error", "K", 0.0, -30.0, 0.0, -1.0};
     facts.needs = {Quantity::liquid_water, Quantity::count, Quantity::count, Quantity::count};
     facts.size = "-0.5 to -2 K: -0.1 to -0.8 hPa; the drying after the cloud is not described";
     facts.look_alikes = "lams-cloud";

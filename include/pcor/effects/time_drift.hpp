@@ -9,9 +9,10 @@ struct TimeDrift {
     EffectFacts facts;
     facts.id = "time-drift";
     facts.title = "delta-p drifts through the flight";
+    facts.family = "drift";
     facts.where = Where::static_defect;
     facts.formula = "per_hour * time / 3600";
-    facts.parameters[0] = {"per_hour", "hPa/h", 0.0, -0.5, 0.5, 0.1};
+    facts.parameters[0] = {"per_hour", "hPa/h", 0.0, -20.0, 20.0, 0.1};
     facts.needs = {Quantity::time, Quantity::count, Quantity::count, Quantity::count};
     facts.size = "0.1 hPa/h, estimated: zeros warm up, ports collect dirt";
     facts.look_alikes = "transducer-thermal, adif-drift";

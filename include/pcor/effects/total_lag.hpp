@@ -9,9 +9,10 @@ struct TotalLag {
     EffectFacts facts;
     facts.id = "total-lag";
     facts.title = "lag of the total-pressure line";
+    facts.family = "lag";
     facts.where = Where::total_line;
     facts.formula = "tau * (static_pressure_rate + dynamic_pressure_rate)";
-    facts.parameters[0] = {"tau", "s", 0.0, 0.0, 1.5, 0.1};
+    facts.parameters[0] = {"tau", "s", 0.0, 0.0, 30.0, 0.1};
     facts.needs = {Quantity::static_pressure_rate, Quantity::dynamic_pressure_rate, Quantity::count,
                    Quantity::count};
     facts.size = "QCF answers in 0.05 s and is 0.02 s late: 0.1 hPa at a climb of 10 m/s";

@@ -9,9 +9,10 @@ struct TransducerThermal {
     EffectFacts facts;
     facts.id = "transducer-thermal";
     facts.title = "drift of the dynamic transducer with its temperature";
+    facts.family = "thermal drift";
     facts.where = Where::dynamic_transducer;
     facts.formula = "-per_kelvin * (transducer_temperature - 290)";
-    facts.parameters[0] = {"per_kelvin", "hPa/K", 0.0, -0.12, 0.12, 0.02};
+    facts.parameters[0] = {"per_kelvin", "hPa/K", 0.0, -2.0, 2.0, 0.02};
     facts.needs = {Quantity::transducer_temperature, Quantity::count, Quantity::count, Quantity::count};
     facts.size = "estimated 0.01 to 0.03 hPa/K";
     facts.look_alikes = "adif-drift, time-drift, qcf-zero";

@@ -35,32 +35,33 @@ enum class Where : std::uint8_t {
 
 inline constexpr std::size_t where_count = static_cast<std::size_t>(Where::count);
 
-/// A place in the instrument: its name in model files, the unit of what acts there, and what that is added
-/// to.
+/// A stage where something acts: its name in model files, the unit of what acts there, what that is added to,
+/// and the place in the instrument that is to be looked at, which stages may share.
 struct WhereFacts {
   std::string_view name;
   std::string_view unit;
   std::string_view adds_to;
+  std::string_view place;
 };
 
 inline constexpr std::array<WhereFacts, where_count> where_facts{{
-    {"static-transducer", "hPa", "measured static pressure"},
-    {"dynamic-transducer", "hPa", "measured dynamic pressure"},
-    {"static-line", "hPa", "measured static pressure, and taken from the dynamic pressure"},
-    {"total-line", "hPa", "measured dynamic pressure"},
-    {"radome", "hPa", "radome dynamic pressure"},
-    {"attack-ratio", "1", "radome attack ratio ADIFR/QCR"},
-    {"attack", "deg", "angle of attack"},
-    {"sideslip", "deg", "sideslip"},
-    {"temperature", "K", "recovery temperature"},
-    {"recovery", "1", "recovery factor"},
-    {"ambient-temperature", "K", "ambient temperature"},
-    {"humidity", "hPa", "water vapour pressure"},
-    {"lams-elevation", "deg", "elevation of the laser beam"},
-    {"lams-azimuth", "deg", "azimuth of the laser beam"},
-    {"lams", "m/s", "airspeed along the laser beam"},
-    {"static", "hPa", "delta-p: added to the static, taken from the dynamic pressure"},
-    {"pitot", "hPa", "total pressure, and so the dynamic pressure"},
+    {"static-transducer", "hPa", "measured static pressure", "p-transducer"},
+    {"dynamic-transducer", "hPa", "measured dynamic pressure", "q-transducer"},
+    {"static-line", "hPa", "measured static pressure, and taken from the dynamic pressure", "static-line"},
+    {"total-line", "hPa", "measured dynamic pressure", "pitot"},
+    {"radome", "hPa", "radome dynamic pressure", "radome"},
+    {"attack-ratio", "1", "radome attack ratio ADIFR/QCR", "radome"},
+    {"attack", "deg", "angle of attack", "radome"},
+    {"sideslip", "deg", "sideslip", "radome"},
+    {"temperature", "K", "recovery temperature", "thermometer"},
+    {"recovery", "1", "recovery factor", "thermometer"},
+    {"ambient-temperature", "K", "ambient temperature", "thermometer"},
+    {"humidity", "hPa", "water vapour pressure", "humidity"},
+    {"lams-elevation", "deg", "elevation of the laser beam", "laser"},
+    {"lams-azimuth", "deg", "azimuth of the laser beam", "laser"},
+    {"lams", "m/s", "airspeed along the laser beam", "laser"},
+    {"static", "hPa", "delta-p: added to the static, taken from the dynamic pressure", "port"},
+    {"pitot", "hPa", "total pressure, and so the dynamic pressure", "pitot"},
 }};
 
 constexpr const WhereFacts& facts_of(Where where) { return where_facts[static_cast<std::size_t>(where)]; }
@@ -115,6 +116,7 @@ struct EffectExample {
 struct EffectFacts {
   std::string_view id;
   std::string_view title;
+  std::string_view family;  ///< what it shares with its other shapes and places, such as lag or attack
   Where where = Where::static_defect;
   std::string_view formula;  ///< in the language of formula effects; a test holds it against `value`
   std::array<ParameterFacts, parameter_capacity> parameters{};
@@ -138,5 +140,10 @@ struct EffectFacts {
     return n;
   }
 };
+
+/// The place in the instrument that an effect belongs to. A clock is no stage, but shifts one.
+constexpr std::string_view place_of(const EffectFacts& facts) {
+  return facts.family == "clock" ? facts.family : facts_of(facts.where).place;
+}
 
 }  // namespace pcor

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <pcor/model/effect.hpp>
+
+namespace pcor::effects {
+
+struct PsfdThermal {
+  static constexpr EffectFacts facts() {
+    EffectFacts facts;
+    facts.id = "psfd-thermal";
+    facts.title = "drift of the static transducer with its temperature";
+    facts.family = "thermal drift";
+    facts.where = Where::static_transducer;
+    facts.formula = "-per_kelvin * (transducer_temperature - 290)";
+    facts.parameters[0] = {"per_kelvin", "hPa/K", 0.0, -2.0, 2.0, 0.02};
+    facts.needs = {Quantity::transducer_temperature, Quantity::count, Quantity::count, Quantity::count};
+    facts.size = "estimated 0.01 to 0.03 hPa/K";
+    facts.look_alikes = "transducer-thermal, psfd-drift, psfd-bias";
+    facts.manoeuvre =
+        "level legs early and late at one speed, attack and level, with a second static and pitot pair";
+    facts.source = "Haering, NASA TM-104316, 1995; estimate";
+    facts.example.inputs[0] = {Quantity::transducer_temperature, 300.0};
+    facts.example.parameters = {0.02};
+    facts.example.value = -0.2;
+    return facts;
+  }
+
+  template <class State, class P>
+  static auto value(const State& state, const P* parameter) {
+    using S = typename State::Scalar;
+    return -(parameter[0] * (state[Quantity::transducer_temperature] - S(290.0)));
+  }
+};
+
+}  // namespace pcor::effects
