@@ -39,6 +39,7 @@ const std::vector<UsualVariables>& all_usual_variables() {
       {facts_of(Quantity::liquid_water), {"PLWCC", "PLWCD", "PLWC", "PLWC1"}},
       {facts_of(Quantity::transducer_temperature), {"TBAY"}},
       {facts_of(Quantity::cabin_pressure), {"PCAB"}},
+      {facts_of(Quantity::date), {"Time", "time", "time_offset"}},
   };
   return all;
 }

@@ -224,8 +224,8 @@ TEST(Catalogue, KnowsEveryEffectOfPressureCalibrationOnce) {
                          "propeller-inflow"}) {
     EXPECT_NE(effect_named(id) != pcor::catalogue_size, is_without_trace(id)) << id;
   }
-  for (const char* id :
-       {"static-constant", "static-qp", "static-mach2", "static-mach3", "static-attack", "time-drift"})
+  for (const char* id : {"static-constant", "static-qp", "static-mach2", "static-mach3", "static-attack",
+                         "time-drift", "aircraft-step"})
     EXPECT_NE(effect_named(id), pcor::catalogue_size) << id;
 }
 

@@ -60,7 +60,8 @@ TEST(Quantity, RolesAreThoseOfTheModelFile) {
                          "height_above_ground",
                          "liquid_water",
                          "transducer_temperature",
-                         "cabin_pressure"};
+                         "cabin_pressure",
+                         "date"};
   for (const char* role : roles) {
     ASSERT_NE(quantity_named(role), Quantity::count) << role;
     EXPECT_TRUE(is_role(quantity_named(role))) << role;

@@ -40,6 +40,8 @@ inline InputRange input_range(pcor::Quantity quantity) {
       return {270, 320};
     case Quantity::cabin_pressure:
       return {700, 1000};
+    case Quantity::date:
+      return {0, 10000};
     case Quantity::time:
       return {0, 30000};
     case Quantity::static_pressure_rate:

@@ -78,6 +78,15 @@ TEST(Units, TheSameUnitChangesNothingToTheLastBit) {
   }
 }
 
+TEST(Units, ATimeConvertsToADateByTheirBegins) {
+  // 10957 days from 1970 to 2000. 2011-11-17 20:00 is day 4338 of 2000 and 5/6 of it.
+  const auto date = [](double seconds) {
+    return convert(seconds, "seconds since 1970-01-01 00:00:00 +0000", "days since 2000-01-01");
+  };
+  EXPECT_NEAR(date(1321560000.0), 4338.0 + 20.0 / 24.0, 1e-9);
+  EXPECT_NEAR(date(10957.0 * 86400.0), 0.0, 1e-9);
+}
+
 TEST(Units, ConversionThereAndBackIsTheIdentity) {
   const auto there = UnitConversion::between("degF", "K", owner),
              back = UnitConversion::between("K", "degF", owner);

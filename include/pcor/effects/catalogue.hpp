@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include <pcor/effects/adif_drift.hpp>
+#include <pcor/effects/aircraft_step.hpp>
 #include <pcor/effects/clock_skew.hpp>
 #include <pcor/effects/flaps_gear.hpp>
 #include <pcor/effects/ground_effect.hpp>
@@ -80,6 +81,7 @@ using Catalogue = std::tuple<effects::StaticLag,            //
                              effects::LoadFactor,           //
                              effects::RollStatic,           //
                              effects::TimeDrift,            //
+                             effects::AircraftStep,         //
                              effects::PitotAngle,           //
                              effects::QcfLag,               //
                              effects::QcfZero,              //

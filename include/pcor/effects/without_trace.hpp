@@ -16,7 +16,7 @@ struct EffectWithoutTrace {
 inline constexpr std::array<EffectWithoutTrace, 23> effects_without_trace{{
     {"aircraft-change", "skin, paint, port or pod changed between campaigns",
      "within one state of the aircraft nothing varies: it is a new model with its own date, which a refit on "
-     "the later flights makes"},
+     "the later flights makes; what of it is a step of delta-p between flights is aircraft-step"},
     {"pitot-blockage", "ice or water in the pitot tube",
      "the total pressure then follows the obstacle and not the air: such samples are found by the second "
      "pitot and left out, not corrected"},

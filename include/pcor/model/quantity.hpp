@@ -41,6 +41,7 @@ enum class Quantity : std::uint8_t {
   liquid_water,
   transducer_temperature,
   cabin_pressure,
+  date,
 
   time,
   dynamic_ratio,
@@ -148,6 +149,7 @@ inline constexpr std::array<QuantityFacts, quantity_count> quantity_facts{{
     {"transducer_temperature", "K", "temperature of the pressure transducers",
      Quantity::transducer_temperature},
     {"cabin_pressure", "hPa", "cabin pressure", Quantity::cabin_pressure},
+    {"date", "days since 2000-01-01", "date and time of the sample, UTC", Quantity::date},
 
     {"time", "s", "time since the first record", Quantity::time},
     {"dynamic_ratio", "1", "dynamic over static pressure as measured, q_m/p_m", Quantity::dynamic_ratio},
