@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <optional>
+#include <set>
 
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/realtime/chain.hpp>
+#include <pcor/units/units.hpp>
 #include <pcor/words/error.hpp>
 #include "roles/recorded_series.hpp"
 
@@ -58,20 +59,43 @@ Candidate candidate_of(const EffectFacts& facts) {
   return candidate;
 }
 
-/// The candidate in other shapes: its shape parameter at some places between its bounds.
-std::vector<Candidate> variants_of(const Candidate& candidate) {
-  constexpr std::array<double, 4> places{0.15, 0.4, 0.6, 0.85};
+/// The begins of the flights after the first, in the unit of the role date.
+std::vector<double> later_begins(const std::vector<const Flight*>& flights) {
+  const UnitConversion to_date =
+      UnitConversion::between("seconds since 1970-01-01", std::string(facts_of(Quantity::date).unit), {});
+  std::set<double> begins;
+  for (const Flight* flight : flights) begins.insert(to_date(flight->time().first));
+  if (!begins.empty()) begins.erase(begins.begin());
+  return {begins.begin(), begins.end()};
+}
+
+bool reads_date(const EffectFacts& facts) { return facts.needs[0] == Quantity::date; }
+
+/// What a shape parameter is tried at: what its facts say, a date at the begins of flights.
+std::vector<double> tried_values(const EffectFacts& facts, const ParameterFacts& shape,
+                                 const std::vector<const Flight*>& flights) {
+  if (reads_date(facts)) return later_begins(flights);
+  return {shape.tried.begin(), std::find(shape.tried.begin(), shape.tried.end(), 0.0)};
+}
+
+/// The candidate in other shapes.
+std::vector<Candidate> variants_of(const Candidate& candidate, const std::vector<const Flight*>& flights) {
   std::vector<Candidate> variants;
   if (candidate.effect.is_formula()) return variants;
   const EffectFacts& facts = effect_facts[effect_named(candidate.effect.id)];
   for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
     if (!facts.parameters[i].shape) continue;
-    for (const double place : places) {
+    for (const double value : tried_values(facts, facts.parameters[i], flights)) {
+      if (value == candidate.effect.parameters[i]) continue;
       Candidate& variant = variants.emplace_back(candidate);
-      const ParameterFacts& shape = facts.parameters[i];
-      variant.effect.parameters[i] = shape.lower + place * (shape.upper - shape.lower);
+      variant.effect.parameters[i] = value;
       variant.is_variant = true;
     }
+  }
+  for (std::size_t i = 0; i < facts.scaling_count(); ++i) {
+    Candidate& variant = variants.emplace_back(candidate);
+    variant.effect.scaling = facts.scalings[i];
+    variant.is_variant = true;
   }
   return variants;
 }
@@ -120,18 +144,21 @@ CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffe
   std::optional<Chain> chain = Chain::build(model.model, roles, &error);
   if (!chain)
     throw Error(Error::Code::model, fmt::format("model '{}': {}", model.model.name, error.message()));
-  const auto consider = [&](Candidate candidate) {
+  const auto add = [&](Candidate candidate) {
     std::optional<Chain> with = chain->with_effect(candidate.effect, &error);
-    if (!with) {
-      set.not_testable.push_back({candidate.effect.id, candidate.title, error.what});
-      return;
-    }
+    if (!with) return false;
     chain = std::move(with);
     candidate.number = set.extended.model.effects.size();
     set.extended.model.effects.push_back(candidate.effect);
-    std::vector<Candidate> variants = variants_of(candidate);
     set.candidates.push_back(std::move(candidate));
-    for (Candidate& variant : variants) set.candidates.push_back(std::move(variant));
+    return true;
+  };
+  const auto consider = [&](const Candidate& candidate) {
+    if (add(candidate)) {
+      for (Candidate& variant : variants_of(candidate, flights)) add(std::move(variant));
+    } else {
+      set.not_testable.push_back({candidate.effect.id, candidate.title, error.what});
+    }
   };
   for (const ModelEffect& formula : formulas) {
     if (has_effect(set.extended, formula.id)) continue;
@@ -144,7 +171,7 @@ CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffe
       set.not_testable.push_back({formula.id, candidate.title, std::move(why)});
       continue;
     }
-    consider(std::move(candidate));
+    consider(candidate);
   }
   for (const EffectFacts& facts : effect_facts) {
     if (has_effect(model, facts.id)) continue;
@@ -164,7 +191,16 @@ CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffe
           {std::string(facts.id), std::string(facts.title), "the model uses the constants of dry air"});
       continue;
     }
-    consider(candidate_of(facts));
+    Candidate candidate = candidate_of(facts);
+    if (reads_date(facts)) {
+      const std::vector<double> begins = later_begins(flights);
+      if (begins.empty()) {
+        set.not_testable.push_back({candidate.effect.id, candidate.title, "it needs flights at two times"});
+        continue;
+      }
+      candidate.effect.parameters[1] = begins.front();
+    }
+    consider(candidate);
   }
   return set;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 
@@ -28,7 +29,8 @@ class EffectReader final : TomlReader {
  private:
   // The keys of one [[effect]] that were given.
   struct EffectEntries {
-    std::optional<Entry> id, where, formula, parameters, unit, source, standard_errors, fixed, bounds;
+    std::optional<Entry> id, where, formula, scaling, parameters, unit, source, standard_errors, fixed,
+        bounds;
   };
 
   void read_effect(const toml::table& table) {
@@ -40,6 +42,7 @@ class EffectReader final : TomlReader {
          {{"id", keep(given.id)},
           {"where", keep(given.where)},
           {"formula", keep(given.formula)},
+          {"scaling", keep(given.scaling)},
           {"parameters", keep(given.parameters)},
           {"unit", keep(given.unit)},
           {"source", keep(given.source)},
@@ -78,6 +81,7 @@ class EffectReader final : TomlReader {
                                         in_quotes(id), (*entry)->key));
     }
     ModelEffect effect = neutral_effect(id);
+    if (given.scaling) effect.scaling = scaling(*given.scaling);
     if (given.parameters) {
       const EffectFacts& facts = effect_facts[effect_named(id)];
       each_parameter(*given.parameters, effect, [&](std::size_t i, const Entry& entry) {
@@ -85,6 +89,32 @@ class EffectReader final : TomlReader {
       });
     }
     return effect;
+  }
+
+  Scaling scaling(const Entry& entry) const {
+    Scaling result;
+    const std::string wanted = "{ static_pressure = POWER, dynamic_pressure = POWER }";
+    for (const Entry& power : entries_of(table(entry, wanted), in_quotes(entry.key))) {
+      if (power.key == "static_pressure") {
+        result.static_pressure = whole_power(power);
+      } else if (power.key == "dynamic_pressure") {
+        result.dynamic_pressure = whole_power(power);
+      } else {
+        fail(power.place,
+             fmt::format("an effect is scaled by powers of the two pressures, not of {}; give {}",
+                         in_quotes(power.key), wanted));
+      }
+    }
+    return result;
+  }
+
+  int whole_power(const Entry& entry) const {
+    const double power = number(entry);
+    if (std::abs(power) > largest_power || power != std::floor(power)) {
+      fail(entry, fmt::format("the power {} of a scaling is none; give a whole number within [{}, {}]", power,
+                              -largest_power, largest_power));
+    }
+    return static_cast<int>(power);
   }
 
   // A value that physics allows.
@@ -109,6 +139,10 @@ class EffectReader final : TomlReader {
       fail(given.formula->place, fmt::format("effect {} has its formula in the catalogue; drop 'formula', or "
                                              "give an id of your own",
                                              in_quotes(id)));
+    }
+    if (given.scaling) {
+      fail(given.scaling->place,
+           fmt::format("effect {} has a formula of its own; write the scaling into it", in_quotes(id)));
     }
     ModelEffect effect;
     effect.id = id;
@@ -215,7 +249,20 @@ class EffectReader final : TomlReader {
       });
     }
     if (given.fixed) read_fixed(*given.fixed, effect, fit);
+    if (!effect.is_formula()) hold_shapes(effect, given, fit);
     return fit;
+  }
+
+  // A shape that the file does not speak of is the usual one, which a refit leaves as it is.
+  void hold_shapes(const ModelEffect& effect, const EffectEntries& given, EffectFit& fit) const {
+    std::vector<bool> is_given(fit.size());
+    if (given.parameters) {
+      each_parameter(*given.parameters, effect, [&](std::size_t i, const Entry&) { is_given[i] = true; });
+    }
+    const EffectFacts& facts = effect_facts[effect_named(effect.id)];
+    for (std::size_t i = 0; i < fit.size(); ++i) {
+      if (facts.parameters[i].shape && !is_given[i]) fit[i].fixed = true;
+    }
   }
 
   // A refit must not find what the reader would refuse.

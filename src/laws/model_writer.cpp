@@ -209,6 +209,7 @@ class Writer {
     for (std::size_t i = 0; i < names.size(); ++i) {
       const std::string what = effect.id + "." + names[i];
       const ParameterFit fit = file.fit(effect_number, i);
+      if (is_usual_shape(effect, i) && fit.fixed && !fit.standard_error && !fit.bounds) continue;
       values.push_back(names[i] + " = " + number(effect.parameters[i], what));
       if (fit.standard_error) {
         standard_errors.push_back(names[i] + " = " + number(*fit.standard_error, "the stderr of " + what));
@@ -222,6 +223,7 @@ class Writer {
       line("where", text(facts_of(effect.where).name));
       line("formula", text(effect.formula));
     }
+    if (!effect.scaling.is_none()) line("scaling", inline_table(powers(effect.scaling)));
     line("parameters", inline_table(values));
     if (!standard_errors.empty()) line("stderr", inline_table(standard_errors));
     if (!fixed.empty()) line("fixed", list(fixed));
@@ -230,6 +232,23 @@ class Writer {
       line_unless_empty("unit", effect.unit);
       line_unless_empty("source", effect.source);
     }
+  }
+
+  // What a file need not say.
+  static bool is_usual_shape(const ModelEffect& effect, std::size_t parameter) {
+    if (effect.is_formula()) return false;
+    const ParameterFacts& facts = effect_facts[effect_named(effect.id)].parameters[parameter];
+    const double value = effect.parameters[parameter];
+    return facts.shape && value == facts.typical && std::signbit(value) == std::signbit(facts.typical);
+  }
+
+  static std::vector<std::string> powers(const Scaling& scaling) {
+    std::vector<std::string> powers;
+    if (scaling.static_pressure != 0)
+      powers.push_back(fmt::format("static_pressure = {}", scaling.static_pressure));
+    if (scaling.dynamic_pressure != 0)
+      powers.push_back(fmt::format("dynamic_pressure = {}", scaling.dynamic_pressure));
+    return powers;
   }
 
   void write_law(const LawFacts& law) {

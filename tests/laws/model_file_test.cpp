@@ -220,6 +220,8 @@ class Description {
     value(effect.id);
     value(effect.formula);
     value(static_cast<int>(effect.where));
+    value(effect.scaling.static_pressure);
+    value(effect.scaling.dynamic_pressure);
     value(effect.unit);
     value(effect.source);
     for (const std::string& name : effect.parameter_names) value(name);
@@ -365,6 +367,8 @@ class ModelGenerator {
     return effect;
   }
 
+  int power() { return maybe() ? 0 : static_cast<int>(below(7)) - largest_power; }
+
   double between(double lower, double upper) {
     const double value = maybe() ? number() : std::uniform_real_distribution<>(lower, upper)(random_);
     return std::clamp(value, lower, upper);
@@ -372,6 +376,7 @@ class ModelGenerator {
 
   void add_effect(ModelFile& file, ModelEffect effect) {
     const std::size_t place = effect_named(effect.id);
+    if (!effect.is_formula()) effect.scaling = {power(), power()};
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
       if (maybe()) continue;
       if (effect.is_formula()) {
@@ -919,6 +924,20 @@ INSTANTIATE_TEST_SUITE_P(
             "ParameterOfWrongType", constant + "parameters = { a0 = \"1\" }\n", "7:21", {"give a number"}},
         BadInput{"ParameterNaN", constant + "parameters = { a0 = nan }\n", "7:21", {"not finite"}},
         BadInput{"ParametersOfWrongType", constant + "parameters = [1]\n", "7:14", {"give { name = value }"}},
+        BadInput{"ScalingByAnotherQuantity",
+                 constant + "scaling = { mach = 1 }\n",
+                 "7:13",
+                 {"powers of the two pressures, not of 'mach'", "{ static_pressure = POWER"}},
+        BadInput{"ScalingByABrokenPower",
+                 constant + "scaling = { dynamic_pressure = 0.5 }\n",
+                 "7:32",
+                 {"the power 0.5", "whole number within [-3, 3]"}},
+        BadInput{
+            "ScalingByALargePower", constant + "scaling = { static_pressure = -4 }\n", "7:31", {"[-3, 3]"}},
+        BadInput{"ScalingOfAFormula",
+                 own + "scaling = { static_pressure = 1 }\n",
+                 "9:1",
+                 {"'own' has a formula of its own", "write the scaling into it"}},
         BadInput{"PlaceOfACatalogueEffect", constant + "where = \"static\"\n", "7:1", {"takes no 'where'"}},
         BadInput{"UnknownStderr", constant + "stderr = { b = 1 }\n", "7:12", {"no parameter 'b'"}},
         BadInput{"NegativeStderr", constant + "stderr = { a0 = -1 }\n", "7:17", {"negative"}},

@@ -211,6 +211,28 @@ TEST(Chain, AddsEffectsWhateverTheirOrderInTheModel) {
               1e-12);
 }
 
+TEST(Chain, ScalesAnEffectAtEveryPlaceByTheMeasuredPressures) {
+  // A scaled effect is the formula with the pressures written out. To rounding of some products.
+  const Recorded recorded = truth.recorded();
+  const auto corrected = [&](const ModelEffect& effect) {
+    const Sample sample = fly(with(Model{}, effect), recorded);
+    return std::pair(sample[Quantity::corrected_static_pressure],
+                     sample[Quantity::corrected_dynamic_pressure]);
+  };
+  const auto expect_same = [&](ModelEffect effect, pcor::Scaling scaling, const ModelEffect& formula) {
+    EXPECT_NE(corrected(effect), corrected(formula));
+    effect.scaling = scaling;
+    const auto [p, q] = corrected(effect);
+    const auto [p_of_formula, q_of_formula] = corrected(formula);
+    EXPECT_NEAR(p, p_of_formula, 1e-15 * 4 * p);
+    EXPECT_NEAR(q, q_of_formula, 1e-15 * 4 * p);
+  };
+  expect_same(catalogued("static-attack", {0.002}), {-1, 1},
+              written(Where::static_defect, "0.002 * attack * 700 * dynamic_pressure / 70"));
+  expect_same(catalogued("qcf-zero", {0.4}), {0, -2},
+              written(Where::dynamic_transducer, "-0.4 * (70 / dynamic_pressure)^2"));
+}
+
 TEST(Chain, WithoutEffectsCorrectsNothing) {
   Model model;
   const Sample s = fly(model, {{Quantity::static_pressure, 700}, {Quantity::dynamic_pressure, 67}});

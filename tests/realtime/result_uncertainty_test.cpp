@@ -169,7 +169,7 @@ INSTANTIATE_TEST_SUITE_P(Catalogue, OfEveryEffect, testing::ValuesIn(effect_fact
 
 TEST(ResultUncertainty, OfARoleIsTheDifferenceThatItsValueMakes) {
   Model model = law();
-  model.effects.push_back({"pitot-angle", {0.0001}});
+  model.effects.push_back({"pitot-angle", {0.0001, 0.0}});
   for (const auto& [role, size] : std::map<Quantity, double>{{Quantity::static_pressure, 0.1},
                                                              {Quantity::dynamic_pressure, 0.1},
                                                              {Quantity::radome_dynamic_pressure, 0.1},

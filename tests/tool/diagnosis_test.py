@@ -110,6 +110,18 @@ class Add(DiagnosisTest):
                          cwd=self.path).stdout
         self.assertIn("pcor refit 'flight 1.nc'", self.run_as_printed(text))
 
+    def test_adds_an_effect_in_another_shape(self):
+        effects = self.add("static-transonic:onset=0.8", "static-beta-odd:static_pressure=-1,dynamic_pressure=1",
+                           "ground-effect")["effect"][-3:]
+        self.assertEqual((effects[0]["parameters"]["onset"], effects[0]["fixed"]), (0.8, ["onset"]))
+        self.assertEqual(effects[1]["scaling"], {"static_pressure": -1, "dynamic_pressure": 1})
+        self.assertEqual(effects[2], {"id": "ground-effect", "parameters": {"defect": 0.0}})
+
+    def test_adds_a_step_between_flights(self):
+        model = self.add("aircraft-step:since=4338.5", "--flight", ONE)
+        self.assertEqual(model["variables"]["date"], "Time")
+        self.assertEqual(model["effect"][-1]["parameters"], {"step": 0.0, "since": 4338.5})
+
     def test_what_is_added_does_nothing_yet(self):
         """Neutral coefficients change no residual: not even its last bit."""
         self.add("static-lag", "static-attack", "static-mach2")
@@ -314,6 +326,13 @@ class BadInput(DiagnosisTest):
 
     def test_place_without_formula(self):
         self.refuse_add("static-lag", "--where", "static", words=["--where", "--formula"], status=2)
+
+    def test_shape_that_is_none(self):
+        self.refuse_add("static-transonic:0.8", words=["'0.8' is no shape", "static-transonic:name=number"])
+        self.refuse_add("static-transonic:onset=x", words=["'x' is no number"])
+        self.refuse_add("static-transonic:strength=1", words=["'strength'", "onset, static_pressure"])
+        self.refuse_add("static-transonic:onset=2", words=["onset", "[0.7, 0.95]"])
+        self.refuse_add("static-lag:static_pressure=0.5", words=["whole number from -3 to 3"])
 
     def test_unknown_effect(self):
         self.refuse_add("static-lg", words=["'static-lg'", "did you mean static-lag"])

@@ -124,6 +124,13 @@ class Done(ToolTest):
         one = self.run_tool("effects", "static-qp", "--json", "-")
         self.assertEqual(json.loads(one.stdout)["parameters"][0]["name"], "a2")
 
+    def test_prints_where_an_effect_sits_and_how_it_may_scale(self):
+        odd = json.loads(self.run_tool("effects", "static-beta-odd", "--json", "-").stdout)
+        self.assertEqual((odd["family"], odd["place"]), ("sideslip", "port"))
+        self.assertEqual(odd["scalings"], [{"static_pressure": -1, "dynamic_pressure": 1}])
+        text = self.run_tool("effects", "clock-skew").stdout
+        self.assertRegex(text, r"family +clock\n *place +clock\n")
+
     def test_says_why_an_effect_leaves_no_trace(self):
         self.assertIn("lams-fold", self.run_tool("effects").stdout)
         result = self.run_tool("effects", "lams-fold")

@@ -15,6 +15,7 @@
 #include <pcor/words/suggest.hpp>
 #include "command.hpp"
 #include "diagnosis.hpp"
+#include "shaped_effect.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -62,7 +63,7 @@ ModelEffect own_effect(const Options& options, const std::vector<std::string>& v
 std::vector<ModelEffect> wanted_effects(const Options& options, const std::vector<std::string>& variables) {
   if (!options.formula.empty()) return {own_effect(options, variables)};
   std::vector<ModelEffect> effects;
-  for (const std::string& id : options.effects) effects.push_back(neutral_effect(id));
+  for (const std::string& id : options.effects) effects.push_back(shaped_effect(id));
   return effects;
 }
 
@@ -134,7 +135,8 @@ std::function<void()> add_add(CLI::App& program) {
       program.add_subcommand("add", "Add effects to a model, with neutral coefficients, which a refit finds");
   command
       ->add_option("effects", options->effects,
-                   "effects of the catalogue, or with --formula the name of an effect of your own")
+                   "effects of the catalogue, with their shape where it is not the usual one, such as "
+                   "static-transonic:onset=0.8; or with --formula the name of an effect of your own")
       ->required()
       ->type_name("EFFECT...");
   command->add_option("-m,--model", options->model, "the model to extend")

@@ -13,6 +13,7 @@
 #include "comparison.hpp"
 #include "diagnosis.hpp"
 #include "progress.hpp"
+#include "shaped_effect.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -116,7 +117,7 @@ std::string next_command(const Diagnosis& diagnosis, const Options& options) {
   const bool sure = diagnosis.verdict == Verdict::identified || diagnosis.verdict == Verdict::ambiguous;
   if (sure && std::all_of(findings.begin(), findings.end(), of_catalogue)) {
     std::string add = "pcor add";
-    for (const Finding& finding : findings) add += " " + finding.effect.id;
+    for (const Finding& finding : findings) add += " " + argument_of(finding.effect);
     return fmt::format("To add {} and fit: {}{}", findings.size() == 1 ? "it" : "them", add, and_fit);
   }
   if (sure && findings.size() == 1 && findings[0].effect.parameter_names == std::vector<std::string>{"k"}) {

@@ -192,6 +192,10 @@ Json as_json(const ModelEffect& effect) {
   Json json{{"effect", effect.id}, {"parameters", Json::object()}};
   const std::vector<std::string> names = parameter_names(effect);
   for (std::size_t i = 0; i < names.size(); ++i) json["parameters"][names[i]] = effect.parameters[i];
+  if (!effect.scaling.is_none()) {
+    json["scaling"] = {{"static_pressure", effect.scaling.static_pressure},
+                       {"dynamic_pressure", effect.scaling.dynamic_pressure}};
+  }
   if (effect.is_formula()) {
     json["where"] = facts_of(effect.where).name;
     json["formula"] = effect.formula;

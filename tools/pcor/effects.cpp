@@ -64,6 +64,11 @@ nlohmann::ordered_json as_json(const EffectFacts& facts) {
                                     {"typical", parameter.typical},
                                     {"shape", parameter.shape}});
   }
+  effect["scalings"] = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < facts.scaling_count(); ++i) {
+    effect["scalings"].push_back({{"static_pressure", facts.scalings[i].static_pressure},
+                                  {"dynamic_pressure", facts.scalings[i].dynamic_pressure}});
+  }
   effect["needs"] = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < facts.need_count(); ++i)
     effect["needs"].push_back(facts_of(facts.needs[i]).name);
@@ -93,6 +98,10 @@ void print_one(const EffectFacts& facts) {
         parameter.shape ? "shapes the effect" : fmt::format("neutral {}", parameter.neutral);
     fmt::print("  parameter    {}  [{}], {}, from {} to {}, typically {}\n", parameter.name, parameter.unit,
                neutral, parameter.lower, parameter.upper, parameter.typical);
+  }
+  for (std::size_t i = 0; i < facts.scaling_count(); ++i) {
+    fmt::print("  or scaled by (p/700 hPa)^{} (q/70 hPa)^{}\n", facts.scalings[i].static_pressure,
+               facts.scalings[i].dynamic_pressure);
   }
   if (facts.constants != GasConstants::any) fmt::print("  only in      {}\n", text_of(facts.constants));
   fmt::print("  needs        {}\n", names_of_needs(facts));

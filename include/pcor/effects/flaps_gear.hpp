@@ -14,6 +14,7 @@ struct FlapsGear {
     facts.formula = "defect * flaps / 50";
     facts.parameters[0] = {"defect", "hPa", 0.0, -50.0, 50.0, 1.5};
     facts.needs = {Quantity::flaps, Quantity::count, Quantity::count, Quantity::count};
+    facts.scalings[0] = {0, 1};  // with q
     facts.size = "C-130 1.3 to 1.7 hPa with flaps at 50 % and more; GV unknown";
     facts.look_alikes = "static-alpha-quad, ground-effect, pcor-regime";
     facts.manoeuvre = "level leg at one speed, repeated with flaps at 0 and 50 %";

@@ -14,7 +14,7 @@ struct GroundEffect {
     facts.where = Where::static_defect;
     facts.formula = "defect * (span / (4 * max(height_above_ground, span / 4)))^2";
     facts.parameters[0] = {"defect", "hPa", 0.0, -20.0, 20.0, 0.3};
-    facts.parameters[1] = {"span", "m", 40.0, 10.0, 80.0, 40.0, true};
+    facts.parameters[1] = {"span", "m", 40.0, 10.0, 80.0, 40.0, true, {20.0, 28.0, 52.0, 70.0}};
     facts.needs = {Quantity::height_above_ground, Quantity::count, Quantity::count, Quantity::count};
     facts.size =
         "below 0.5 hPa, and only within one span (C-130 40 m, GV 28 m) of the ground; a sample without "

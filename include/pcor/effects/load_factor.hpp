@@ -15,6 +15,7 @@ struct LoadFactor {
     facts.formula = "per_g * normal_acceleration / 9.80665";
     facts.parameters[0] = {"per_g", "hPa", 0.0, -50.0, 50.0, 1.0};
     facts.needs = {Quantity::normal_acceleration, Quantity::count, Quantity::count, Quantity::count};
+    facts.scalings[0] = {0, 1};  // with q
     facts.size = "0.2 to 1 hPa for 0.4 g, estimated; King Air above 1.5 hPa in accelerated flight";
     facts.look_alikes = "static-alpha, static-lag, lams-pod-flex";
     facts.manoeuvre = "pitch manoeuvre with two periods, 10 and 30 s; steady turn";

@@ -17,6 +17,7 @@ struct RollStatic {
     facts.formula = "defect * sin(roll * pi / 180)";
     facts.parameters[0] = {"defect", "hPa", 0.0, -20.0, 20.0, 0.3};
     facts.needs = {Quantity::roll, Quantity::count, Quantity::count, Quantity::count};
+    facts.scalings[0] = {0, 1};  // with q
     facts.size = "0 to 0.3 hPa, estimated";
     facts.look_alikes = "lams-azimuth, static-beta-odd, horizontal-gradient";
     facts.manoeuvre = "circles to the left and to the right";

@@ -14,6 +14,7 @@ struct StaticAlpha {
     facts.formula = "a1 * attack_ratio * static_pressure";
     facts.parameters[0] = {"a1", "1", 0.0, -2.0, 2.0, 0.0213};
     facts.needs = {Quantity::attack_ratio, Quantity::static_pressure, Quantity::count, Quantity::count};
+    facts.scalings[0] = {-1, 1};  // with q instead of p
     facts.size = "C-130 PSFD 0.0213, 1 hPa/deg at 700 hPa; PSFRD 0.0089";
     facts.look_alikes = "lams-elevation, pitot-angle, adif-drift";
     facts.manoeuvre = "pitch manoeuvre, speed run";

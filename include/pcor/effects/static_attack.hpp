@@ -14,6 +14,7 @@ struct StaticAttack {
     facts.formula = "a3 * attack * static_pressure";
     facts.parameters[0] = {"a3", "1/deg", 0.0, -0.1, 0.1, 0.0014};
     facts.needs = {Quantity::attack, Quantity::static_pressure, Quantity::count, Quantity::count};
+    facts.scalings[0] = {-1, 1};  // with q instead of p
     facts.size = "C-130 PSFD 0.00137/deg, PSFRD 0.0005/deg; GV 0.00215/deg";
     facts.look_alikes = "lams-elevation, pitot-angle, adif-drift";
     facts.manoeuvre = "pitch manoeuvre, speed run";

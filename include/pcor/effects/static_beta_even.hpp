@@ -14,6 +14,7 @@ struct StaticBetaEven {
     facts.formula = "b2 * sideslip^2 * static_pressure";
     facts.parameters[0] = {"b2", "1/deg2", 0.0, -0.02, 0.02, -2e-5};
     facts.needs = {Quantity::sideslip, Quantity::static_pressure, Quantity::count, Quantity::count};
+    facts.scalings[0] = {-1, 1};  // with q instead of p
     facts.size = "estimated 1e-5 to 4e-5 /deg2: -0.1 to -0.4 hPa at 4 deg";
     facts.look_alikes = "pitot-angle, lams-azimuth";
     facts.manoeuvre = "yaw manoeuvre, steady-heading sideslip";

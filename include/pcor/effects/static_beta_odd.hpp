@@ -14,6 +14,7 @@ struct StaticBetaOdd {
     facts.formula = "b1 * sideslip_ratio * static_pressure";
     facts.parameters[0] = {"b1", "1", 0.0, -2.0, 2.0, -0.0018};
     facts.needs = {Quantity::sideslip_ratio, Quantity::static_pressure, Quantity::count, Quantity::count};
+    facts.scalings[0] = {-1, 1};  // with q instead of p
     facts.size = "C-130 -0.00177 (PSFD), -0.0008 (PSFRD): -0.37 hPa at 3.7 deg, 700 hPa";
     facts.look_alikes = "lams-azimuth";
     facts.manoeuvre = "yaw manoeuvre";

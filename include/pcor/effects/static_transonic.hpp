@@ -14,7 +14,7 @@ struct StaticTransonic {
     facts.where = Where::static_defect;
     facts.formula = "strength * max(mach - onset, 0)^2 * static_pressure";
     facts.parameters[0] = {"strength", "1", 0.0, -100.0, 100.0, 1.0};
-    facts.parameters[1] = {"onset", "1", 0.82, 0.7, 0.95, 0.82, true};
+    facts.parameters[1] = {"onset", "1", 0.82, 0.7, 0.95, 0.82, true, {0.74, 0.8, 0.85, 0.91}};
     facts.needs = {Quantity::mach, Quantity::static_pressure, Quantity::count, Quantity::count};
     facts.size = "estimated 0.1 to 1 hPa on the GV from Mach 0.82 to 0.86";
     facts.look_alikes = "static-mach3, static-mach2, lams-fold";

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include <pcor/model/quantity.hpp>
+#include <pcor/model/scaling.hpp>
 
 namespace pcor {
 
@@ -85,10 +86,12 @@ struct ParameterFacts {
   /// True where it only shapes the effect, as the Mach number from which the effect acts does. It is neutral
   /// at its typical value, and the effect is absent, whatever the shape, when all others are neutral.
   bool shape = false;
+  std::array<double, 4> tried{};  ///< of a shape: other values that nature may have, and 0 behind them
 };
 
 inline constexpr std::size_t parameter_capacity = 3;
 inline constexpr std::size_t need_capacity = 4;
+inline constexpr std::size_t scaling_capacity = 2;
 
 /// The gas constants of a model in which an effect has a meaning.
 enum class GasConstants : std::uint8_t { any, dry, moist };
@@ -122,9 +125,10 @@ struct EffectFacts {
   std::array<ParameterFacts, parameter_capacity> parameters{};
   std::array<Quantity, need_capacity> needs{Quantity::count, Quantity::count, Quantity::count,
                                             Quantity::count};
-  std::string_view size;         ///< how large it is met, in words
-  std::string_view look_alikes;  ///< effects that data easily confuse with it
-  std::string_view manoeuvre;    ///< what separates it from them
+  std::array<Scaling, scaling_capacity> scalings{};  ///< other ones that nature may have; behind them none
+  std::string_view size;                             ///< how large it is met, in words
+  std::string_view look_alikes;                      ///< effects that data easily confuse with it
+  std::string_view manoeuvre;                        ///< what separates it from them
   std::string_view source;
   EffectExample example{};
   GasConstants constants = GasConstants::any;
@@ -137,6 +141,11 @@ struct EffectFacts {
   constexpr std::size_t need_count() const {
     std::size_t n = 0;
     while (n < need_capacity && needs[n] != Quantity::count) ++n;
+    return n;
+  }
+  constexpr std::size_t scaling_count() const {
+    std::size_t n = 0;
+    while (n < scaling_capacity && !scalings[n].is_none()) ++n;
     return n;
   }
 };

@@ -26,6 +26,8 @@ struct ModelEffect {
   std::string unit{};                          ///< of a formula's value
   std::string source{};                        ///< of a formula
 
+  Scaling scaling{};  ///< of an effect of the catalogue
+
   bool is_formula() const { return !formula.empty(); }
 };
 

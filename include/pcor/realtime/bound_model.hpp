@@ -48,6 +48,8 @@ class BoundModel {
       if (term.effect < catalogue_size) {
         const EffectFacts& facts = effect_facts[term.effect];
         read.insert(read.end(), facts.needs.begin(), facts.needs.begin() + facts.need_count());
+        if (term.scaling.static_pressure != 0) read.push_back(Quantity::static_pressure);
+        if (term.scaling.dynamic_pressure != 0) read.push_back(Quantity::dynamic_pressure);
       } else if (term.effect == Term::is_formula) {
         const std::vector<Quantity>& variables = formulas_[term.formula].variables;
         read.insert(read.end(), variables.begin(), variables.end());
@@ -135,6 +137,7 @@ class BoundModel {
     std::size_t formula = 0;
     std::size_t first_parameter = 0;
     Where where = Where::static_defect;
+    Scaling scaling{};
   };
 
   static constexpr std::size_t formula_variable_capacity = 12;
@@ -166,12 +169,20 @@ class BoundModel {
 
   template <class S, class P>
   Promoted<S, P> value(const Term& term, const State<S>& state, const P* own) const {
-    if (term.effect < catalogue_size) return effect_functions<S, P>[term.effect](state, own);
+    if (term.effect < catalogue_size) {
+      const Promoted<S, P> value = effect_functions<S, P>[term.effect](state, own);
+      return term.scaling.is_none() ? value : scaled(value, term.scaling, state);
+    }
     if (term.effect == Term::is_addition) return Promoted<S, P>(*own);
     const BoundFormula& bound = formulas_[term.formula];
     std::array<S, formula_variable_capacity> variables;
     for (std::size_t i = 0; i < bound.variables.size(); ++i) variables[i] = state[bound.variables[i]];
     return bound.formula.value(variables.data(), own);
+  }
+
+  template <class R, class S>
+  static R scaled(const R& value, const Scaling& scaling, const State<S>& state) {
+    return value * R(factor(scaling, state[Quantity::static_pressure], state[Quantity::dynamic_pressure]));
   }
 
   std::vector<Term> effects_;  // in the order of the model

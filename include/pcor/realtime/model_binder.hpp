@@ -115,6 +115,7 @@ class ModelBinder {
     Term term;
     term.effect = place;
     term.where = facts.where;
+    term.scaling = effect.scaling;
     add_effect(term, effect);
     return true;
   }

@@ -1,0 +1,97 @@
+#include "shaped_effect.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <charconv>
+#include <cmath>
+#include <sstream>
+#include <vector>
+
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/laws/model_file.hpp>
+#include <pcor/words/error.hpp>
+
+namespace pcor::tool {
+namespace {
+
+double number_in(const std::string& text, const std::string& argument) {
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, status] = std::from_chars(text.data(), end, value);
+  if (status != std::errc() || rest != end)
+    throw Error(fmt::format("{}: '{}' is no number; write name=number", argument, text));
+  return value;
+}
+
+int power_in(const std::string& text, const std::string& argument) {
+  const double power = number_in(text, argument);
+  if (power != std::floor(power) || std::abs(power) > largest_power) {
+    throw Error(fmt::format("{}: a power is a whole number from {} to {}, not {}", argument, -largest_power,
+                            largest_power, text));
+  }
+  return static_cast<int>(power);
+}
+
+void set_shape(ModelEffect& effect, const std::string& name, const std::string& value,
+               const std::string& argument) {
+  if (name == "static_pressure") {
+    effect.scaling.static_pressure = power_in(value, argument);
+    return;
+  }
+  if (name == "dynamic_pressure") {
+    effect.scaling.dynamic_pressure = power_in(value, argument);
+    return;
+  }
+  const EffectFacts& facts = effect_facts[effect_named(effect.id)];
+  std::vector<std::string_view> shapes;
+  for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
+    if (!facts.parameters[i].shape) continue;
+    const ParameterFacts& shape = facts.parameters[i];
+    if (shape.name == name) {
+      effect.parameters[i] = number_in(value, argument);
+      if (effect.parameters[i] >= shape.lower && effect.parameters[i] <= shape.upper) return;
+      throw Error(fmt::format("{}: {} = {} is impossible; give a number within [{}, {}]", argument, name,
+                              value, shape.lower, shape.upper));
+    }
+    shapes.push_back(shape.name);
+  }
+  shapes.insert(shapes.end(), {"static_pressure", "dynamic_pressure"});
+  throw Error(fmt::format("{}: nothing called '{}' shapes the effect {}; what does is {}", argument, name,
+                          effect.id, fmt::join(shapes, ", ")));
+}
+
+}  // namespace
+
+std::string argument_of(const ModelEffect& effect) {
+  std::vector<std::string> shapes;
+  if (!effect.is_formula()) {
+    const EffectFacts& facts = effect_facts[effect_named(effect.id)];
+    for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
+      const ParameterFacts& parameter = facts.parameters[i];
+      if (parameter.shape && effect.parameters[i] != parameter.typical)
+        shapes.push_back(fmt::format("{}={}", parameter.name, effect.parameters[i]));
+    }
+  }
+  if (effect.scaling.static_pressure != 0)
+    shapes.push_back(fmt::format("static_pressure={}", effect.scaling.static_pressure));
+  if (effect.scaling.dynamic_pressure != 0)
+    shapes.push_back(fmt::format("dynamic_pressure={}", effect.scaling.dynamic_pressure));
+  return effect.id + (shapes.empty() ? "" : ":") + fmt::format("{}", fmt::join(shapes, ","));
+}
+
+ModelEffect shaped_effect(const std::string& argument) {
+  std::istringstream text(argument);
+  std::string id;
+  std::getline(text, id, ':');
+  ModelEffect effect = neutral_effect(id);
+  for (std::string shape; std::getline(text, shape, ',');) {
+    const std::size_t sign = shape.find('=');
+    if (sign == std::string::npos)
+      throw Error(fmt::format("{}: '{}' is no shape; write {}:name=number", argument, shape, id));
+    set_shape(effect, shape.substr(0, sign), shape.substr(sign + 1), argument);
+  }
+  return effect;
+}
+
+}  // namespace pcor::tool
