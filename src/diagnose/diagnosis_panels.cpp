@@ -46,8 +46,11 @@ ReportTable variables_table(const Unexplained& unexplained) {
   ReportTable table;
   table.title = "Variables that the unexplained structure goes with";
   table.caption =
-      "Share of the residual's variance that goes with the variable in any way and along a straight line; p "
-      "is protected against chance over all variables.";
+      "Share of the residual's variance that goes with the variable in any way and along a straight line, "
+      "with "
+      "as much drift beside it as is likeliest then; p is the probability that the best of all variables "
+      "does "
+      "as well on these residuals when they are shifted in time, or have signs at random.";
   table.headers = {"variable", "share", "on a line", "slope", "hPa per", "p", "formula", "what"};
   for (const TracedVariable& variable : unexplained.variables) {
     table.rows.push_back({variable.name, percent(variable.r2), percent(variable.linear_r2),

@@ -218,8 +218,26 @@ std::vector<std::string> unexplained_text(const Unexplained& unexplained) {
                                 first.unit.empty() || first.unit == "1" ? "hPa" : "hPa per " + first.unit));
     }
     with += ".";
+    if (!first.sampling.empty()) with += fmt::format(" Of the variable {} are used.", first.sampling);
     if (!first.formula.empty()) with += fmt::format(" The formula {} would describe it.", first.formula);
+    with += first.where ? fmt::format(" It acts on the {}.", facts_of(*first.where).adds_to)
+                        : std::string(
+                              " Where it acts is not known: one residual does not tell places apart, and a "
+                              "formula is written as added to the static pressure, which describes it as "
+                              "well as any other place.");
     all.push_back(with);
+  }
+  for (const FlightStep& step : unexplained.steps) {
+    all.push_back(fmt::format(
+        "The mean of {} lies {} hPa {} that of the other flights; chance would do as much with a probability "
+        "of {}. Ask what was changed on the aircraft between them.",
+        step.flight, with_error(std::abs(step.size), step.standard_error),
+        step.size < 0.0 ? "below" : "above", probability(step.p_value)));
+  }
+  if (!unexplained.computed.empty()) {
+    all.push_back(fmt::format(
+        "Not looked at, since the files say that they are computed from the residual's own sensors: {}.",
+        list_text(unexplained.computed)));
   }
   if (!unexplained.shares_noise.empty()) {
     all.push_back(fmt::format("Not looked at, since their noise is that of the residual: {}.",

@@ -7,49 +7,93 @@ namespace pcor::internal {
 namespace {
 
 constexpr std::size_t degree = 2;
+constexpr std::size_t harmonics = 2;
+
+/// The quadratic B-spline whose knots are 0, 1, 2 and 3 (de Boor 1978, A practical guide to splines).
+double spline_at(double x) {
+  if (x <= 0.0 || x >= 3.0) return 0.0;
+  if (x < 1.0) return 0.5 * x * x;
+  if (x < 2.0) return 0.75 - (x - 1.5) * (x - 1.5);
+  return 0.5 * (3.0 - x) * (3.0 - x);
+}
 
 }  // namespace
 
-Smooth::Smooth(std::vector<double> values, std::size_t columns) {
+bool Smooth::describe(std::vector<double>& values) {
   values.erase(std::remove_if(values.begin(), values.end(), [](double x) { return !std::isfinite(x); }),
                values.end());
-  if (values.size() < 3) return;
+  if (values.size() < 3) return false;
   std::sort(values.begin(), values.end());
   for (const double value : values) centre_ += value;
   centre_ /= static_cast<double>(values.size());
   for (const double value : values) deviation_ += (value - centre_) * (value - centre_);
   deviation_ = std::sqrt(deviation_ / static_cast<double>(values.size()));
   // What varies in the last digits only does not vary.
-  if (!(deviation_ > 1e-9 * std::max(std::abs(values.front()), std::abs(values.back())))) return;
+  return deviation_ > 1e-9 * std::max(std::abs(values.front()), std::abs(values.back()));
+}
 
+Smooth Smooth::with_knots_at_values(std::vector<double> values, std::size_t columns) {
+  Smooth smooth;
+  if (!smooth.describe(values)) return smooth;
   if (columns < degree) {
-    columns_ = 1;
-    return;
+    smooth.columns_ = 1;
+    return smooth;
   }
   std::vector<double> distinct;
   std::unique_copy(values.begin(), values.end(), std::back_inserter(distinct));
   if (distinct.size() <= columns) {
     // One value has no column, as the constant is not theirs; another is told by the straight line.
-    levels_.assign(distinct.begin() + 1, distinct.end() - 1);
-    columns_ = 1 + levels_.size();
-    return;
+    smooth.levels_.assign(distinct.begin() + 1, distinct.end() - 1);
+    smooth.columns_ = 1 + smooth.levels_.size();
+    return smooth;
   }
   // Quadratic splines with so many columns, without the constant and the straight line, have that many spans.
   const std::size_t spans = columns > degree ? columns - degree + 1 : 1;
-  std::vector<double> inner;
   for (std::size_t k = 0; k <= spans; ++k) {
     const double place = static_cast<double>(k) / static_cast<double>(spans);
     const double knot = values[static_cast<std::size_t>(place * static_cast<double>(values.size() - 1))];
-    if (inner.empty() || knot > inner.back()) inner.push_back(knot);
+    if (smooth.knots_.empty() || knot > smooth.knots_.back()) smooth.knots_.push_back(knot);
   }
-  columns_ = inner.size();  // a line, a square, and one bent function for each inner knot
-  knots_ = inner;
+  smooth.columns_ = smooth.knots_.size();  // a line, a square, and one bent function for each inner knot
+  return smooth;
+}
+
+Smooth Smooth::with_even_knots(std::vector<double> values, std::size_t columns) {
+  Smooth smooth;
+  if (columns < degree || !smooth.describe(values)) return smooth;
+  // Of the splines the first and the last are left out: one is told by the straight line, and all together
+  // would be a constant.
+  const std::size_t spans = columns - 1;
+  smooth.columns_ = columns;
+  smooth.distance_ = (values.back() - values.front()) / static_cast<double>(spans);
+  smooth.first_ = values.front();
+  return smooth;
+}
+
+Smooth Smooth::periodic(std::vector<double> values, double turn) {
+  Smooth smooth;
+  if (!smooth.describe(values)) return smooth;
+  smooth.turn_ = turn;
+  smooth.columns_ = 2 * harmonics;
+  return smooth;
 }
 
 void Smooth::evaluate(double value, double* out) const {
   if (columns_ == 0) return;
-  const double x = (value - centre_) / deviation_;
-  out[0] = x;
+  if (!has_line()) {
+    const double angle = 2.0 * std::acos(-1.0) * value / turn_;
+    for (std::size_t k = 0; k < harmonics; ++k) {
+      out[2 * k] = std::cos(static_cast<double>(k + 1) * angle);
+      out[2 * k + 1] = std::sin(static_cast<double>(k + 1) * angle);
+    }
+    return;
+  }
+  out[0] = (value - centre_) / deviation_;
+  if (distance_ > 0.0) {
+    const double place = (value - first_) / distance_;
+    for (std::size_t k = 1; k < columns_; ++k) out[k] = spline_at(place + 2.0 - static_cast<double>(k));
+    return;
+  }
   if (knots_.empty()) {
     for (std::size_t k = 0; k < levels_.size(); ++k) out[k + 1] = value == levels_[k] ? 1.0 : 0.0;
     return;

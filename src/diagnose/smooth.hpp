@@ -5,16 +5,26 @@
 
 namespace pcor::internal {
 
-/// Smooth functions of one variable: quadratic splines with knots where the values are, or one column for
-/// each value where there are only a few. The first column is the variable itself, centred and of unit
-/// deviation, so a straight line is a part of them; a constant is not.
+/// Functions of one variable that together describe any smooth dependence on it. A constant is not among
+/// them.
 class Smooth {
  public:
+  /// Quadratic splines with knots where the values are, or one function for each value where there are only a
+  /// few. The first is the straight line.
   /// @param values those that occur; NaN are left out. @param columns how many there may be, at least 1
-  Smooth(std::vector<double> values, std::size_t columns);
+  static Smooth with_knots_at_values(std::vector<double> values, std::size_t columns);
+
+  /// Quadratic splines with knots at even distances, for a curve that bends many times over the range of the
+  /// values, wherever most of them are. The first function is the straight line.
+  static Smooth with_even_knots(std::vector<double> values, std::size_t columns);
+
+  /// Cosine and sine of an angle and of twice the angle. @param turn of the unit that the angle has
+  static Smooth periodic(std::vector<double> values, double turn);
 
   /// 0 where the variable does not vary.
   std::size_t columns() const { return columns_; }
+  /// Whether the first function is the straight line, centred and of unit deviation.
+  bool has_line() const { return turn_ == 0.0; }
   double centre() const { return centre_; }
   double deviation() const { return deviation_; }
 
@@ -22,11 +32,17 @@ class Smooth {
   void evaluate(double value, double* out) const;
 
  private:
+  /// Finds centre and deviation of the values, which are sorted after it. @return whether they vary
+  bool describe(std::vector<double>& values);
+
   std::size_t columns_ = 0;
   double centre_ = 0.0;
   double deviation_ = 0.0;
+  double turn_ = 0.0;             // of an angle; 0 for what is none
   std::vector<double> levels_{};  // of a variable with few values
-  std::vector<double> knots_{};
+  std::vector<double> knots_{};   // where the values are
+  double first_ = 0.0;            // of even knots
+  double distance_ = 0.0;         // between them
 };
 
 }  // namespace pcor::internal

@@ -1,60 +1,145 @@
 #include "diagnose/structure.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
 
+#include "diagnose/same_time.hpp"
 #include "diagnose/scores.hpp"
 #include "numerics/chi_squared.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/median.hpp"
 #include "numerics/triangular_factor.hpp"
+#include "numerics/whitening.hpp"
 
 namespace pcor::internal {
 namespace {
 
 constexpr std::size_t most_columns = 6;
+constexpr std::size_t fine_columns = 24;
 constexpr std::size_t bins_per_column = 40;
 constexpr double most_missing = 0.1;
 constexpr double least_left = 1e-3;  // of a direction, by the model
+constexpr Eigen::Index draws =
+    99;  // of each of the two ways in which residuals lose what goes with variables
+/// Parts of the rms of the drift that may be left when a variable takes its share.
+constexpr std::array<double, 3> parts_of_drift{1.0, 0.4, 0.0};
+
+/// A series that begins at a later value and goes on at its begin.
+Eigen::VectorXd rotated(const Eigen::VectorXd& series, double part) {
+  const auto first = static_cast<Eigen::Index>(part * static_cast<double>(series.size()));
+  Eigen::VectorXd result(series.size());
+  result << series.tail(series.size() - first), series.head(first);
+  return result;
+}
+
+/// Residuals of a flight that go with nothing, by columns: first shifted in time, then with signs that each
+/// minute has at random. What was measured at the same time is drawn alike, since it may have noise in
+/// common.
+Eigen::MatrixXd drawn(const Eigen::VectorXd& left, const std::vector<Binning>& bins, std::size_t flight,
+                      std::uint64_t seed) {
+  constexpr double minute = 60.0;  // s
+  Eigen::MatrixXd result(left.size(), 2 * draws);
+  std::size_t first = 0;
+  while (first < flight && !is_of_same_time(bins[first], bins[flight])) ++first;
+  std::mt19937_64 shifts(seed + first);
+  std::uniform_real_distribution<double> part(0.1, 0.9);
+  for (Eigen::Index k = 0; k < draws; ++k) result.col(k) = rotated(left, part(shifts));
+  double now = -1.0;
+  Eigen::RowVectorXd signs(draws);
+  for (Eigen::Index i = 0; i < left.size(); ++i) {
+    const double begin = std::floor(bins[flight].time()[static_cast<std::size_t>(i)] / minute);
+    if (begin != now) {
+      std::mt19937_64 engine(seed + static_cast<std::uint64_t>(begin));
+      for (Eigen::Index k = 0; k < draws; ++k) signs[k] = (engine() & 1U) != 0 ? 1.0 : -1.0;
+      now = begin;
+    }
+    result.row(i).tail(draws) = left[i] * signs;
+  }
+  return result;
+}
+
+/// The probability that a value is reached, by others drawn without a reason for it.
+double chance_among(double value, const Eigen::VectorXd& others) {
+  constexpr double euler = 0.57721566490153286;
+  const auto count = static_cast<double>(others.size());
+  const double mean = others.mean();
+  const double deviation = std::sqrt((others.array() - mean).square().sum() / (count - 1.0));
+  const double width = deviation * std::sqrt(6.0) / std::acos(-1.0);
+  if (!(width > 0.0)) return 1.0;
+  // Beyond all others the law of the largest has the say, among them their number.
+  const double by_law = -std::expm1(-std::exp(-(value - mean) / width - euler));
+  const double by_number = static_cast<double>((others.array() >= value).count()) / count;
+  return std::max(by_law, by_number);
+}
 
 }  // namespace
 
 StructureTest::StructureTest(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
-                             const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise)
-    : bins_(&bins), noise_(&noise) {
-  const Scores scores = find_scores(bins, columns, residuals, noise);
-  const Eigen::Index width = scores.columns();
-  scale_ = scores.information.diagonal().head(width).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  inverse_ = pseudo_inverse(
-      scale_.asDiagonal() * scores.information.topLeftCorner(width, width) * scale_.asDiagonal(), 1e-12);
-  const Eigen::VectorXd right = scale_.asDiagonal() * scores.information.col(width).head(width);
-  const Eigen::VectorXd solution = scale_.asDiagonal() * (inverse_ * right);
-  squares_ = scores.information(width, width) - right.dot(inverse_ * right);
-  variance_ = squares_ / std::max(1.0, static_cast<double>(scores.row_count()) - static_cast<double>(width));
-  block_ = scores.block;
-  blocks_ = scores.blocks;
-  for (std::size_t f = 0; f < bins.size(); ++f) {
-    model_.emplace_back(scores.rows[f].leftCols(width));
-    left_.push_back(scores.left(f, solution));
+                             const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise,
+                             std::uint64_t seed)
+    : bins_(&bins), largest_(Eigen::VectorXd::Zero(2 * draws)) {
+  alone_ = std::numeric_limits<double>::infinity();
+  for (const double part : parts_of_drift) {
+    if (part < 1.0 && !noise.drifts()) break;
+    Whitened& flights = whitened_.emplace_back();
+    flights.noise = noise;
+    for (double& slow : flights.noise.slow) slow *= part;
+    const Scores scores = find_scores(bins, columns, residuals, flights.noise);
+    const Eigen::Index width = scores.columns();
+    flights.scale = scores.information.diagonal().head(width).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    flights.inverse =
+        pseudo_inverse(flights.scale.asDiagonal() * scores.information.topLeftCorner(width, width) *
+                           flights.scale.asDiagonal(),
+                       1e-12);
+    const Eigen::VectorXd right = flights.scale.asDiagonal() * scores.information.col(width).head(width);
+    const Eigen::VectorXd solution = flights.scale.asDiagonal() * (flights.inverse * right);
+    flights.squares = scores.information(width, width) - right.dot(flights.inverse * right);
+    flights.model_with_drawn = Eigen::MatrixXd::Zero(width, 2 * draws);
+    for (std::size_t f = 0; f < bins.size(); ++f) {
+      flights.model.emplace_back(scores.rows[f].leftCols(width));
+      flights.left.push_back(scores.left(f, solution));
+      flights.determinant += Whitening(bins[f], flights.noise, f).log_determinant();
+      flights.drawn.push_back(drawn(flights.left[f], bins, f, seed));
+      flights.model_with_drawn += flights.model[f].transpose() * flights.drawn[f];
+    }
+    alone_ = std::min(alone_, minus_likelihood(flights, 0.0));
   }
 }
 
-Smooth StructureTest::smooth_of(const std::vector<const double*>& values) const {
-  std::vector<double> all;
+std::size_t StructureTest::rows() const {
   std::size_t rows = 0;
+  for (const Binning& bins : *bins_) rows += bins.size();
+  return rows;
+}
+
+double StructureTest::minus_likelihood(const Whitened& flights, double taken) const {
+  const double left = std::max(flights.squares - taken, 1e-9 * flights.squares);
+  return flights.determinant + static_cast<double>(rows()) * std::log(left);
+}
+
+std::vector<double> StructureTest::values_of(const std::vector<const double*>& values) const {
+  std::vector<double> all;
   for (std::size_t f = 0; f < bins_->size(); ++f) {
     for (const std::size_t record : (*bins_)[f].records()) all.push_back(values[f][record]);
-    rows += (*bins_)[f].size();
   }
   const auto missing = std::count_if(all.begin(), all.end(), [](double x) { return !std::isfinite(x); });
   if (static_cast<double>(missing) > most_missing * static_cast<double>(all.size())) all.clear();
-  return {std::move(all), std::clamp(rows / bins_per_column, std::size_t{1}, most_columns)};
+  return all;
 }
 
-std::vector<Eigen::MatrixXd> StructureTest::columns_of(const std::vector<const double*>& values) const {
-  return columns_of(smooth_of(values), values);
+bool StructureTest::add(const std::string& name, const std::vector<const double*>& values, double turn) {
+  if (turn > 0.0) return add(name, values, Smooth::periodic(values_of(values), turn));
+  const std::size_t most = std::clamp(rows() / bins_per_column, std::size_t{1}, most_columns);
+  return add(name, values, Smooth::with_knots_at_values(values_of(values), most));
+}
+
+bool StructureTest::add_fine(const std::string& name, const std::vector<const double*>& values) {
+  const std::size_t most = std::min(rows() / bins_per_column, fine_columns);
+  if (most <= most_columns) return false;
+  return add(name, values, Smooth::with_even_knots(values_of(values), most));
 }
 
 std::vector<Eigen::MatrixXd> StructureTest::columns_of(const Smooth& smooth,
@@ -79,63 +164,92 @@ std::vector<Eigen::MatrixXd> StructureTest::columns_of(const Smooth& smooth,
   return columns;
 }
 
-bool StructureTest::add(const std::string& name, const std::vector<const double*>& values) {
-  const Smooth smooth = smooth_of(values);
-  const Eigen::Index count = as_index(smooth.columns());
-  if (count == 0) return false;
-  const std::vector<Eigen::MatrixXd> columns = columns_of(smooth, values);
-
+StructureTest::Taken StructureTest::taken_by(const std::vector<Eigen::MatrixXd>& columns,
+                                             const Whitened& flights) const {
+  const Eigen::Index count = columns.front().cols();
   Eigen::MatrixXd own = Eigen::MatrixXd::Zero(count, count);
-  Eigen::MatrixXd with_model = Eigen::MatrixXd::Zero(scale_.size(), count);
+  Eigen::MatrixXd with_model = Eigen::MatrixXd::Zero(flights.scale.size(), count);
   Eigen::VectorXd score = Eigen::VectorXd::Zero(count);
-  Eigen::MatrixXd block_scores = Eigen::MatrixXd::Zero(blocks_, count);
-  std::vector<Eigen::MatrixXd> whites;
+  Eigen::MatrixXd drawn = Eigen::MatrixXd::Zero(count, 2 * draws);
   for (std::size_t f = 0; f < bins_->size(); ++f) {
-    const Eigen::MatrixXd white = whitened(columns[f], (*bins_)[f], *noise_, f);
+    const Eigen::MatrixXd white = whitened(columns[f], (*bins_)[f], flights.noise, f);
     own += white.transpose() * white;
-    with_model += model_[f].transpose() * white;
-    score += white.transpose() * left_[f];
-    whites.push_back(white);
+    with_model += flights.model[f].transpose() * white;
+    score += white.transpose() * flights.left[f];
+    drawn += white.transpose() * flights.drawn[f];
   }
-  const Eigen::MatrixXd solution = scale_.asDiagonal() * (inverse_ * (scale_.asDiagonal() * with_model));
+  const Eigen::MatrixXd solution =
+      flights.scale.asDiagonal() * (flights.inverse * (flights.scale.asDiagonal() * with_model));
   const Eigen::VectorXd before = own.diagonal();
   own -= with_model.transpose() * solution;
-  for (std::size_t f = 0; f < bins_->size(); ++f) {
-    const Eigen::MatrixXd left = whites[f] - model_[f] * solution;
-    for (Eigen::Index i = 0; i < left.rows(); ++i)
-      block_scores.row(block_[f][static_cast<std::size_t>(i)]) += left_[f][i] * left.row(i);
-  }
+  drawn -= solution.transpose() * flights.model_with_drawn;
 
-  Structure structure;
-  structure.name = name;
-  structure.centre = smooth.centre();
+  Taken taken;
   if (own(0, 0) > least_left * before[0]) {
-    structure.line_chi2 = score[0] * score[0] / own(0, 0) / variance_;
-    structure.slope = score[0] / own(0, 0) / smooth.deviation();
-    structure.slope_error = std::sqrt(variance_ / own(0, 0)) / smooth.deviation();
+    taken.line_score = score[0];
+    taken.line_information = own(0, 0);
+    taken.line = score[0] * score[0] / own(0, 0);
   }
   const Eigen::VectorXd scale = before.cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const SymmetricEigen solver = symmetric_eigen(scale.asDiagonal() * own * scale.asDiagonal());
   Eigen::MatrixXd turn(count, count);
-  Eigen::Index kept = 0;
   for (Eigen::Index k = 0; k < count; ++k) {
     if (!(solver.eigenvalues()[k] > least_left)) continue;
-    turn.col(kept++) = scale.asDiagonal() * solver.eigenvectors().col(k) / std::sqrt(solver.eigenvalues()[k]);
+    turn.col(taken.freedom++) =
+        scale.asDiagonal() * solver.eigenvectors().col(k) / std::sqrt(solver.eigenvalues()[k]);
   }
-  if (kept == 0) return false;
-  const Eigen::VectorXd normal = turn.leftCols(kept).transpose() * score / std::sqrt(variance_);
-  structure.chi2 = normal.squaredNorm();
-  structure.freedom = static_cast<double>(kept);
-  structure.equivalent = one_degree_equivalent(structure.chi2, structure.freedom);
-  structure.share = std::max(0.0, structure.chi2 - structure.freedom) * variance_ / squares_;
-  structures_.push_back(structure);
-  block_scores_.emplace_back(block_scores * turn.leftCols(kept) / std::sqrt(variance_));
-  return true;
+  const Eigen::MatrixXd normal = turn.leftCols(taken.freedom).transpose();
+  taken.all = (normal * score).squaredNorm();
+  taken.drawn = (normal * drawn).colwise().squaredNorm();
+  return taken;
 }
 
-double StructureTest::threshold(double probability) const {
-  const double each = probability / std::max<double>(1.0, static_cast<double>(structures_.size()));
-  return chi_squared_value(each, 1.0);
+bool StructureTest::add(const std::string& name, const std::vector<const double*>& values,
+                        const Smooth& smooth) {
+  if (smooth.columns() == 0) return false;
+  const std::vector<Eigen::MatrixXd> columns = columns_of(smooth, values);
+  Structure structure;
+  structure.name = name;
+  structure.centre = smooth.centre();
+  double with_all = std::numeric_limits<double>::infinity();
+  double with_line = with_all;
+  Eigen::VectorXd with_drawn = Eigen::VectorXd::Constant(2 * draws, with_all);
+  for (const Whitened& flights : whitened_) {
+    const Taken taken = taken_by(columns, flights);
+    if (taken.freedom == 0) return false;
+    const double freedom =
+        std::max(1.0, static_cast<double>(rows()) - static_cast<double>(flights.scale.size()));
+    const double variance = flights.squares / freedom;
+    structure.freedom = std::max(structure.freedom, static_cast<double>(taken.freedom));
+    if (smooth.has_line() && &flights == &whitened_.front()) structure.line_chi2 = taken.line / variance;
+    if (const double value = minus_likelihood(flights, taken.all); value < with_all) {
+      with_all = value;
+      structure.share =
+          std::max(0.0, taken.all / flights.squares - static_cast<double>(taken.freedom) / freedom);
+    }
+    if (const double value = minus_likelihood(flights, taken.line);
+        smooth.has_line() && taken.line > 0.0 && value < with_line) {
+      with_line = value;
+      structure.line_share = std::max(0.0, taken.line / flights.squares - 1.0 / freedom);
+      structure.slope = taken.line_score / taken.line_information / smooth.deviation();
+      structure.slope_error = std::sqrt(variance / taken.line_information) / smooth.deviation();
+    }
+    for (Eigen::Index k = 0; k < 2 * draws; ++k)
+      with_drawn[k] = std::min(with_drawn[k], minus_likelihood(flights, taken.drawn[k]));
+  }
+  structure.gain = alone_ - with_all;
+  structure.line_gain = std::isfinite(with_line) ? alone_ - with_line : 0.0;
+  const Eigen::VectorXd by_chance = alone_ - with_drawn.array();
+  const double mean = std::max(by_chance.head(draws).mean(), by_chance.tail(draws).mean());
+  const double unit = std::max(1.0, mean / structure.freedom);
+  structure.equivalent = one_degree_equivalent(structure.gain / unit, structure.freedom);
+  for (Eigen::Index k = 0; k < 2 * draws; ++k) {
+    // The equivalent of one degree is never above the value itself.
+    if (by_chance[k] / unit <= largest_[k]) continue;
+    largest_[k] = std::max(largest_[k], one_degree_equivalent(by_chance[k] / unit, structure.freedom));
+  }
+  structures_.push_back(structure);
+  return true;
 }
 
 std::optional<std::size_t> StructureTest::strongest() const {
@@ -146,31 +260,9 @@ std::optional<std::size_t> StructureTest::strongest() const {
   return static_cast<std::size_t>(found - structures_.begin());
 }
 
-double StructureTest::effective_blocks(std::size_t number) const {
-  const Eigen::MatrixXd& scores = block_scores_[number];
-  // Along the direction in which it scores.
-  const Eigen::VectorXd along = scores * scores.colwise().sum().transpose();
-  const double squares = along.squaredNorm();
-  return squares > 0.0 ? along.cwiseAbs().sum() * along.cwiseAbs().sum() / squares : 0.0;
-}
-
-double StructureTest::chance_of(double score, std::size_t flips, std::uint64_t seed) const {
-  std::mt19937_64 engine(seed);
-  const Eigen::MatrixXd signs = Eigen::MatrixXd::NullaryExpr(
-      as_index(flips), blocks_,
-      [&](Eigen::Index, Eigen::Index) { return (engine() & 1U) != 0 ? 1.0 : -1.0; });
-  std::vector<bool> above(flips, false);
-  for (const Eigen::MatrixXd& scores : block_scores_) {
-    const Eigen::VectorXd chi2 = (signs * scores).rowwise().squaredNorm();
-    const auto freedom = static_cast<double>(scores.cols());
-    for (std::size_t flip = 0; flip < flips; ++flip) {
-      // The equivalent of one degree is never above chi2 itself.
-      if (above[flip] || chi2[as_index(flip)] < score) continue;
-      above[flip] = one_degree_equivalent(chi2[as_index(flip)], freedom) >= score;
-    }
-  }
-  const auto count = std::count(above.begin(), above.end(), true);
-  return static_cast<double>(count + 1) / static_cast<double>(flips + 1);
+double StructureTest::chance_of(double equivalent) const {
+  return std::max(chance_among(equivalent, largest_.head(draws)),
+                  chance_among(equivalent, largest_.tail(draws)));
 }
 
 bool shares_noise(const std::vector<std::vector<double>>& residuals,

@@ -12,66 +12,91 @@
 
 namespace pcor::internal {
 
-/// What a smooth function of a variable explains of residuals that a model leaves.
+/// What functions of a variable explain of residuals that a model leaves.
 struct Structure {
   std::string name;
-  double chi2 = 0.0;
-  double freedom = 0.0;
-  double equivalent = 0.0;  ///< chi2 as if of one degree
+  double gain = 0.0;        ///< twice the gain in log-likelihood over drift alone, drift as likely as can be
+  double freedom = 0.0;     ///< number of functions
+  double equivalent = 0.0;  ///< the gain as a chi-squared of one degree, in units of what chance gains
   double share = 0.0;       ///< of the residual's squares that the noise does not account for, 0 to 1
-  double line_chi2 = 0.0;   ///< of the straight line alone
+  double line_gain = 0.0;   ///< as `gain`, of the straight line alone
+  double line_chi2 = 0.0;   ///< of the straight line alone, the drift as it is given
+  double line_share = 0.0;  ///< as `share`, of the straight line alone
   double slope = 0.0;       ///< of the straight line, hPa per unit of the variable
   double slope_error = 0.0;
   double centre = 0.0;  ///< mean of the variable
 };
 
-/// Tests whether residuals hold structure that a model does not explain: smooth functions of variables, one
-/// variable at a time.
+/// Tests whether residuals hold structure that a model does not explain: functions of variables, one variable
+/// at a time.
+///
+/// What goes slowly with a variable passes for drift where drift is looked for first. So a variable competes
+/// with drift on equal terms: the likelihood of its functions beside as much of the drift as is likeliest
+/// then, against that of drift alone. Whether it gains more than chance is told by the flights themselves:
+/// their residuals, shifted in time against the variables, keep all that noise has (bursts, memory, drift),
+/// and lose what goes with a variable; with the signs of their minutes drawn at random they keep what noise
+/// has where a variable is large, as in turbulence. Structure has to be beyond both.
 class StructureTest {
  public:
   /// @param columns of the model, base and chosen effects, in bins; @param residuals likewise
+  /// @param noise with all the drift that there is beside the model; @param seed of shifts and signs
   StructureTest(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
-                const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise);
+                const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise, std::uint64_t seed);
 
-  /// Tries a variable: its values of each flight, one for each record. Returns false, and leaves it out,
-  /// where it does not vary or has no value in more than a tenth of the records used.
-  bool add(const std::string& name, const std::vector<const double*>& values);
+  /// Tries functions of a variable: its values of each flight, one for each record. Returns false, and leaves
+  /// it out, where it does not vary or has no value in more than a tenth of the records used.
+  /// @param turn of an angle, in its unit; 0 for what is none
+  bool add(const std::string& name, const std::vector<const double*>& values, double turn = 0.0);
+
+  /// The same with functions that bend many times over the range of the variable.
+  bool add_fine(const std::string& name, const std::vector<const double*>& values);
 
   const std::vector<Structure>& structures() const { return structures_; }
-
-  /// The score that chance exceeds somewhere among all variables with that probability.
-  double threshold(double probability) const;
 
   /// The number of the strongest of all by its equivalent; nothing where nothing was added.
   std::optional<std::size_t> strongest() const;
 
-  /// On how many minutes of equal weight structure number `number` rests.
-  double effective_blocks(std::size_t number) const;
-
-  /// The columns that describe a variable, in bins, of each flight: to put them into a model.
-  std::vector<Eigen::MatrixXd> columns_of(const std::vector<const double*>& values) const;
-
-  /// How often signs of minutes, drawn at random, make any variable score as well as `score`: the tails of
-  /// noise that is not normal.
-  double chance_of(double score, std::size_t flips, std::uint64_t seed) const;
+  /// How often the best of all variables does as well on residuals that are shifted in time, or have signs at
+  /// random, whichever is more: by the law of the largest of many (Gumbel 1958, Statistics of extremes),
+  /// fitted to them.
+  double chance_of(double equivalent) const;
 
  private:
-  Smooth smooth_of(const std::vector<const double*>& values) const;
+  /// The flights whitened with some of the drift.
+  struct Whitened {
+    NoiseModel noise{};
+    std::vector<Eigen::MatrixXd> model{};  // columns of each flight
+    std::vector<Eigen::VectorXd> left{};   // of the residuals, by the model
+    std::vector<Eigen::MatrixXd> drawn{};  // the same by columns, each shifted or with signs at random
+    Eigen::MatrixXd model_with_drawn{};
+    Eigen::VectorXd scale{};
+    Eigen::MatrixXd inverse{};  // of the scaled information of the model
+    double squares = 0.0;       // of what is left
+    double determinant = 0.0;   // logarithm of that of the covariance of the noise
+  };
+  /// What a variable takes off the squares: of the residuals, and of those that are drawn.
+  struct Taken {
+    double line = 0.0;
+    double line_information = 0.0;
+    double line_score = 0.0;
+    double all = 0.0;
+    Eigen::VectorXd drawn{};
+    Eigen::Index freedom = 0;
+  };
+
+  std::vector<double> values_of(const std::vector<const double*>& values) const;
+  std::size_t rows() const;
+  bool add(const std::string& name, const std::vector<const double*>& values, const Smooth& smooth);
   std::vector<Eigen::MatrixXd> columns_of(const Smooth& smooth,
                                           const std::vector<const double*>& values) const;
+  Taken taken_by(const std::vector<Eigen::MatrixXd>& columns, const Whitened& flights) const;
+  double minus_likelihood(const Whitened& flights, double taken) const;
 
   const std::vector<Binning>* bins_;
-  const NoiseModel* noise_;
-  std::vector<Eigen::MatrixXd> model_{};  // whitened columns of each flight
-  std::vector<Eigen::VectorXd> left_{};   // of the whitened residuals, by the model
-  std::vector<std::vector<Eigen::Index>> block_{};
-  Eigen::Index blocks_ = 0;
-  Eigen::VectorXd scale_{};
-  Eigen::MatrixXd inverse_{};  // of the scaled information of the model
-  double squares_ = 0.0;
-  double variance_ = 1.0;
+  std::vector<Whitened> whitened_{};  // by how much of the drift is left, all of it first
+  double alone_ = 0.0;                // minus twice the log-likelihood of drift alone
   std::vector<Structure> structures_{};
-  std::vector<Eigen::MatrixXd> block_scores_{};  // of each variable, blocks by its directions
+  Eigen::VectorXd largest_{};  // of each draw, over all variables
 };
 
 /// Whether the noise of a variable is the noise of the residual: their changes from one record to the next go

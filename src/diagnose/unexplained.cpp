@@ -4,68 +4,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <set>
 
-#include <pcor/words/error.hpp>
+#include "diagnose/dependencies.hpp"
+#include "diagnose/flight_steps.hpp"
 #include "diagnose/rms.hpp"
 #include "diagnose/structure.hpp"
+#include "diagnose/tested_variables.hpp"
 #include "numerics/chi_squared.hpp"
 
 namespace pcor::internal {
 namespace {
 
-constexpr double chance = 0.002;  // that any verdict comes of noise
-constexpr std::size_t flips = 1000;
+constexpr double chance = 0.01;     // that the best of all variables goes with noise alone
 constexpr double least_gain = 1.1;  // of a line in a variable over effects with a name
-constexpr double enough_blocks = 12.0;
-constexpr double few_blocks_penalty = 6.0;
 constexpr std::size_t most_variables = 10;
-constexpr double least_drift_gain = 30.0;  // twice the gain in log-likelihood
-constexpr double least_drift = 0.35;       // of the noise
-
-/// A variable at every record of every flight.
-struct Series {
-  std::string name;
-  std::string unit{};
-  std::string description{};
-  bool in_file = false;
-  std::vector<std::vector<double>> values{};
-
-  std::vector<const double*> pointers() const {
-    std::vector<const double*> result;
-    for (const std::vector<double>& each : values) result.push_back(each.data());
-    return result;
-  }
-};
-
-/// Flight-state series tested for structure, and their products.
-std::vector<Series> flown(const Analysis& analysis) {
-  std::vector<Series> result;
-  const std::vector<FlightColumns>& flights = analysis.flights();
-  for (const auto& [quantity, values] : flights.front().quantities) {
-    Series& series = result.emplace_back();
-    series.name = std::string(facts_of(quantity).name);
-    series.unit = std::string(facts_of(quantity).unit);
-    for (const FlightColumns& flight : flights) series.values.push_back(flight.quantity(quantity));
-  }
-  Series& pressure = result.emplace_back();
-  pressure.name = "corrected_static_pressure";
-  pressure.unit = "hPa";
-  for (const FlightColumns& flight : flights) pressure.values.push_back(flight.corrected_pressure);
-  const auto product = [&](std::string name, Quantity a, Quantity b) {
-    Series series;
-    series.name = std::move(name);
-    for (const FlightColumns& flight : flights) {
-      std::vector<double> values = flight.quantity(a);
-      for (std::size_t i = 0; i < values.size(); ++i) values[i] *= flight.quantity(b)[i];
-      series.values.push_back(std::move(values));
-    }
-    result.push_back(std::move(series));
-  };
-  product("attack times Mach number", Quantity::attack, Quantity::corrected_mach);
-  product("sideslip times Mach number", Quantity::sideslip, Quantity::corrected_mach);
-  return result;
-}
+/// Twice the gain in log-likelihood by drift. Noise of short memory gains 17 at most in a dozen flights
+/// without drift, since no autoregression describes it wholly.
+constexpr double least_drift_gain = 30.0;
+/// Of the noise: drift below it adds less than half a percent to the rms of the residual.
+constexpr double least_drift = 0.1;
 
 std::set<std::string> left_out(const std::vector<Flight>& files, const ModelFile& model,
                                const Reference& reference, const DiagnoseOptions& options) {
@@ -84,44 +43,37 @@ std::set<std::string> left_out(const std::vector<Flight>& files, const ModelFile
   return names;
 }
 
-/// Whether a simulated flight holds the variable as the truth beside what was recorded.
-bool is_truth(const VariableInfo& variable) {
-  return std::any_of(variable.attributes.begin(), variable.attributes.end(), [](const auto& attribute) {
-    return attribute.first == "Category" && attribute.second == truth_category;
-  });
+/// The variables that the residual is measured with.
+std::set<std::string> sensors_of(const ModelFile& model, const Reference& reference) {
+  std::set<std::string> sensors;
+  const auto add = [&](Quantity role) {
+    const auto found = model.variables.find(role);
+    if (found != model.variables.end()) sensors.insert(found->second);
+  };
+  add(Quantity::static_pressure);
+  add(Quantity::dynamic_pressure);
+  if (reference.reads_laser()) add(Quantity::lams_airspeed);
+  for (const std::string& variable : reference.variables()) sensors.insert(variable);
+  return sensors;
 }
 
-Series read_series(const std::vector<Flight>& files, const std::string& name) {
-  Series series;
-  series.name = name;
-  series.unit = files.front().variable(name).units;
-  series.description = files.front().variable(name).long_name;
-  series.in_file = true;
-  for (const Flight& file : files) {
-    std::vector<double>& values = series.values.emplace_back(file.records());
-    for (const RecordBlock block : blocks_of(file.records()))
-      file.read_at_rate(1, name, block, UnitConversion(), values.data() + block.first);
-  }
-  return series;
-}
-
-TracedVariable traced_of(const Structure& structure, const Series& series, std::size_t tested,
-                         double squares) {
+TracedVariable traced_of(const Structure& structure, const TestedVariable& tested, double p_value) {
   TracedVariable variable;
-  variable.name = series.name;
-  variable.unit = series.unit;
-  variable.description = series.description;
+  variable.name = tested.name;
+  variable.unit = tested.unit;
+  variable.description = tested.description;
+  variable.sampling = tested.sampling;
   variable.r2 = structure.share;
-  variable.p_value = std::min(1.0, static_cast<double>(tested) * chi_squared_tail(structure.equivalent, 1.0));
-  variable.linear_r2 = std::max(0.0, structure.line_chi2 - 1.0) / squares;
+  variable.p_value = p_value;
+  variable.linear_r2 = structure.line_share;
   variable.slope = structure.slope;
   variable.slope_error = structure.slope_error;
   variable.centre = structure.centre;
   // Only what a straight line describes is worth a formula.
   const bool straight = std::abs(structure.slope) > 3.0 * structure.slope_error && structure.slope != 0.0 &&
                         variable.linear_r2 > 0.5 * variable.r2;
-  if (series.in_file && straight)
-    variable.formula = fmt::format("k * ({} {} {:.4g})", series.name, structure.centre < 0.0 ? '+' : '-',
+  if (tested.in_file && straight)
+    variable.formula = fmt::format("k * ({} {} {:.4g})", tested.name, structure.centre < 0.0 ? '+' : '-',
                                    std::abs(structure.centre));
   return variable;
 }
@@ -169,29 +121,101 @@ std::vector<std::vector<double>> residuals_after(const Analysis& analysis,
   return after;
 }
 
-/// Whether the strongest structure is beyond chance: for normal noise, and for the noise that is there, which
-/// is known when that structure is taken off.
-bool is_significant(const StructureTest& test, const Analysis& analysis,
-                    const std::vector<std::size_t>& chosen, const std::vector<const Series*>& tested,
-                    std::uint64_t seed) {
-  const std::optional<std::size_t> best = test.strongest();
-  if (!best) return false;
-  const double score = test.structures()[*best].equivalent;
-  if (!(score > test.threshold(chance))) return false;
-  const double blocks = test.effective_blocks(*best);
-  if (blocks < enough_blocks)
-    return score > test.threshold(chance) * (1.0 + few_blocks_penalty / std::max(blocks, 1.0));
-  const Series& series = *tested[*best];
-  std::vector<Eigen::MatrixXd> columns = analysis.columns_of(chosen);
-  const std::vector<Eigen::MatrixXd> more = test.columns_of(series.pointers());
-  for (std::size_t f = 0; f < columns.size(); ++f) {
-    Eigen::MatrixXd all(columns[f].rows(), columns[f].cols() + more[f].cols());
-    all << columns[f], more[f];
-    columns[f] = std::move(all);
+/// The variables that structure may go with; those that are no causes are named in `found`.
+std::vector<TestedVariable> variables_to_test(const Analysis& analysis, const std::vector<Flight>& files,
+                                              const ModelFile& model, const Reference& reference,
+                                              const DiagnoseOptions& options,
+                                              const std::vector<std::vector<double>>& after,
+                                              Unexplained& found) {
+  std::vector<TestedVariable> variables = flown_variables(analysis.flights());
+  if (!options.whole_file) return variables;
+  const std::set<std::string> computed = computed_from(files.front(), sensors_of(model, reference));
+  const auto altitude = model.variables.find(Quantity::altitude);
+  for (TestedVariable& variable :
+       recorded_variables(files, analysis.flights(), left_out(files, model, reference, options))) {
+    if (computed.count(variable.name) > 0) {
+      found.computed.push_back(variable.name);
+    } else if (shares_noise(after, variable.pointers())) {
+      found.shares_noise.push_back(variable.name);
+    } else {
+      variable.fine = altitude != model.variables.end() && altitude->second == variable.name;
+      variables.push_back(std::move(variable));
+    }
   }
-  StructureTest noise_alone(analysis.bins(), columns, analysis.residuals(), analysis.noise());
-  for (const Series* each : tested) noise_alone.add(each->name, each->pointers());
-  return noise_alone.chance_of(score, flips, seed) <= 2.0 * chance;
+  return variables;
+}
+
+/// Structures beside some effects, and the variable of each.
+struct Tested {
+  StructureTest test;
+  std::vector<const TestedVariable*> variables{};
+
+  Tested(const Analysis& analysis, const std::vector<std::size_t>& chosen,
+         const std::vector<TestedVariable>& all, std::uint64_t seed)
+      : test(analysis.bins(), analysis.columns_of(chosen), analysis.residuals(), analysis.noise(), seed) {
+    for (const TestedVariable& variable : all) {
+      if (test.add(variable.name, variable.pointers(), variable.turn)) variables.push_back(&variable);
+      if (variable.fine && test.add_fine(variable.name, variable.pointers())) variables.push_back(&variable);
+    }
+  }
+
+  double p_value() const {
+    const std::optional<std::size_t> best = test.strongest();
+    return best ? test.chance_of(test.structures()[*best].equivalent) : 1.0;
+  }
+};
+
+/// Whether a line in one variable explains more than all chosen effects. A line that any of many variables
+/// may win with has to be that much better.
+bool line_overrules(const Analysis& analysis, const std::vector<std::size_t>& chosen, const Tested& tested) {
+  double by_effects = 0.0;
+  for (const std::size_t group : chosen) by_effects += analysis.search().score(group, {}).freedom;
+  const double together = (analysis.search().variance({}) / analysis.search().variance(chosen) - 1.0) *
+                          static_cast<double>(analysis.scores().row_count());
+  const double margin = 9.0 + 2.0 * std::log(static_cast<double>(tested.variables.size()));
+  double line = 0.0;
+  for (std::size_t i = 0; i < tested.variables.size(); ++i) {
+    if (tested.variables[i]->in_file) line = std::max(line, tested.test.structures()[i].line_chi2);
+  }
+  // Both in units of the noise that all effects leave.
+  line *= analysis.search().variance({}) / analysis.search().variance(chosen);
+  return line - 1.0 > least_gain * (together - by_effects) + margin;
+}
+
+/// The variables whose structure is beyond chance, each once.
+void add_traced(const Tested& tested, UnexplainedStructure& result) {
+  const std::vector<Structure>& structures = tested.test.structures();
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < structures.size(); ++i) {
+    if (tested.test.chance_of(structures[i].equivalent) < chance) order.push_back(i);
+  }
+  // A straight line that explains as much as a bent one comes first.
+  const auto merit = [&](std::size_t i) {
+    return std::max(structures[i].gain - 2.0 * structures[i].freedom, structures[i].line_gain - 2.0);
+  };
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return merit(a) > merit(b); });
+  std::set<std::string> named;
+  for (const std::size_t i : order) {
+    if (result.found.variables.size() == most_variables) break;
+    if (!named.insert(structures[i].name).second) continue;
+    result.found.variables.push_back(
+        traced_of(structures[i], *tested.variables[i], tested.test.chance_of(structures[i].equivalent)));
+    if (!result.traced.empty()) continue;
+    for (const auto& values : tested.variables[i]->values) result.traced.push_back(*values);
+  }
+}
+
+std::vector<FlightStep> steps_between(const Analysis& analysis, const std::vector<std::size_t>& chosen) {
+  std::vector<FlightStep> steps;
+  const std::vector<MeanStep> found =
+      find_mean_steps(analysis.bins(), analysis.columns_of(chosen), analysis.residuals(), analysis.noise());
+  for (std::size_t f = 0; f < found.size(); ++f) {
+    if (found[f].chance < chance)
+      steps.push_back({analysis.flights()[f].samples->name, found[f].size, found[f].error, found[f].chance});
+  }
+  std::sort(steps.begin(), steps.end(),
+            [](const FlightStep& a, const FlightStep& b) { return std::abs(a.size) > std::abs(b.size); });
+  return steps;
 }
 
 }  // namespace
@@ -200,93 +224,44 @@ UnexplainedStructure find_unexplained(const Analysis& analysis, const std::vecto
                                       const ModelFile& model, const Reference& reference,
                                       const DiagnoseOptions& options, double residual_rms, double noise_rms) {
   UnexplainedStructure result;
-  std::vector<Series> variables = flown(analysis);
+  Unexplained& found = result.found;
   const std::vector<std::size_t>& chosen = analysis.result().chosen;
   const std::vector<std::vector<double>> after = residuals_after(analysis, chosen);
-  if (options.whole_file) {
-    const std::set<std::string> without = left_out(files, model, reference, options);
-    for (const std::string& name : files.front().variables()) {
-      const bool everywhere = std::all_of(files.begin(), files.end(), [&name](const Flight& file) {
-        return file.has(name) && file.variable(name).is_series;
-      });
-      if (!everywhere || without.count(name) != 0 || is_truth(files.front().variable(name))) continue;
-      Series series = read_series(files, name);
-      if (shares_noise(after, series.pointers())) {
-        result.found.shares_noise.push_back(name);
-        continue;
-      }
-      variables.push_back(std::move(series));
-    }
-  }
+  const std::vector<TestedVariable> variables =
+      variables_to_test(analysis, files, model, reference, options, after, found);
 
-  StructureTest beside_all(analysis.bins(), analysis.columns_of(chosen), analysis.residuals(),
-                           analysis.noise());
-  std::vector<const Series*> tested;
-  for (const Series& series : variables) {
-    if (beside_all.add(series.name, series.pointers())) tested.push_back(&series);
+  const Tested beside_all(analysis, chosen, variables, options.seed);
+  const double by_variables = beside_all.p_value();
+  for (const Structure& structure : beside_all.test.structures()) {
+    if (by_variables < chance) result.left = std::max(result.left, structure.gain - structure.freedom);
   }
-  const bool structure_left = is_significant(beside_all, analysis, chosen, tested, options.seed);
-  for (const Structure& structure : beside_all.structures())
-    result.left = std::max(result.left, structure.chi2 - structure.freedom);
-
-  const StructureTest* shown = &beside_all;
-  std::unique_ptr<StructureTest> beside_base;
-  if (structure_left && !chosen.empty()) {
-    // A line that any of many variables may win with has to be that much better.
-    beside_base = std::make_unique<StructureTest>(analysis.bins(), analysis.columns_of({}),
-                                                  analysis.residuals(), analysis.noise());
-    for (const Series* series : tested) beside_base->add(series->name, series->pointers());
-    double by_effects = 0.0;
-    for (const std::size_t group : chosen) by_effects += analysis.search().score(group, {}).freedom;
-    const double together = (analysis.search().variance({}) / analysis.search().variance(chosen) - 1.0) *
-                            static_cast<double>(analysis.scores().row_count());
-    const double margin = 9.0 + 2.0 * std::log(static_cast<double>(tested.size()));
-    double line = 0.0;
-    for (std::size_t i = 0; i < beside_base->structures().size(); ++i) {
-      if (tested[i]->in_file) line = std::max(line, beside_base->structures()[i].line_chi2);
-    }
-    // Both in units of the noise that all effects leave.
-    line *= analysis.search().variance({}) / analysis.search().variance(chosen);
-    result.overrules = line - 1.0 > least_gain * (together - by_effects) + margin;
-    if (result.overrules) shown = beside_base.get();
+  std::unique_ptr<const Tested> beside_base;
+  if (by_variables < chance && !chosen.empty()) {
+    beside_base =
+        std::make_unique<const Tested>(analysis, std::vector<std::size_t>(), variables, options.seed);
+    result.overrules = line_overrules(analysis, chosen, *beside_base);
   }
+  const Tested& shown = result.overrules ? *beside_base : beside_all;
 
-  const bool drifts = analysis.drift_gain() > least_drift_gain;
   std::vector<std::vector<double>> drift;
-  for (std::size_t f = 0; f < files.size(); ++f) drift.push_back(analysis.drift(f, chosen));
+  for (std::size_t f = 0; f < analysis.flights().size(); ++f) drift.push_back(analysis.drift(f, chosen));
   const auto whole = [](const std::vector<double>& series) -> const std::vector<double>& { return series; };
-  result.found.drift_rms = rms_of(drift, whole);
-  const bool large_drift = drifts && result.found.drift_rms > least_drift * noise_rms;
-  result.found.significant = structure_left || large_drift;
-  if (!result.found.significant) return result;
+  found.drift_rms = rms_of(drift, whole);
+  const bool drifts = analysis.drift_gain() > least_drift_gain && found.drift_rms > least_drift * noise_rms;
+  found.steps = steps_between(analysis, chosen);
+  found.significant = by_variables < chance || drifts || !found.steps.empty();
+  if (!found.significant) return result;
 
   const std::vector<std::vector<double>> left = result.overrules ? residuals_after(analysis, {}) : after;
   const double rms = result.overrules ? rms_of(left, whole) : residual_rms;
+  add_traced(shown, result);
   // What is beyond the noise; at least what drifts, and what the best variable explains.
-  const std::optional<std::size_t> best = shown->strongest();
-  const Structure strongest = best ? shown->structures()[*best] : Structure{};
-  result.found.rms =
-      std::max({result.found.drift_rms, std::sqrt(std::max(0.0, rms * rms - noise_rms * noise_rms)),
-                structure_left ? std::sqrt(strongest.share) * rms : 0.0});
-  result.found.regime = worst_regime(analysis, left, noise_rms);
-  result.found.p_value =
-      std::min(1.0, static_cast<double>(tested.size()) * chi_squared_tail(strongest.equivalent, 1.0));
-  const double squares = static_cast<double>(analysis.scores().row_count());
-  std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < shown->structures().size(); ++i) {
-    if (shown->structures()[i].equivalent > shown->threshold(chance)) order.push_back(i);
-  }
-  // A straight line that explains as much as a bent one comes first.
-  const auto merit = [&](std::size_t i) {
-    const Structure& structure = shown->structures()[i];
-    return std::max(structure.chi2 - 2.0 * structure.freedom, structure.line_chi2 - 2.0);
-  };
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return merit(a) > merit(b); });
-  for (const std::size_t i : order) {
-    if (result.found.variables.size() == most_variables) break;
-    result.found.variables.push_back(traced_of(shown->structures()[i], *tested[i], tested.size(), squares));
-    if (result.traced.empty()) result.traced = tested[i]->values;
-  }
+  found.rms = std::max(found.drift_rms, std::sqrt(std::max(0.0, rms * rms - noise_rms * noise_rms)));
+  if (!found.variables.empty()) found.rms = std::max(found.rms, std::sqrt(found.variables.front().r2) * rms);
+  found.regime = worst_regime(analysis, left, noise_rms);
+  found.p_value =
+      std::min(shown.p_value(), drifts ? chi_squared_tail(analysis.drift_gain(), slow_times.size()) : 1.0);
+  for (const FlightStep& step : found.steps) found.p_value = std::min(found.p_value, step.p_value);
   return result;
 }
 

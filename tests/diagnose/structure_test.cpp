@@ -85,7 +85,7 @@ struct Flight {
   }
 
   StructureTest test() const {
-    StructureTest result(bins, columns, residuals, noise);
+    StructureTest result(bins, columns, residuals, noise, 1);
     for (std::size_t k = 0; k < variables.size(); ++k)
       result.add("v" + std::to_string(k), {variables[k].data()});
     return result;
@@ -101,7 +101,7 @@ const Structure& strongest(const StructureTest& test) {
 TEST(Smooth, HasALineAndNoConstant) {
   const std::vector<double> values = draws(500, 1);
   for (const std::size_t columns : {2U, 3U, 6U}) {
-    const Smooth smooth(values, columns);
+    const Smooth smooth = Smooth::with_knots_at_values(values, columns);
     EXPECT_EQ(smooth.columns(), columns);
     const Eigen::MatrixXd rows = functions_of(smooth, values);
     EXPECT_NEAR(rows.col(0).mean(), 0.0, 1e-12);
@@ -118,7 +118,7 @@ TEST(Smooth, HasALineAndNoConstant) {
 TEST(Smooth, HasNotMoreColumnsThanAllowed) {
   const std::vector<double> values = draws(500, 2);
   for (std::size_t columns = 1; columns <= 8; ++columns)
-    EXPECT_LE(Smooth(values, columns).columns(), columns);
+    EXPECT_LE(Smooth::with_knots_at_values(values, columns).columns(), columns);
 }
 
 TEST(Smooth, FollowsABentCurve) {
@@ -126,7 +126,7 @@ TEST(Smooth, FollowsABentCurve) {
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = 6.0 * static_cast<double>(i) / 599.0;
   Eigen::VectorXd wave(600);
   for (Eigen::Index i = 0; i < 600; ++i) wave[i] = std::sin(values[static_cast<std::size_t>(i)]);
-  const Eigen::MatrixXd rows = functions_of(Smooth(values, 6), values);
+  const Eigen::MatrixXd rows = functions_of(Smooth::with_knots_at_values(values, 6), values);
   Eigen::MatrixXd with(rows.rows(), rows.cols() + 1);
   with << rows, Eigen::VectorXd::Ones(rows.rows());
   // Quadratic splines of knots h = 1.2 apart err by h^3/72 of the third derivative, some percent.
@@ -137,7 +137,7 @@ TEST(Smooth, FollowsABentCurve) {
 TEST(Smooth, OfFewLevelsIsAnyFunctionOfThem) {
   std::vector<double> values(90);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i % 3) * 10.0;
-  const Smooth smooth(values, 6);
+  const Smooth smooth = Smooth::with_knots_at_values(values, 6);
   EXPECT_EQ(smooth.columns(), 2U);
   const Eigen::MatrixXd rows = functions_of(smooth, values);
   Eigen::MatrixXd with(rows.rows(), rows.cols() + 1);
@@ -151,7 +151,7 @@ TEST(Smooth, OfFewLevelsIsAnyFunctionOfThem) {
 TEST(Smooth, WithManyTiesIsFinite) {
   std::vector<double> values(500, 0.0);
   for (std::size_t i = 0; i < 40; ++i) values[12 * i] = 0.01 * static_cast<double>(i + 1);
-  const Smooth smooth(values, 6);
+  const Smooth smooth = Smooth::with_knots_at_values(values, 6);
   ASSERT_GE(smooth.columns(), 1U);
   EXPECT_LE(smooth.columns(), 6U);
   const Eigen::MatrixXd rows = functions_of(smooth, values);
@@ -161,19 +161,51 @@ TEST(Smooth, WithManyTiesIsFinite) {
 
 TEST(Smooth, LeavesOutMissingValues) {
   std::vector<double> values = draws(300, 3);
-  const Smooth without(values, 4);
+  const Smooth without = Smooth::with_knots_at_values(values, 4);
   values.insert(values.begin() + 50, 40, missing);
   values.push_back(std::numeric_limits<double>::infinity());
-  const Smooth with(values, 4);
+  const Smooth with = Smooth::with_knots_at_values(values, 4);
   EXPECT_EQ(with.columns(), without.columns());
   EXPECT_NEAR(with.centre(), without.centre(), 1e-14);
   EXPECT_NEAR(with.deviation(), without.deviation(), 1e-14);
 }
 
 TEST(Smooth, OfAConstantIsNothing) {
-  EXPECT_EQ(Smooth(std::vector<double>(100, 7.0), 6).columns(), 0U);
-  EXPECT_EQ(Smooth({}, 6).columns(), 0U);
-  EXPECT_EQ(Smooth(std::vector<double>(100, missing), 6).columns(), 0U);
+  for (const std::vector<double>& values :
+       {std::vector<double>(100, 7.0), std::vector<double>(), std::vector<double>(100, missing)}) {
+    EXPECT_EQ(Smooth::with_knots_at_values(values, 6).columns(), 0U);
+    EXPECT_EQ(Smooth::with_even_knots(values, 12).columns(), 0U);
+    EXPECT_EQ(Smooth::periodic(values, 360.0).columns(), 0U);
+  }
+}
+
+// As altitude: most samples in a few levels, and a wave of six periods in the climbs between them.
+TEST(Smooth, WithEvenKnotsFollowsAWaveWhereFewValuesAre) {
+  std::vector<double> values;
+  for (const double level : {0.0, 2.5, 6.0}) values.insert(values.end(), 400, level);
+  for (std::size_t i = 0; i < 300; ++i) values.push_back(6.0 * static_cast<double>(i) / 299.0);
+  Eigen::VectorXd wave(static_cast<Eigen::Index>(values.size()));
+  for (std::size_t i = 0; i < values.size(); ++i)
+    wave[static_cast<Eigen::Index>(i)] = std::sin(2.0 * std::acos(-1.0) * values[i]);
+  const auto left = [&](const Smooth& smooth) {
+    const Eigen::MatrixXd rows = functions_of(smooth, values);
+    Eigen::MatrixXd with(rows.rows(), rows.cols() + 1);
+    with << rows, Eigen::VectorXd::Ones(rows.rows());
+    EXPECT_EQ(Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(with).rank(), with.cols());
+    return left_of(with, wave);
+  };
+  // Knots 0.26 of a period apart: splines err by h^3/72 of the third derivative, 6 % of the wave's amplitude.
+  EXPECT_LT(left(Smooth::with_even_knots(values, 24)), 0.06);
+  EXPECT_GT(left(Smooth::with_knots_at_values(values, 6)), 0.5);
+}
+
+TEST(Smooth, OfAnAngleDoesNotKnowWhereItBegins) {
+  const std::vector<double> headings{0.0, 90.0, 359.0, 180.0, 45.0};
+  const Smooth smooth = Smooth::periodic(headings, 360.0);
+  ASSERT_EQ(smooth.columns(), 4U);
+  EXPECT_FALSE(smooth.has_line());
+  const Eigen::MatrixXd rows = functions_of(smooth, {-10.0, 350.0});
+  EXPECT_LT((rows.row(0) - rows.row(1)).norm(), 1e-12);
 }
 
 TEST(StructureTest, FindsASineInOneOfFiftyVariables) {
@@ -182,8 +214,7 @@ TEST(StructureTest, FindsASineInOneOfFiftyVariables) {
     flight.residuals[0][i] += 0.3 * std::sin(0.6 * flight.variables[31][static_cast<std::size_t>(i)]);
   const StructureTest test = flight.test();
   EXPECT_EQ(strongest(test).name, "v31");
-  EXPECT_GT(strongest(test).equivalent, test.threshold(0.002));
-  EXPECT_LE(test.chance_of(strongest(test).equivalent, 1000, 1), 0.004);
+  EXPECT_LT(test.chance_of(strongest(test).equivalent), 1e-3);
   EXPECT_GT(strongest(test).share, 0.05);
   EXPECT_LT(strongest(test).share, 1.0);
 }
@@ -200,12 +231,15 @@ TEST(StructureTest, KnowsTheSlopeOfALine) {
   EXPECT_LT(found.slope_error, 0.01);
   EXPECT_NEAR(found.line_chi2, found.slope * found.slope / (found.slope_error * found.slope_error),
               1e-9 * found.line_chi2);
-  EXPECT_LE(found.line_chi2, found.chi2 * (1.0 + 1e-9));
+  EXPECT_LE(found.line_gain, found.gain * (1.0 + 1e-9));
 }
 
 TEST(StructureTest, TheSlopeIsThatOfGeneralisedLeastSquares) {
   Flight flight(200, 1, 3);
+  // All of the drift that the model knows is there: no variable is likelier beside less of it.
   flight.noise.slow = {0.0, 0.4, 0.0, 0.0};
+  for (Eigen::Index i = 0; i < 200; ++i)
+    flight.residuals[0][i] += std::sin(step * static_cast<double>(i) / 100.0);
   const StructureTest test = flight.test();
   ASSERT_EQ(test.structures().size(), 1U);
   const Eigen::Index rows = 200;
@@ -227,18 +261,71 @@ TEST(StructureTest, TheSlopeIsThatOfGeneralisedLeastSquares) {
   EXPECT_NEAR(test.structures()[0].slope_error, std::sqrt(inverse(1, 1)), 0.2 * std::sqrt(inverse(1, 1)));
 }
 
-// 0.2 % of the flights are to be taken for structure: 0.4 of 200, more than 3 once in 1200 times.
-TEST(StructureTest, FindsNothingInNoise) {
+// A fixed share of flights without structure, one in a hundred, is taken for structure, whatever their noise
+// is like. Of 100 flights that is 1; more than 5 once in 1,700 times.
+class NoStructure : public testing::TestWithParam<const char*> {};
+
+TEST_P(NoStructure, IsFoundOnceInAHundredFlights) {
+  const std::string kind = GetParam();
   int claims = 0;
-  for (unsigned seed = 1; seed <= 200; ++seed) {
-    const Flight flight(300, 50, 100 + seed);
+  for (unsigned seed = 1; seed <= 100; ++seed) {
+    Flight flight(700, 10, 1000 + seed);
+    std::mt19937_64 engine(seed);
+    std::normal_distribution<double> normal;
+    const auto drift = [&](double time, double size) {
+      double value = normal(engine);
+      for (double& each : flight.residuals[0]) {
+        each += size * value;
+        const double remembers = std::exp(-step / time);
+        value = remembers * value + std::sqrt(1.0 - remembers * remembers) * normal(engine);
+      }
+    };
+    if (kind == "1/f") {
+      for (const double time : {20.0, 80.0, 320.0, 1280.0}) drift(time, 0.15);
+    } else if (kind == "drift") {
+      drift(600.0 + 3.0 * seed, 0.05 + 0.001 * seed);
+    } else if (kind == "bursts") {
+      for (int burst = 0; burst < 8; ++burst) {
+        const auto first = static_cast<Eigen::Index>(engine() % 680);
+        for (Eigen::Index i = first; i < first + 20; ++i) flight.residuals[0][i] += 1.2 * normal(engine);
+      }
+    }
+    flight.noise = find_noise(flight.bins, flight.columns, flight.residuals).model;
     const StructureTest test = flight.test();
-    ASSERT_EQ(test.structures().size(), 50U);
-    if (strongest(test).equivalent > test.threshold(0.002) &&
-        test.chance_of(strongest(test).equivalent, 1000, seed) <= 0.004)
-      ++claims;
+    if (test.chance_of(strongest(test).equivalent) < 0.01) ++claims;
   }
-  EXPECT_LE(claims, 3);
+  EXPECT_LE(claims, 5);
+  RecordProperty("claims", claims);
+}
+
+INSTANTIATE_TEST_SUITE_P(Noise, NoStructure, testing::Values("short memory", "1/f", "drift", "bursts"));
+
+// What goes with a variable as slow as drift is taken for drift where the noise is found without it.
+TEST(StructureTest, AVariableCompetesWithDriftOnEqualTerms) {
+  Flight flight(1800, 8, 9);
+  std::vector<double>& slow = flight.variables[5];
+  for (std::size_t i = 0; i < slow.size(); ++i)
+    slow[i] = std::sin(0.004 * static_cast<double>(i)) + 0.5 * std::sin(0.013 * static_cast<double>(i));
+  flight.residuals[0] += 0.25 * as_vector(slow);
+  flight.noise = find_noise(flight.bins, flight.columns, flight.residuals).model;
+  ASSERT_TRUE(flight.noise.drifts());
+  const StructureTest test = flight.test();
+  EXPECT_EQ(strongest(test).name, "v5");
+  EXPECT_LT(test.chance_of(strongest(test).equivalent), 0.01);
+  EXPECT_NEAR(strongest(test).slope, 0.25, 4.0 * strongest(test).slope_error);
+}
+
+TEST(StructureTest, FindsAnAngle) {
+  Flight flight(900, 4, 10);
+  for (double& value : flight.variables[2]) value = std::fmod(3600.0 + 20.0 * value, 360.0);
+  for (Eigen::Index i = 0; i < 900; ++i)
+    flight.residuals[0][i] +=
+        0.3 * std::cos(flight.variables[2][static_cast<std::size_t>(i)] * std::acos(-1.0) / 180.0);
+  StructureTest test(flight.bins, flight.columns, flight.residuals, flight.noise, 1);
+  ASSERT_TRUE(test.add("heading", {flight.variables[2].data()}, 360.0));
+  EXPECT_GT(test.structures()[0].gain, 50.0);
+  EXPECT_EQ(test.structures()[0].freedom, 4.0);
+  EXPECT_EQ(test.structures()[0].slope, 0.0);
 }
 
 TEST(StructureTest, WhatTheModelHasIsNotStructure) {
@@ -247,13 +334,13 @@ TEST(StructureTest, WhatTheModelHasIsNotStructure) {
   flight.columns[0].col(1) = as_vector(flight.variables[1]);
   flight.residuals[0] += 0.5 * flight.columns[0].col(1);
   const StructureTest test = flight.test();
-  EXPECT_LT(strongest(test).equivalent, test.threshold(0.002));
+  EXPECT_GT(test.chance_of(strongest(test).equivalent), 0.01);
   EXPECT_EQ(test.structures()[1].line_chi2, 0.0);
 }
 
 TEST(StructureTest, LeavesOutWhatDoesNotVaryOrIsMissing) {
   Flight flight(300, 3, 6);
-  StructureTest test(flight.bins, flight.columns, flight.residuals, flight.noise);
+  StructureTest test(flight.bins, flight.columns, flight.residuals, flight.noise, 1);
   const std::vector<double> constant(300, 5.0);
   EXPECT_FALSE(test.add("constant", {constant.data()}));
   std::vector<double> gappy = flight.variables[0];
@@ -262,7 +349,7 @@ TEST(StructureTest, LeavesOutWhatDoesNotVaryOrIsMissing) {
   for (std::size_t i = 120; i < 150; ++i) gappy[i] = missing;
   EXPECT_FALSE(test.add("too gappy", {gappy.data()}));
   ASSERT_EQ(test.structures().size(), 1U);
-  EXPECT_TRUE(std::isfinite(test.structures()[0].chi2));
+  EXPECT_TRUE(std::isfinite(test.structures()[0].gain));
 }
 
 TEST(SharesNoise, IsWhatWasComputedFromTheSameMeasurement) {

@@ -94,7 +94,16 @@ Json variable_as_json(const TracedVariable& variable) {
           {"slope", variable.slope},
           {"slope_stderr", variable.slope_error},
           {"centre", variable.centre},
-          {"formula", variable.formula}};
+          {"formula", variable.formula},
+          {"where", variable.where ? Json(facts_of(*variable.where).name) : Json()},
+          {"sampling", variable.sampling}};
+}
+
+Json step_as_json(const FlightStep& step) {
+  return {{"flight", step.flight},
+          {"size_hpa", step.size},
+          {"stderr_hpa", step.standard_error},
+          {"p_value", step.p_value}};
 }
 
 std::string option(const char* name, const std::string& value) {
@@ -182,6 +191,21 @@ void print_unexplained(const Unexplained& unexplained) {
                fmt::format("{:.3g} +- {:.2g}", variable.slope, variable.slope_error), variable.formula,
                variable.description);
   }
+  if (!unexplained.variables.empty() && !unexplained.variables.front().where) {
+    fmt::print(
+        "where it acts is not known: a formula is written as added to the static pressure, which describes "
+        "it "
+        "as well as any other place\n");
+  }
+  for (const FlightStep& step : unexplained.steps) {
+    fmt::print("{} lies {:.3f} +- {:.3f} hPa {} the other flights (p {})\n", step.flight, std::abs(step.size),
+               step.standard_error, step.size < 0.0 ? "below" : "above", probability(step.p_value));
+  }
+  if (!unexplained.computed.empty()) {
+    fmt::print(
+        "not looked at, because the files say that they are computed from the residual's own sensors: {}\n",
+        fmt::join(unexplained.computed, ", "));
+  }
   if (!unexplained.shares_noise.empty()) {
     fmt::print("not looked at, because their noise is that of the residual: {}\n",
                fmt::join(unexplained.shares_noise, ", "));
@@ -212,7 +236,9 @@ Json as_json(const Unexplained& unexplained) {
           {"p_value", unexplained.p_value},
           {"regime", unexplained.regime},
           {"variables", list_of(unexplained.variables, variable_as_json)},
-          {"shares_noise", unexplained.shares_noise}};
+          {"steps", list_of(unexplained.steps, step_as_json)},
+          {"shares_noise", unexplained.shares_noise},
+          {"computed", unexplained.computed}};
 }
 
 Json as_json(const Diagnosis& diagnosis) {

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -139,12 +140,24 @@ struct TracedVariable {
   std::string unit;
   std::string description{};
   double r2 = 0.0;         ///< part of the residual's variance that goes with it, 0 to 1
-  double p_value = 0.0;    ///< after protection against chance over all variables
-  double linear_r2 = 0.0;  ///< part that a straight line explains
+  double p_value = 0.0;    ///< that the best of all variables does as well on residuals shifted in time
+  double linear_r2 = 0.0;  ///< part that a straight line explains; 0 for an angle
   double slope = 0.0;      ///< of the line, hPa per unit of the variable
   double slope_error = 0.0;
   double centre = 0.0;    ///< mean of the variable over the samples used
   std::string formula{};  ///< of an effect that would describe it, e.g. "k * (ENGTRQ - 48)"
+  /// Where the formula acts, as far as the references tell; nothing where they do not. It is written as added
+  /// to the static pressure then, which describes it as well as any other place.
+  std::optional<Where> where{};
+  std::string sampling{};  ///< how it was brought to one value a record, in words; empty where it has one
+};
+
+/// A flight whose residual lies above or below those of the others.
+struct FlightStep {
+  std::string flight;
+  double size = 0.0;  ///< hPa; positive where delta-p should be larger than in the others
+  double standard_error = 0.0;
+  double p_value = 1.0;  ///< after protection against chance over all flights
 };
 
 /// Structure that no effect explains.
@@ -154,8 +167,11 @@ struct Unexplained {
   double drift_rms = 0.0;  ///< of it the part that wanders slowly, with nothing that is recorded, hPa
   double p_value = 1.0;
   std::string regime{};                     ///< where most of it lies, e.g. "climb"
-  std::vector<TracedVariable> variables{};  ///< the largest r2 first
+  std::vector<TracedVariable> variables{};  ///< the strongest first
+  std::vector<FlightStep> steps{};          ///< only those that are significant, the largest first
   std::vector<std::string> shares_noise{};  ///< variables left out: their noise is that of the residual
+  /// Variables left out: the files say that they are computed from what the residual is computed from.
+  std::vector<std::string> computed{};
 };
 
 /// A flight as the diagnosis saw it, for pictures. All arrays have one value for each record.

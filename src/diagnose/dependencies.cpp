@@ -1,0 +1,57 @@
+#include "diagnose/dependencies.hpp"
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+#include <vector>
+
+namespace pcor::internal {
+namespace {
+
+using Inputs = std::map<std::string, std::vector<std::string>>;  // of each variable that is computed
+
+std::vector<std::string> inputs_of(const VariableInfo& variable) {
+  std::vector<std::string> inputs;
+  for (const auto& [name, text] : variable.attributes) {
+    if (name != "Dependencies") continue;
+    std::istringstream words(text);
+    std::string word;
+    words >> word;  // how many
+    while (words >> word) inputs.push_back(word);
+  }
+  return inputs;
+}
+
+/// Adds all that the names are computed from. Files exist in which variables depend on each other in a ring.
+void add_inputs(const Inputs& inputs, std::set<std::string>& names) {
+  std::vector<std::string> open(names.begin(), names.end());
+  while (!open.empty()) {
+    const auto found = inputs.find(open.back());
+    open.pop_back();
+    if (found == inputs.end()) continue;
+    for (const std::string& input : found->second) {
+      if (names.insert(input).second) open.push_back(input);
+    }
+  }
+}
+
+}  // namespace
+
+std::set<std::string> computed_from(const Flight& flight, const std::set<std::string>& sensors) {
+  Inputs inputs;
+  for (const std::string& name : flight.variables()) inputs[name] = inputs_of(flight.variable(name));
+  std::set<std::string> measured = sensors;
+  add_inputs(inputs, measured);
+  std::set<std::string> computed;
+  for (const std::string& name : flight.variables()) {
+    if (measured.count(name) > 0) continue;
+    std::set<std::string> all{name};
+    add_inputs(inputs, all);
+    if (std::any_of(all.begin(), all.end(),
+                    [&](const std::string& input) { return measured.count(input) > 0; }))
+      computed.insert(name);
+  }
+  return computed;
+}
+
+}  // namespace pcor::internal

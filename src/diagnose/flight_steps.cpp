@@ -1,0 +1,115 @@
+#include "diagnose/flight_steps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "diagnose/same_time.hpp"
+#include "diagnose/scores.hpp"
+#include "numerics/chi_squared.hpp"
+#include "numerics/decompositions.hpp"
+#include "numerics/triangular_factor.hpp"
+
+namespace pcor::internal {
+namespace {
+
+/// Means of the flights beside a model, and their covariance. What all have in common is left to the model.
+struct Means {
+  Eigen::VectorXd value;
+  Eigen::MatrixXd covariance;
+};
+
+Means find_means(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
+                 const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise) {
+  const Eigen::Index model = columns.front().cols();
+  const Eigen::Index flights = as_index(bins.size());
+  const Eigen::Index width = model + flights;
+  std::vector<Eigen::MatrixXd> with_means;
+  for (std::size_t f = 0; f < bins.size(); ++f) {
+    Eigen::MatrixXd& all = with_means.emplace_back(Eigen::MatrixXd::Zero(columns[f].rows(), width));
+    all.leftCols(model) = columns[f];
+    all.col(model + as_index(f)).setOnes();
+  }
+  const Scores scores = find_scores(bins, with_means, residuals, noise);
+  const Eigen::VectorXd scale =
+      scores.information.diagonal().head(width).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd inverse =
+      scale.asDiagonal() *
+      pseudo_inverse(scale.asDiagonal() * scores.information.topLeftCorner(width, width) * scale.asDiagonal(),
+                     1e-9) *
+      scale.asDiagonal();
+  const Eigen::VectorXd right = scores.information.col(width).head(width);
+  const double squares = scores.information(width, width) - right.dot(inverse * right);
+  const double variance =
+      squares / std::max(1.0, static_cast<double>(scores.row_count()) - static_cast<double>(width));
+  return {(inverse * right).tail(flights), variance * inverse.bottomRightCorner(flights, flights)};
+}
+
+/// The weights with which means make the difference of one of some flights to the others.
+Eigen::VectorXd difference(std::size_t one, const std::vector<std::size_t>& flights, Eigen::Index all) {
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(all);
+  for (const std::size_t flight : flights)
+    weights[as_index(flight)] = flight == one ? 1.0 : -1.0 / static_cast<double>(flights.size() - 1);
+  return weights;
+}
+
+/// The square of a normal variable that is exceeded as rarely as one of Student with so many degrees of
+/// freedom (Wallace 1959, Annals of Mathematical Statistics 30, 1121).
+double normal_square(double student_square, double freedom) {
+  const double scale = (8.0 * freedom + 1.0) / (8.0 * freedom + 3.0);
+  return scale * scale * freedom * std::log1p(student_square / freedom);
+}
+
+MeanStep step_of(std::size_t one, const std::vector<std::size_t>& flights, const Means& means) {
+  const Eigen::VectorXd weights = difference(one, flights, means.value.size());
+  const double known = weights.dot(means.covariance * weights);
+  std::vector<std::size_t> others;
+  for (const std::size_t flight : flights) {
+    if (flight != one) others.push_back(flight);
+  }
+  const auto count = static_cast<double>(others.size());
+  double scatter = 0.0;  // of the others' means, beyond what drift makes of it
+  for (const std::size_t other : others) {
+    if (others.size() < 2) break;
+    const Eigen::VectorXd among = difference(other, others, means.value.size()) * (count - 1.0) / count;
+    const double size = among.dot(means.value);
+    scatter += (size * size - among.dot(means.covariance * among)) / (count - 1.0);
+  }
+  scatter = std::max(0.0, scatter) * (1.0 + 1.0 / count);
+  MeanStep step;
+  step.size = weights.dot(means.value);
+  step.error = std::sqrt(known + scatter);
+  double square = step.size * step.size / (known + scatter);
+  if (scatter > 0.0) {
+    const double whole = known + scatter;
+    square = normal_square(square, whole * whole * (count - 1.0) / (scatter * scatter));
+  }
+  step.chance = std::min(1.0, static_cast<double>(flights.size()) * chi_squared_tail(square, 1.0));
+  return step;
+}
+
+}  // namespace
+
+std::vector<MeanStep> find_mean_steps(const std::vector<Binning>& bins,
+                                      const std::vector<Eigen::MatrixXd>& columns,
+                                      const std::vector<Eigen::VectorXd>& residuals,
+                                      const NoiseModel& noise) {
+  std::vector<MeanStep> steps(bins.size());
+  std::map<std::ptrdiff_t, std::vector<std::size_t>> groups;  // by how many of the same time came before
+  for (std::size_t f = 0; f < bins.size(); ++f) {
+    if (bins[f].size() == 0) continue;
+    const auto before = std::count_if(bins.begin(), bins.begin() + static_cast<std::ptrdiff_t>(f),
+                                      [&](const Binning& other) { return is_of_same_time(other, bins[f]); });
+    groups[before].push_back(f);
+  }
+  const Means means = find_means(bins, columns, residuals, noise);
+  for (const auto& group : groups) {
+    const std::vector<std::size_t>& flights = group.second;
+    for (const std::size_t flight : flights) {
+      if (flights.size() > 1) steps[flight] = step_of(flight, flights, means);
+    }
+  }
+  return steps;
+}
+
+}  // namespace pcor::internal

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "numerics/binning.hpp"
+#include "numerics/noise_model.hpp"
+
+namespace pcor::internal {
+
+/// By how much the mean of one flight's residual differs from that of the others.
+struct MeanStep {
+  double size = 0.0;    ///< hPa; positive where it lies above the others
+  double error = 0.0;   ///< hPa; with drift, and with the scatter of the others
+  double chance = 1.0;  ///< that the largest step of all flights is as large by drift and scatter alone
+};
+
+/// Compares the mean of each flight, beside what a model explains and what drifts, with those of the others.
+/// The scatter of the others' means counts as far as it is larger than drift makes it, with as few degrees of
+/// freedom as there are flights (Satterthwaite 1946, Biometrics Bulletin 2, 110). Flights of the same time,
+/// which other references of one flight are, are compared in the order in which they come, the first with the
+/// first.
+///
+/// @param columns of the model, in bins, of each flight; @param residuals likewise, hPa
+/// @return one for each flight; of chance 1 where there is nothing to compare it with
+std::vector<MeanStep> find_mean_steps(const std::vector<Binning>& bins,
+                                      const std::vector<Eigen::MatrixXd>& columns,
+                                      const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise);
+
+}  // namespace pcor::internal

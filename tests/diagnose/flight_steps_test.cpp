@@ -1,0 +1,98 @@
+// The means of flights against those of the others.
+#include "diagnose/flight_steps.hpp"
+
+#include <gmock/gmock.h>
+
+#include <random>
+
+using pcor::internal::Binning;
+using pcor::internal::find_mean_steps;
+using pcor::internal::MeanStep;
+using pcor::internal::NoiseModel;
+
+namespace {
+
+constexpr std::size_t rows = 300;
+constexpr double step = 4.0;  // s: every record is a bin
+
+/// White noise of 0.2 hPa around means, and a column of the model that all flights share.
+struct Flights {
+  std::vector<Binning> bins;
+  std::vector<Eigen::MatrixXd> columns;
+  std::vector<Eigen::VectorXd> residuals;
+  NoiseModel noise;
+
+  Flights(const std::vector<double>& means, unsigned seed) {
+    std::mt19937_64 engine(seed);
+    std::normal_distribution<double> normal;
+    for (std::size_t f = 0; f < means.size(); ++f) {
+      std::vector<double> time(rows);
+      for (std::size_t i = 0; i < rows; ++i)
+        time[i] = 1e5 * static_cast<double>(f) + step * static_cast<double>(i);
+      bins.emplace_back(std::vector<double>(rows, 0.0), time, step);
+      columns.emplace_back(Eigen::MatrixXd::Ones(rows, 1));
+      residuals.emplace_back(
+          Eigen::VectorXd::NullaryExpr(rows, [&] { return means[f] + 0.2 * normal(engine); }));
+      noise.level.emplace_back(Eigen::VectorXd::Constant(rows, 0.2));
+    }
+    noise.coefficients = {0.0};
+  }
+
+  std::vector<MeanStep> steps() const { return find_mean_steps(bins, columns, residuals, noise); }
+};
+
+TEST(MeanSteps, KnowsTheFlightThatDiffersAndByHowMuch) {
+  const std::vector<MeanStep> steps = Flights({0.0, 0.0, 0.15, 0.0}, 1).steps();
+  ASSERT_EQ(steps.size(), 4U);
+  // The error of a mean of 300 values of 0.2 against that of 900.
+  EXPECT_NEAR(steps[2].error, 0.2 * std::sqrt(1.0 / 300.0 + 1.0 / 900.0), 0.002);
+  EXPECT_NEAR(steps[2].size, 0.15, 3.0 * steps[2].error);
+  EXPECT_LT(steps[2].chance, 1e-6);
+  // The others scatter by the one that differs, so none of them stands out.
+  for (const std::size_t other : {0U, 1U, 3U}) EXPECT_GT(steps[other].chance, 0.05);
+}
+
+TEST(MeanSteps, CompareTwoFlights) {
+  const std::vector<MeanStep> steps = Flights({0.1, -0.1}, 2).steps();
+  EXPECT_NEAR(steps[0].size, 0.2, 4.0 * steps[0].error);
+  EXPECT_NEAR(steps[0].size, -steps[1].size, 1e-9);
+  EXPECT_LT(steps[0].chance, 1e-6);
+}
+
+TEST(MeanSteps, OfOneFlightAreNone) { EXPECT_EQ(Flights({0.3}, 3).steps().front().chance, 1.0); }
+
+// A drift of that size makes means differ as much.
+TEST(MeanSteps, AreNoneWhereDriftExplainsThem) {
+  Flights flights({0.1, -0.1}, 4);
+  flights.noise.slow = {0.0, 0.0, 0.0, 0.2};
+  EXPECT_GT(flights.steps()[0].chance, 0.05);
+}
+
+// Flights differ from each other by 0.1 hPa at random: of 200 campaigns of six, one flight is to be taken for
+// a step in 2; more than 7 once in 1,000 times.
+TEST(MeanSteps, OfFlightsThatScatterAreChance) {
+  std::mt19937_64 engine(5);
+  std::normal_distribution<double> normal;
+  int claims = 0;
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    std::vector<double> means(6);
+    for (double& mean : means) mean = 0.1 * normal(engine);
+    const std::vector<MeanStep> steps = Flights(means, 100 + seed).steps();
+    claims +=
+        std::any_of(steps.begin(), steps.end(), [](const MeanStep& each) { return each.chance < 0.01; });
+  }
+  EXPECT_LE(claims, 7);
+}
+
+// Two references of the same flights: each flight is compared with the other flights by the same reference.
+TEST(MeanSteps, AreThoseOfOneReference) {
+  Flights flights({0.0, 0.0, 0.0}, 6);
+  const Flights others({1.0, 1.0, 1.0}, 7);
+  flights.bins.insert(flights.bins.end(), others.bins.begin(), others.bins.end());
+  flights.columns.insert(flights.columns.end(), others.columns.begin(), others.columns.end());
+  flights.residuals.insert(flights.residuals.end(), others.residuals.begin(), others.residuals.end());
+  flights.noise.level.insert(flights.noise.level.end(), others.noise.level.begin(), others.noise.level.end());
+  for (const MeanStep& each : flights.steps()) EXPECT_GT(each.chance, 0.01);
+}
+
+}  // namespace

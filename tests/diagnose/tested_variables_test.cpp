@@ -1,0 +1,97 @@
+// What unexplained structure may go with, brought to one value a record.
+#include "diagnose/tested_variables.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "support/netcdf_file.hpp"
+#include "support/temporary_directory.hpp"
+
+using pcor::Flight;
+using pcor::FlightSamples;
+using pcor::internal::FlightColumns;
+using pcor::internal::recorded_variables;
+using pcor::internal::TestedVariable;
+using pcor::test::NetcdfMaker;
+using pcor::test::TemporaryDirectory;
+using testing::HasSubstr;
+
+namespace {
+
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t records = 60;
+
+class RecordedVariables : public testing::Test {
+ protected:
+  /// The variable V of a flight that holds nothing else, as it is tested.
+  TestedVariable read(const std::string& units, const std::vector<double>& values, int rate = 1,
+                      const std::vector<double>& circle = {}) {
+    const std::filesystem::path path = directory_ / "flight.nc";
+    {
+      NetcdfMaker file(path);
+      std::vector<double> time(records);
+      for (std::size_t i = 0; i < records; ++i) time[i] = static_cast<double>(i);
+      file.time(time);
+      const int variable = file.series("V", units, values, rate);
+      if (!circle.empty()) file.numbers(variable, "modulus_range", NC_FLOAT, circle);
+    }
+    std::vector<Flight> files;
+    files.emplace_back(path);
+    auto samples = std::make_shared<FlightSamples>();
+    samples->time.resize(records);
+    files.front().read_sample_times({0, records}, 1, samples->time.data());
+    FlightColumns flight;
+    flight.samples = samples;
+    // The same flight twice, as two references see it.
+    std::vector<TestedVariable> all = recorded_variables(files, {flight, flight}, {"Time"});
+    EXPECT_EQ(all.size(), 1U);
+    EXPECT_EQ(all.front().values.size(), 2U);
+    EXPECT_EQ(all.front().values[0], all.front().values[1]);
+    return all.front();
+  }
+
+ private:
+  TemporaryDirectory directory_;
+};
+
+TEST_F(RecordedVariables, OfAHigherRateAreMeansOfRecords) {
+  std::vector<double> values(5 * records);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i);
+  const TestedVariable variable = read("percent", values, 5);
+  EXPECT_EQ(variable.values[0]->at(1), 7.0);
+  EXPECT_THAT(variable.sampling, HasSubstr("means of 5 samples"));
+}
+
+TEST_F(RecordedVariables, OfALowerRateAreInterpolated) {
+  std::vector<double> values(records, missing);
+  for (std::size_t i = 0; i < records; i += 10) values[i] = static_cast<double>(i);
+  const TestedVariable variable = read("percent", values);
+  EXPECT_NEAR(variable.values[0]->at(37), 37.0, 1e-5);  // floats in the file
+  EXPECT_TRUE(std::isnan(variable.values[0]->at(55)));  // after the last
+  EXPECT_THAT(variable.sampling, HasSubstr("one value in 10 records, interpolated"));
+}
+
+TEST_F(RecordedVariables, KeepTheirGaps) {
+  std::vector<double> values(records, 1.0);
+  for (std::size_t i = 20; i < 55; ++i) values[i] = missing;
+  const TestedVariable variable = read("percent", values);
+  EXPECT_TRUE(std::isnan(variable.values[0]->at(30)));
+  EXPECT_EQ(variable.sampling, "");
+}
+
+TEST_F(RecordedVariables, AreAnglesWhereTheyTakeAllDirections) {
+  std::vector<double> heading(records);
+  std::vector<double> attack(records);
+  for (std::size_t i = 0; i < records; ++i) {
+    heading[i] = std::fmod(20.0 * static_cast<double>(i), 360.0);
+    attack[i] = 0.1 * static_cast<double>(i);
+  }
+  EXPECT_EQ(read("degree_T", heading).turn, 360.0);
+  EXPECT_EQ(read("degree", attack).turn, 0.0);
+  EXPECT_EQ(read("percent", heading).turn, 0.0);
+  for (double& value : heading) value /= 15.0;
+  EXPECT_EQ(read("hours", heading, 1, {0.0, 24.0}).turn, 24.0);
+}
+
+}  // namespace
