@@ -79,7 +79,7 @@ double chance_among(double value, const Eigen::VectorXd& others) {
 
 StructureTest::StructureTest(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
                              const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise,
-                             std::uint64_t seed)
+                             std::uint64_t seed, const std::vector<Eigen::MatrixXd>& aside)
     : bins_(&bins), largest_(Eigen::VectorXd::Zero(2 * draws)) {
   alone_ = std::numeric_limits<double>::infinity();
   for (const double part : parts_of_drift) {
@@ -97,12 +97,15 @@ StructureTest::StructureTest(const std::vector<Binning>& bins, const std::vector
     const Eigen::VectorXd right = flights.scale.asDiagonal() * scores.information.col(width).head(width);
     const Eigen::VectorXd solution = flights.scale.asDiagonal() * (flights.inverse * right);
     flights.squares = scores.information(width, width) - right.dot(flights.inverse * right);
-    flights.model_with_drawn = Eigen::MatrixXd::Zero(width, 2 * draws);
     for (std::size_t f = 0; f < bins.size(); ++f) {
       flights.model.emplace_back(scores.rows[f].leftCols(width));
       flights.left.push_back(scores.left(f, solution));
       flights.determinant += Whitening(bins[f], flights.noise, f).log_determinant();
-      flights.drawn.push_back(drawn(flights.left[f], bins, f, seed));
+    }
+    const std::vector<Eigen::VectorXd> noise_alone = left_by(aside, flights);
+    flights.model_with_drawn = Eigen::MatrixXd::Zero(width, 2 * draws);
+    for (std::size_t f = 0; f < bins.size(); ++f) {
+      flights.drawn.push_back(drawn(noise_alone[f], bins, f, seed));
       flights.model_with_drawn += flights.model[f].transpose() * flights.drawn[f];
     }
     alone_ = std::min(alone_, minus_likelihood(flights, 0.0));
@@ -113,6 +116,26 @@ std::size_t StructureTest::rows() const {
   std::size_t rows = 0;
   for (const Binning& bins : *bins_) rows += bins.size();
   return rows;
+}
+
+std::vector<Eigen::VectorXd> StructureTest::left_by(const std::vector<Eigen::MatrixXd>& aside,
+                                                    const Whitened& flights) const {
+  if (aside.empty()) return flights.left;
+  const Eigen::Index count = aside.front().cols();
+  const Eigen::Index width = flights.scale.size();
+  std::vector<Eigen::MatrixXd> all;
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(width + count, width + count);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(width + count);
+  for (std::size_t f = 0; f < bins_->size(); ++f) {
+    Eigen::MatrixXd& columns = all.emplace_back(flights.model[f].rows(), width + count);
+    columns << flights.model[f], whitened(aside[f], (*bins_)[f], flights.noise, f);
+    information += columns.transpose() * columns;
+    right += columns.transpose() * flights.left[f];
+  }
+  const Eigen::VectorXd solution = pseudo_solution(information, right, 1e-11);
+  std::vector<Eigen::VectorXd> left = flights.left;
+  for (std::size_t f = 0; f < left.size(); ++f) left[f] -= all[f] * solution;
+  return left;
 }
 
 double StructureTest::minus_likelihood(const Whitened& flights, double taken) const {
@@ -248,6 +271,11 @@ bool StructureTest::add(const std::string& name, const std::vector<const double*
     if (by_chance[k] / unit <= largest_[k]) continue;
     largest_[k] = std::max(largest_[k], one_degree_equivalent(by_chance[k] / unit, structure.freedom));
   }
+  const double strong_freedom = strong_.empty() ? 0.0 : static_cast<double>(strong_.front().cols());
+  if (structure.gain - structure.freedom > strong_gain_ - strong_freedom) {
+    strong_gain_ = structure.gain;
+    strong_ = columns;
+  }
   structures_.push_back(structure);
   return true;
 }
@@ -258,6 +286,13 @@ std::optional<std::size_t> StructureTest::strongest() const {
       std::max_element(structures_.begin(), structures_.end(),
                        [](const Structure& a, const Structure& b) { return a.equivalent < b.equivalent; });
   return static_cast<std::size_t>(found - structures_.begin());
+}
+
+std::vector<Eigen::MatrixXd> StructureTest::strong_structure() const {
+  constexpr double rare = 1e-4;
+  if (strong_.empty()) return {};
+  const double each = chi_squared_tail(strong_gain_, static_cast<double>(strong_.front().cols()));
+  return each * static_cast<double>(structures_.size()) < rare ? strong_ : std::vector<Eigen::MatrixXd>();
 }
 
 double StructureTest::chance_of(double equivalent) const {

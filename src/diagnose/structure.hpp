@@ -35,13 +35,16 @@ struct Structure {
 /// then, against that of drift alone. Whether it gains more than chance is told by the flights themselves:
 /// their residuals, shifted in time against the variables, keep all that noise has (bursts, memory, drift),
 /// and lose what goes with a variable; with the signs of their minutes drawn at random they keep what noise
-/// has where a variable is large, as in turbulence. Structure has to be beyond both.
+/// has where a variable is large, as in turbulence. Structure has to be beyond both. Strong structure,
+/// shifted or with other signs, is no noise, so it may be set aside before chance is told by what is left.
 class StructureTest {
  public:
   /// @param columns of the model, base and chosen effects, in bins; @param residuals likewise
   /// @param noise with all the drift that there is beside the model; @param seed of shifts and signs
+  /// @param aside columns of what is taken off the residuals that tell chance; empty for nothing
   StructureTest(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
-                const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise, std::uint64_t seed);
+                const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise, std::uint64_t seed,
+                const std::vector<Eigen::MatrixXd>& aside = {});
 
   /// Tries functions of a variable: its values of each flight, one for each record. Returns false, and leaves
   /// it out, where it does not vary or has no value in more than a tenth of the records used.
@@ -60,6 +63,10 @@ class StructureTest {
   /// random, whichever is more: by the law of the largest of many (Gumbel 1958, Statistics of extremes),
   /// fitted to them.
   double chance_of(double equivalent) const;
+
+  /// The columns, in bins, of what gains most beyond its number of functions, to be set aside; nothing where
+  /// noise as the model of the noise has it would gain as much somewhere once in 10,000 times.
+  std::vector<Eigen::MatrixXd> strong_structure() const;
 
  private:
   /// The flights whitened with some of the drift.
@@ -90,12 +97,17 @@ class StructureTest {
   std::vector<Eigen::MatrixXd> columns_of(const Smooth& smooth,
                                           const std::vector<const double*>& values) const;
   Taken taken_by(const std::vector<Eigen::MatrixXd>& columns, const Whitened& flights) const;
+  /// What is left of the residuals when `aside` is taken off, of each flight.
+  std::vector<Eigen::VectorXd> left_by(const std::vector<Eigen::MatrixXd>& aside,
+                                       const Whitened& flights) const;
   double minus_likelihood(const Whitened& flights, double taken) const;
 
   const std::vector<Binning>* bins_;
   std::vector<Whitened> whitened_{};  // by how much of the drift is left, all of it first
   double alone_ = 0.0;                // minus twice the log-likelihood of drift alone
   std::vector<Structure> structures_{};
+  std::vector<Eigen::MatrixXd> strong_{};  // columns of what gains most
+  double strong_gain_ = 0.0;
   Eigen::VectorXd largest_{};  // of each draw, over all variables
 };
 

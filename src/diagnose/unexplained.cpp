@@ -153,6 +153,17 @@ struct Tested {
   Tested(const Analysis& analysis, const std::vector<std::size_t>& chosen,
          const std::vector<TestedVariable>& all, std::uint64_t seed)
       : test(analysis.bins(), analysis.columns_of(chosen), analysis.residuals(), analysis.noise(), seed) {
+    add(all);
+    const std::vector<Eigen::MatrixXd> strong = test.strong_structure();
+    if (strong.empty() || p_value() < chance) return;
+    // Chance may do as well only because it is told by residuals that hold that structure.
+    test = StructureTest(analysis.bins(), analysis.columns_of(chosen), analysis.residuals(), analysis.noise(),
+                         seed, strong);
+    variables.clear();
+    add(all);
+  }
+
+  void add(const std::vector<TestedVariable>& all) {
     for (const TestedVariable& variable : all) {
       if (test.add(variable.name, variable.pointers(), variable.turn)) variables.push_back(&variable);
       if (variable.fine && test.add_fine(variable.name, variable.pointers())) variables.push_back(&variable);

@@ -84,8 +84,8 @@ struct Flight {
     noise.level = {Eigen::VectorXd::Constant(static_cast<Eigen::Index>(rows), 0.3)};
   }
 
-  StructureTest test() const {
-    StructureTest result(bins, columns, residuals, noise, 1);
+  StructureTest test(const std::vector<Eigen::MatrixXd>& aside = {}) const {
+    StructureTest result(bins, columns, residuals, noise, 1, aside);
     for (std::size_t k = 0; k < variables.size(); ++k)
       result.add("v" + std::to_string(k), {variables[k].data()});
     return result;
@@ -262,13 +262,13 @@ TEST(StructureTest, TheSlopeIsThatOfGeneralisedLeastSquares) {
 }
 
 // A fixed share of flights without structure, one in a hundred, is taken for structure, whatever their noise
-// is like. Of 100 flights that is 1; more than 5 once in 1,700 times.
+// is like. Of 60 flights more than 4 are once in 2,500 times.
 class NoStructure : public testing::TestWithParam<const char*> {};
 
 TEST_P(NoStructure, IsFoundOnceInAHundredFlights) {
   const std::string kind = GetParam();
   int claims = 0;
-  for (unsigned seed = 1; seed <= 100; ++seed) {
+  for (unsigned seed = 1; seed <= 60; ++seed) {
     Flight flight(700, 10, 1000 + seed);
     std::mt19937_64 engine(seed);
     std::normal_distribution<double> normal;
@@ -283,7 +283,7 @@ TEST_P(NoStructure, IsFoundOnceInAHundredFlights) {
     if (kind == "1/f") {
       for (const double time : {20.0, 80.0, 320.0, 1280.0}) drift(time, 0.15);
     } else if (kind == "drift") {
-      drift(600.0 + 3.0 * seed, 0.05 + 0.001 * seed);
+      drift(600.0 + 5.0 * seed, 0.05 + 0.0016 * seed);
     } else if (kind == "bursts") {
       for (int burst = 0; burst < 8; ++burst) {
         const auto first = static_cast<Eigen::Index>(engine() % 680);
@@ -292,9 +292,12 @@ TEST_P(NoStructure, IsFoundOnceInAHundredFlights) {
     }
     flight.noise = find_noise(flight.bins, flight.columns, flight.residuals).model;
     const StructureTest test = flight.test();
-    if (test.chance_of(strongest(test).equivalent) < 0.01) ++claims;
+    const StructureTest beside_the_best = flight.test(test.strong_structure());
+    if (test.chance_of(strongest(test).equivalent) < 0.01 ||
+        beside_the_best.chance_of(strongest(beside_the_best).equivalent) < 0.01)
+      ++claims;
   }
-  EXPECT_LE(claims, 5);
+  EXPECT_LE(claims, 4);
   RecordProperty("claims", claims);
 }
 
@@ -313,6 +316,18 @@ TEST(StructureTest, AVariableCompetesWithDriftOnEqualTerms) {
   EXPECT_EQ(strongest(test).name, "v5");
   EXPECT_LT(test.chance_of(strongest(test).equivalent), 0.01);
   EXPECT_NEAR(strongest(test).slope, 0.25, 4.0 * strongest(test).slope_error);
+}
+
+// Strong structure is no noise, though it goes with some variables by chance when it is shifted.
+TEST(StructureTest, SetsStrongStructureAside) {
+  Flight flight(900, 12, 11);
+  flight.residuals[0] += 1.0 * as_vector(flight.variables[7]);
+  const StructureTest first = flight.test();
+  const StructureTest second = flight.test(first.strong_structure());
+  EXPECT_EQ(strongest(second).name, "v7");
+  EXPECT_EQ(second.structures()[7].gain, first.structures()[7].gain);
+  EXPECT_LT(second.chance_of(strongest(second).equivalent),
+            0.1 * first.chance_of(strongest(first).equivalent));
 }
 
 TEST(StructureTest, FindsAnAngle) {
