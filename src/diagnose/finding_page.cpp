@@ -219,12 +219,13 @@ std::vector<std::string> unexplained_text(const Unexplained& unexplained) {
     }
     with += ".";
     if (!first.sampling.empty()) with += fmt::format(" Of the variable {} are used.", first.sampling);
-    if (!first.formula.empty()) with += fmt::format(" The formula {} would describe it.", first.formula);
-    with += first.where ? fmt::format(" It acts on the {}.", facts_of(*first.where).adds_to)
-                        : std::string(
-                              " Where it acts is not known: one residual does not tell places apart, and a "
-                              "formula is written as added to the static pressure, which describes it as "
-                              "well as any other place.");
+    with += first.where
+                ? fmt::format(" It acts on the {}.", facts_of(*first.where).adds_to)
+                : std::string(" Where it acts is not known: one residual does not tell places apart.");
+    if (!first.formula.empty()) {
+      with += fmt::format(" The formula {} would describe it{}.", first.formula,
+                          first.where ? "" : ", added to the static pressure as well as at any other place");
+    }
     all.push_back(with);
   }
   for (const FlightStep& step : unexplained.steps) {

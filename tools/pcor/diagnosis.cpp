@@ -193,9 +193,11 @@ void print_unexplained(const Unexplained& unexplained) {
   }
   if (!unexplained.variables.empty() && !unexplained.variables.front().where) {
     fmt::print(
-        "where it acts is not known: a formula is written as added to the static pressure, which describes "
-        "it "
-        "as well as any other place\n");
+        "where it acts is not known{}\n",
+        unexplained.variables.front().formula.empty()
+            ? ""
+            : ": the formula is written as added to the static pressure, which describes it as well as any "
+              "other place");
   }
   for (const FlightStep& step : unexplained.steps) {
     fmt::print("{} lies {:.3f} +- {:.3f} hPa {} the other flights (p {})\n", step.flight, std::abs(step.size),
