@@ -9,6 +9,7 @@
 
 #include <pcor/physics/air_data.hpp>
 #include <pcor/physics/geodesy.hpp>
+#include <pcor/physics/lift.hpp>
 #include <pcor/physics/moist_air.hpp>
 #include "diagnose/manoeuvres/aircraft.hpp"
 #include "diagnose/manoeuvres/atmosphere.hpp"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <pcor/physics/air_data.hpp>
+#include <pcor/physics/lift.hpp>
 #include <pcor/physics/moist_air.hpp>
 
 namespace pcor::internal::manoeuvres {

@@ -122,8 +122,4 @@ std::vector<double> Flown::column(Quantity quantity) const {
       [&](const FlightSamples& flight) -> const std::vector<double>& { return series_of(flight, quantity); });
 }
 
-double lift_number(double load, double mach, double dynamic_pressure) {
-  return load * std::sqrt(std::max(1.0 - mach * mach, 0.0)) / dynamic_pressure;
-}
-
 }  // namespace pcor::internal::manoeuvres

@@ -57,8 +57,4 @@ class Flown {
   std::vector<Place> places_;
 };
 
-/// How the lift needs the angle of attack: n (1 - M^2)^(1/2)/q with the load factor n, 1/hPa. The angle is
-/// linear in it (rule of Prandtl and Glauert), but for the part of q that compression adds.
-double lift_number(double load, double mach, double dynamic_pressure);
-
 }  // namespace pcor::internal::manoeuvres

@@ -11,6 +11,7 @@
 #include <pcor/physics/air_data.hpp>
 #include <pcor/physics/geodesy.hpp>
 #include <pcor/physics/lams.hpp>
+#include <pcor/physics/lift.hpp>
 #include <pcor/physics/moist_air.hpp>
 #include <pcor/physics/recovery_factor.hpp>
 
