@@ -10,6 +10,7 @@
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/model/formula.hpp>
 #include "numerics/missing.hpp"
+#include "residuals/bursts.hpp"
 #include "residuals/reference_on_samples.hpp"
 
 namespace pcor {
@@ -24,6 +25,7 @@ const std::array<MaskFacts, mask_count> mask_facts{{
     {"frozen", "with a frozen sensor"},
     {"reference_missing", "without a value of the reference"},
     {"laser_unlocked", "with a laser airspeed far from what the pressures let expect"},
+    {"burst", "in a burst of some seconds, in which a pressure and the residual jump"},
     {"impossible", "without a delta-p: impossible with these values and coefficients"},
     {"flaps", "with flaps out (--max-flaps)"},
 }};
@@ -77,22 +79,47 @@ void mark_flaps(const FlightSamples& samples, double most, std::vector<Mask>& ma
   }
 }
 
+/// Whether a quantity is read, or its rate of change.
+bool is_read(Quantity quantity, const std::vector<Batch::Input>& read) {
+  return std::any_of(read.begin(), read.end(), [quantity](const Batch::Input& column) {
+    return column.quantity == quantity || std::any_of(rates.begin(), rates.end(), [&](const Rate& each) {
+             return each.quantity == quantity && each.rate == column.quantity;
+           });
+  });
+}
+
 /// Marks the samples at which something that is read stands still.
 void mark_frozen(const ModelSamples& samples, const std::vector<Batch::Input>& read,
                  std::vector<Mask>& masks) {
-  const auto is_read = [&read](Quantity quantity) {
-    return std::any_of(read.begin(), read.end(), [quantity](const Batch::Input& column) {
-      return column.quantity == quantity || std::any_of(rates.begin(), rates.end(), [&](const Rate& each) {
-               return each.quantity == quantity && each.rate == column.quantity;
-             });
-    });
-  };
   for (const FrozenSpan& span : samples.frozen) {
-    if (!is_read(span.quantity)) continue;
+    if (!is_read(span.quantity, read)) continue;
     for (std::size_t i = span.first; i < span.first + span.count; ++i) {
       if (masks[i] == Mask::none) masks[i] = Mask::frozen;
     }
   }
+}
+
+/// The static and dynamic pressures that are read. Those of the radome jump with the flow angles, and effects
+/// of the angles with them.
+void add_pressures(const ModelSamples& samples, const std::vector<Batch::Input>& read,
+                   std::vector<const std::vector<double>*>& pressures) {
+  for (const Quantity quantity :
+       {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::corrected_static_pressure}) {
+    const std::vector<double>* const pressure = samples.find(quantity);
+    if (pressure != nullptr && is_read(quantity, read)) pressures.push_back(pressure);
+  }
+}
+
+void mark_bursts(const MaskedResidual& residual, std::vector<Mask>& masks) {
+  std::vector<const std::vector<double>*> pressures;
+  add_pressures(residual.samples.model, residual.model.columns(), pressures);
+  add_pressures(residual.samples.reference, residual.reference.columns(), pressures);
+  std::vector<double> used(masks.size(), nan);
+  for (std::size_t i = 0; i < masks.size(); ++i) {
+    if (masks[i] == Mask::none) used[i] = residual.values[i];
+  }
+  for (const std::size_t sample : find_bursts(used, pressures, residual.samples.time, residual.samples.step))
+    if (masks[sample] == Mask::none) masks[sample] = Mask::burst;
 }
 
 }  // namespace
@@ -118,6 +145,7 @@ std::vector<Mask> find_masks(const MaskedResidual& residual, const MaskOptions& 
       masks[i] = residual.reference.why_missing(i);
   }
   residual.reference.mark_not_believed(masks, samples.motion.airspeed, options);
+  mark_bursts(residual, masks);
   const std::vector<ModelEffect>& effects = residual.model.effects();
   const bool describes_flaps = std::any_of(effects.begin(), effects.end(), [&](const ModelEffect& effect) {
     return reads_flaps(effect, samples.flaps_variable);

@@ -23,6 +23,7 @@ enum class Mask : std::uint8_t {
   frozen,          ///< a sensor that the model or the reference reads stands still
   reference,       ///< a variable of the reference has no value; the laser is off
   laser_unlocked,  ///< the laser airspeed is far from what the pressures let expect
+  burst,           ///< a pressure is disturbed for some seconds
   impossible,      ///< the values are there, but no delta-p follows from them
   flaps,           ///< flaps are out, and nothing else speaks against the sample
   count
