@@ -45,6 +45,8 @@ std::string mask_text(const std::array<std::size_t, mask_count>& counts) {
 namespace internal {
 namespace {
 
+constexpr double fully_out = 100.0;  // percent
+
 double airspeed_at(const FlightSamples& samples, std::size_t sample) {
   const std::vector<double>& airspeed = samples.motion.airspeed;
   return airspeed.empty() ? nan : airspeed[sample];
@@ -74,8 +76,11 @@ std::vector<Mask> masks_without_flaps(const FlightSamples& samples, const MaskOp
 }
 
 void mark_flaps(const FlightSamples& samples, double most, std::vector<Mask>& masks) {
-  for (std::size_t i = 0; i < samples.flaps.size(); ++i) {
-    if (masks[i] == Mask::none && samples.flaps[i] > most) masks[i] = Mask::flaps;
+  for (std::size_t i = 0; i < masks.size(); ++i) {
+    const bool out = samples.flaps.empty()
+                         ? !samples.flaps_by_lift.empty() && samples.flaps_by_lift[i] && most < fully_out
+                         : samples.flaps[i] > most;
+    if (masks[i] == Mask::none && out) masks[i] = Mask::flaps;
   }
 }
 

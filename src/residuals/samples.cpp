@@ -13,6 +13,7 @@
 #include <pcor/residuals/reference.hpp>
 #include <pcor/words/error.hpp>
 #include "numerics/missing.hpp"
+#include "residuals/flaps_by_lift.hpp"
 #include "residuals/frozen.hpp"
 #include "roles/model_inputs.hpp"
 #include "roles/recorded_series.hpp"
@@ -79,6 +80,45 @@ FlightMotion read_motion(const Flight& flight, const ModelFile& model, const Fli
   return motion;
 }
 
+/// ADIFR/QCR, else the angle of attack, deg; empty where neither is recorded.
+std::vector<double> read_attack(const Flight& flight, const ModelFile& model, const FlightMotion& motion) {
+  std::vector<double> ratio = read_role(flight, model, Quantity::attack_differential_pressure).values;
+  const std::vector<double> qcr = read_role(flight, model, Quantity::radome_dynamic_pressure).values;
+  if (ratio.empty() || qcr.empty()) return motion.attack;
+  for (std::size_t i = 0; i < ratio.size(); ++i) ratio[i] /= qcr[i];
+  return ratio;
+}
+
+/// The flaps as recorded, else where the lift says that they are out.
+void read_flaps(const Flight& flight, const ModelFile& model, double least_airspeed, FlightSamples& samples) {
+  RecordedSeries recorded = read_role(flight, model, Quantity::flaps);
+  samples.flaps = std::move(recorded.values);
+  samples.flaps_variable = std::move(recorded.variable);
+  if (!samples.flaps.empty()) return;
+  const std::vector<double> attack = read_attack(flight, model, samples.motion);
+  const std::optional<FlapsByLift> lift =
+      attack.empty() ? std::nullopt : find_flaps_by_lift(samples, attack, least_airspeed);
+  if (!lift) {
+    samples.notes.emplace_back(
+        "the flight records no flaps, and its lift does not tell, so an approach with flaps and gear out "
+        "takes part; --min-airspeed or --intervals leaves it out");
+    return;
+  }
+  samples.flaps_by_lift = lift->out;
+  const std::string times = times_of(*lift, samples.time);
+  samples.notes.push_back(
+      times.empty()
+          ? fmt::format(
+                "the flight records no flaps; by its lift they are in all the time: the angle of attack "
+                "is what the lift needs within {:.1f} %",
+                100.0 * lift->deviation)
+          : fmt::format(
+                "the flight records no flaps; by its lift they are out {}: the angle of attack is {:.0f} % "
+                "less than the lift needs without flaps, elsewhere it is what that needs within {:.1f} %; "
+                "--max-flaps 100 lets these samples take part",
+                times, 100.0 * lift->deficit, 100.0 * lift->deviation));
+}
+
 }  // namespace
 
 const std::vector<double>* ModelSamples::find(Quantity quantity) const {
@@ -126,14 +166,7 @@ FlightSamples read_samples(const Flight& flight, const ModelFile& model, const R
   samples.model = read_model_columns(flight, model, reference.reads_laser(), samples.time, samples.notes);
   samples.reference = reference.read(flight, samples.time, samples.notes);
   samples.motion = read_motion(flight, model, samples);
-  RecordedSeries flaps = read_role(flight, model, Quantity::flaps);
-  samples.flaps = std::move(flaps.values);
-  samples.flaps_variable = std::move(flaps.variable);
-  if (samples.flaps.empty()) {
-    samples.notes.emplace_back(
-        "the flight records no flaps, so an approach with flaps and gear out takes part; --min-airspeed or "
-        "--intervals leaves it out");
-  }
+  read_flaps(flight, model, options.least_airspeed, samples);
   mark_frozen(samples, options.least_airspeed);
   const std::optional<RegimeCriteria> criteria = RegimeCriteria::of(samples.aircraft);
   if (!criteria) {

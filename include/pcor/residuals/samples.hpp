@@ -39,6 +39,7 @@ struct FlightSamples {
   FlightMotion motion{};
   std::vector<double> flaps{};        ///< percent; empty: not recorded
   std::string flaps_variable{};       ///< of the file
+  std::vector<bool> flaps_by_lift{};  ///< where the lift says that flaps are out; empty: recorded, or unknown
   std::vector<Interval> intervals{};  ///< regimes
   ModelSamples model{};
   ModelSamples reference{};          ///< what the reference reads for itself

@@ -86,7 +86,9 @@ void Flown::add(const FlightSamples& flight, Flaps which) {
     const double p = recorded(Quantity::static_pressure, i);
     const double q = recorded(Quantity::dynamic_pressure, i);
     if (!(p > 0.0) || !(q > 0.0) || regimes[i][ground] || regimes[i][take_off]) continue;
-    const double out = recorded_flaps.empty() ? 0.0 : value_at(recorded_flaps, i);
+    const bool out_by_lift = !flight.flaps_by_lift.empty() && flight.flaps_by_lift[i];
+    const double if_not_recorded = out_by_lift ? nan : 0.0;  // out, but nobody knows by how much
+    const double out = recorded_flaps.empty() ? if_not_recorded : value_at(recorded_flaps, i);
     if (!(which == Flaps::in ? out <= most_flaps : out >= flaps_out)) continue;
     const double moisture =
         humidity_at(recorded(Quantity::vapor_pressure, i), recorded(Quantity::dew_point, i),

@@ -1,0 +1,302 @@
+#include "residuals/flaps_by_lift.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include <pcor/numerics/noise.hpp>
+#include <pcor/physics/air_data.hpp>
+#include <pcor/physics/lift.hpp>
+#include <pcor/words/utc.hpp>
+#include "numerics/decompositions.hpp"
+#include "numerics/median.hpp"
+#include "numerics/missing.hpp"
+
+namespace pcor::internal {
+namespace {
+
+constexpr double piece_time = 20.0;         // s
+constexpr double time_in = 3600.0;          // s, mean
+constexpr double time_out = 600.0;          // s, mean
+constexpr double least_deficit = 0.12;      // a C-130 of 2004 showed 0.37 and more
+constexpr double greatest_deficit = 0.8;    // and 0.68 at most, before it landed
+constexpr double anywhere_share = 0.001;    // of the pieces with flaps in
+constexpr double anywhere_deficit = 0.3;    // their standard deviation
+constexpr double slope_error = 0.05;        // of the lift away from where the law was fitted
+constexpr double usual_compression = -0.2;  // of M^2: half of the rule of Prandtl and Glauert, as swept wings
+constexpr double compression_spread = 0.3;  // standard deviation
+constexpr double most_evidence = 3.0;       // ln 20
+constexpr double over_speed = 0.05;         // by which pilots pass the limit, standard deviation
+constexpr double likely = 0.9;
+constexpr double robust_limit = 4.0;         // deviations
+constexpr double sea_level_density = 1.225;  // kg/m3, standard atmosphere
+constexpr std::size_t fewest_fast = 15;      // pieces
+constexpr int rounds = 10;
+
+struct FlapSpeed {
+  std::string_view registration;
+  double airspeed;  ///< m/s, indicated
+};
+
+/// The greatest speeds with the flaps of an approach, of the flight manuals: C-130 180 kt with 50 %, GV
+/// 220 kt with 20 deg. Of an aircraft that is not known here that of the C-130, the slower.
+constexpr std::array<FlapSpeed, 2> flap_speeds{{{"N130AR", 92.6}, {"N677F", 113.2}}};
+
+double flap_speed_of(const std::string& aircraft) {
+  for (const FlapSpeed& each : flap_speeds) {
+    if (aircraft.find(each.registration) != std::string::npos) return each.airspeed;
+  }
+  return flap_speeds.front().airspeed;
+}
+
+/// The means of 20 s.
+struct Piece {
+  std::size_t first = 0;  ///< sample
+  std::size_t end = 0;
+  double time = 0.0;  ///< s
+  double lift = 0.0;  ///< n/q, 1/hPa
+  double mach = 0.0;
+  double angle = 0.0;     ///< as given
+  double airspeed = 0.0;  ///< indicated, m/s
+};
+
+double load_factor_at(const FlightSamples& samples, std::size_t i) {
+  const std::vector<double>& climb = samples.motion.vertical_speed;
+  const std::vector<double>& roll = samples.motion.roll;
+  double acceleration = 0.0;
+  if (!climb.empty()) {
+    const std::size_t before = i - std::min<std::size_t>(i, 1);
+    const std::size_t after = std::min(i + 1, climb.size() - 1);
+    const double across = samples.time[after] - samples.time[before];
+    acceleration = across <= 2.5 * samples.step ? (climb[after] - climb[before]) / across : nan;
+  }
+  return load_factor(acceleration, roll.empty() ? 0.0 : roll[i]);
+}
+
+std::vector<Piece> pieces_of(const FlightSamples& samples, const std::vector<double>& angle,
+                             double least_airspeed) {
+  const std::vector<double>& p = *samples.model.find(Quantity::static_pressure);
+  const std::vector<double>& q = *samples.model.find(Quantity::dynamic_pressure);
+  std::vector<Piece> pieces;
+  for (std::size_t first = 0, end = 0; first < samples.time.size(); first = end) {
+    Piece piece{first};
+    double count = 0.0;
+    double dynamic = 0.0;
+    while (end < samples.time.size() && samples.time[end] - samples.time[first] < piece_time) {
+      const std::size_t i = end++;
+      if (!(samples.motion.airspeed[i] >= least_airspeed) || !(q[i] > 0.0)) continue;
+      const double mach = mach_number(p[i], q[i], dry_air<double>());
+      const double lift = load_factor_at(samples, i) / q[i];
+      if (!std::isfinite(lift) || !std::isfinite(angle[i])) continue;
+      piece.time += samples.time[i];
+      piece.lift += lift;
+      piece.mach += mach;
+      piece.angle += angle[i];
+      dynamic += q[i];
+      count += 1.0;
+    }
+    piece.end = end;
+    if (2.0 * count * samples.step < piece_time) continue;
+    for (double* const sum : {&piece.time, &piece.lift, &piece.mach, &piece.angle, &dynamic}) *sum /= count;
+    piece.airspeed = std::sqrt(2.0 * 100.0 * dynamic / sea_level_density);
+    pieces.push_back(piece);
+  }
+  return pieces;
+}
+
+/// What the angle falls short of what the lift needs, a part, and its standard error.
+struct Deficit {
+  double value;
+  double error;
+};
+
+/// angle = c0 + (c1 + c2 t + c3 M^2) n/q, with t in hours; c3/c1 has a prior, since one height cannot tell
+/// it.
+class LiftLaw {
+ public:
+  LiftLaw(const std::vector<Piece>& pieces, const std::vector<double>& weights)
+      : middle_(0.5 * (pieces.front().time + pieces.back().time)) {
+    std::vector<double> lifts;
+    for (const Piece& piece : pieces) lifts.push_back(piece.lift);
+    scale_ = median(std::move(lifts));
+    Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
+    Eigen::Vector4d right = Eigen::Vector4d::Zero();
+    double lift = 0.0;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const Eigen::Vector4d row = row_of(pieces[i]);
+      information += weights[i] * row * row.transpose();
+      right += weights[i] * pieces[i].angle * row;
+      lift += weights[i] * pieces[i].lift;
+      sum += weights[i];
+    }
+    mean_lift_ = lift / sum;
+    // First the usual compression alone, which gives slope and scatter; then its prior, measured in these.
+    Eigen::Matrix4d precision = Eigen::Matrix4d::Zero();
+    precision(3, 3) = information.trace();
+    for (int pass = 0; pass < 2; ++pass) {
+      const Eigen::Matrix4d inverse = pseudo_inverse(information + precision, 1e-9 * information.trace());
+      coefficients_ = inverse * right;
+      std::vector<double> clean;
+      for (std::size_t i = 0; i < pieces.size(); ++i) {
+        if (weights[i] > 0.5) clean.push_back(departure(pieces[i]));
+      }
+      deviation_ = robust_deviation(clean);
+      const double variance = deviation_ * deviation_ * pieces_per_independent(clean);
+      covariance_ = inverse * variance;
+      const double spread = compression_spread * coefficients_[1];
+      precision(3, 3) = variance / (spread * spread);
+    }
+  }
+
+  bool rises() const { return coefficients_[1] > 0.0 && deviation_ > 0.0; }
+  double deviation() const { return deviation_; }
+  double departure(const Piece& piece) const { return piece.angle - row_of(piece).dot(coefficients_); }
+
+  Deficit deficit(const Piece& piece) const {
+    const Eigen::Vector4d row = row_of(piece);
+    const double needed = row.tail<3>().dot(coefficients_.tail<3>());
+    const double lever = slope_error * coefficients_[1] * (piece.lift - mean_lift_) / scale_;
+    const double variance = deviation_ * deviation_ + row.dot(covariance_ * row) + lever * lever;
+    return {-departure(piece) / needed, std::sqrt(variance) / needed};
+  }
+
+ private:
+  /// With the usual compression in the slope, so that the last coefficient is what is beyond it.
+  Eigen::Vector4d row_of(const Piece& piece) const {
+    const double mach_squared = piece.mach * piece.mach;
+    const double lift = piece.lift / scale_;
+    const double slope = 1.0 + usual_compression * mach_squared;
+    return {1.0, lift * slope, lift * slope * (piece.time - middle_) / 3600.0, lift * mach_squared};
+  }
+
+  /// For how many pieces an independent one stands, by the correlation of neighbours.
+  double pieces_per_independent(std::vector<double> clean) const {
+    constexpr double most = 0.95;
+    double product = 0.0;
+    double square = 0.0;
+    for (double& each : clean) each = std::clamp(each, -3.0 * deviation_, 3.0 * deviation_);
+    for (std::size_t i = 0; i < clean.size(); ++i) {
+      square += clean[i] * clean[i];
+      if (i > 0) product += clean[i] * clean[i - 1];
+    }
+    const double correlation = std::clamp(product / square, 0.0, most);
+    return (1.0 + correlation) / (1.0 - correlation);
+  }
+
+  double middle_;  // s
+  double scale_ = 1.0;
+  double mean_lift_ = 0.0;
+  double deviation_ = 0.0;
+  Eigen::Vector4d coefficients_ = Eigen::Vector4d::Zero();
+  Eigen::Matrix4d covariance_ = Eigen::Matrix4d::Zero();
+};
+
+double normal_density(double x, double deviation) {
+  constexpr double root_of_two_pi = 2.5066282746310002;
+  return std::exp(-0.5 * x * x / (deviation * deviation)) / (deviation * root_of_two_pi);
+}
+
+double normal_probability(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
+
+/// The logarithm of how much likelier a piece is with flaps out than with flaps in.
+double evidence_of(const Deficit& deficit, double airspeed, double flap_speed) {
+  const auto [value, error] = deficit;
+  const double in = (1.0 - anywhere_share) * normal_density(value, error) +
+                    anywhere_share * normal_density(value, anywhere_deficit);
+  const double out = (normal_probability((value - least_deficit) / error) -
+                      normal_probability((value - greatest_deficit) / error)) /
+                     (greatest_deficit - least_deficit);
+  const double lift = std::clamp(std::log(out) - std::log(in), -most_evidence, most_evidence);
+  const double over = std::max(airspeed / flap_speed - 1.0, 0.0) / over_speed;
+  return (std::isnan(lift) ? 0.0 : lift) - 0.5 * over * over;
+}
+
+/// The probability of the state out at each piece: forward and backward over all of them.
+std::vector<double> probabilities_of_out(const std::vector<Piece>& pieces,
+                                         const std::vector<double>& evidence) {
+  using Pair = Eigen::Vector2d;  // in, out
+  const auto transition = [&pieces](std::size_t to) {
+    const double time = pieces[to].time - pieces[to - 1].time;
+    const double leaves_in = -std::expm1(-time / time_in);
+    const double leaves_out = -std::expm1(-time / time_out);
+    Eigen::Matrix2d matrix;
+    matrix << 1.0 - leaves_in, leaves_in, leaves_out, 1.0 - leaves_out;
+    return matrix;
+  };
+  const auto likelihood = [&evidence](std::size_t i) { return Pair(1.0, std::exp(evidence[i])); };
+  std::vector<Pair> forward(pieces.size());
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const Pair before = i == 0 ? Pair(time_in, time_out) : Pair(transition(i).transpose() * forward[i - 1]);
+    forward[i] = before.cwiseProduct(likelihood(i));
+    forward[i] /= forward[i].sum();
+  }
+  std::vector<double> probabilities(pieces.size());
+  Pair backward(1.0, 1.0);
+  for (std::size_t i = pieces.size(); i-- > 0;) {
+    const Pair both = forward[i].cwiseProduct(backward);
+    probabilities[i] = both[1] / both.sum();
+    if (i == 0) break;
+    backward = transition(i) * likelihood(i).cwiseProduct(backward);
+    backward /= backward.sum();
+  }
+  return probabilities;
+}
+
+}  // namespace
+
+std::optional<FlapsByLift> find_flaps_by_lift(const FlightSamples& samples, const std::vector<double>& angle,
+                                              double least_airspeed) {
+  const std::vector<Piece> pieces = pieces_of(samples, angle, least_airspeed);
+  const double flap_speed = flap_speed_of(samples.aircraft);
+  std::vector<double> weights;
+  for (const Piece& piece : pieces) weights.push_back(piece.airspeed > flap_speed ? 1.0 : 0.0);
+  if (std::count(weights.begin(), weights.end(), 1.0) < static_cast<std::ptrdiff_t>(fewest_fast)) return {};
+  std::vector<double> out(pieces.size());
+  std::vector<Deficit> deficits(pieces.size());
+  for (int round = 0; round < rounds; ++round) {
+    const LiftLaw law(pieces, weights);
+    if (!law.rises()) return {};
+    std::vector<double> evidence(pieces.size());
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      deficits[i] = law.deficit(pieces[i]);
+      evidence[i] = evidence_of(deficits[i], pieces[i].airspeed, flap_speed);
+    }
+    out = probabilities_of_out(pieces, evidence);
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const double off = law.departure(pieces[i]) / (robust_limit * law.deviation());
+      weights[i] = (1.0 - out[i]) / (1.0 + off * off);
+    }
+  }
+  FlapsByLift flaps;
+  flaps.out.resize(samples.time.size());
+  std::vector<double> where_out;
+  std::vector<double> where_in;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const bool is_out = out[i] > likely;
+    (is_out ? where_out : where_in).push_back(deficits[i].value);
+    for (std::size_t k = pieces[i].first; k < pieces[i].end; ++k) flaps.out[k] = is_out;
+  }
+  flaps.deficit = where_out.empty() ? 0.0 : median(std::move(where_out));
+  flaps.deviation = robust_deviation(std::move(where_in));
+  return flaps;
+}
+
+std::string times_of(const FlapsByLift& flaps, const std::vector<double>& time) {
+  std::vector<std::string> spans;
+  for (std::size_t first = 0, end = 0; first < flaps.out.size(); first = end) {
+    end = first + 1;
+    while (end < flaps.out.size() && flaps.out[end] == flaps.out[first]) ++end;
+    if (!flaps.out[first]) continue;
+    spans.push_back(fmt::format("from {} to {} UTC ({} samples)", utc_text(time[first]),
+                                utc_text(time[end - 1], "%H:%M:%S"), end - first));
+  }
+  return fmt::format("{}", fmt::join(spans, " and "));
+}
+
+}  // namespace pcor::internal
