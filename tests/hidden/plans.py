@@ -23,7 +23,7 @@ HEIGHTS = {
 }
 CLIMB = {"C-130": 6, "GV": 10}
 TAKE_OFF_SPEED = {"C-130": 100, "GV": 140}
-KINDS = ("manoeuvres", "steady", "short")
+KINDS = ("manoeuvres", "long", "steady", "short")
 NOISES = ("A", "B", "drift")
 
 ROLES = {
@@ -102,7 +102,7 @@ def legs_of(plan, part):
                                          ["speed-run", "turn"], ["pitch", "yaw", "turn"], ["level", "level"]])
         legs += block(rng, plan.aircraft, 0, wanted)
     else:
-        order = rng.sample([0, 1, 2], 3 if plan.kind == "steady" else 2)
+        order = rng.sample([0, 1, 2], 2 if plan.kind == "manoeuvres" else 3)
         if plan.aircraft == "GV" and plan.kind == "manoeuvres" and 2 not in order:
             order[1] = 2  # where its Mach number is high
         now = None
@@ -128,7 +128,7 @@ def legs_of(plan, part):
             else:
                 legs += block(rng, plan.aircraft, index, ["level", "pitch", "yaw", "speed-run", "circle",
                                                           "reverse-heading"])
-        if plan.kind == "manoeuvres":
+        if plan.kind != "steady":
             low, speed = heights[0][0] - 500, heights[0][2]
             if now > low + 50:
                 legs.append(leg("descent", altitude=low, rate=CLIMB[plan.aircraft] * 1.2, speed=speed))

@@ -1,0 +1,153 @@
+#!/usr/bin/python3
+"""Flights without any effect, harder than those of `hidden_effects`: what does the tool claim there?
+
+    nulls.py TOOL --cases 200 --seed 1
+
+A case is two flights of about two hours. Half of the cases have noise with a short memory, half 1/f noise; in turn an
+instrument drifts, freezes or is hit by bursts, or the model starts with wrong coefficients, or all of this at once
+(instruments.py). The model is refitted, then diagnosed, as a user would. A name is a wrong claim, and so is a variable
+of the file that the structure is traced to; structure without a cause is none: slow noise is structure.
+"""
+
+import argparse
+import multiprocessing
+import os
+import random
+import shutil
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+sys.dont_write_bytecode = True  # no __pycache__ in the source directory
+for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
+    os.environ.setdefault(variable, "1")  # one process for each core is enough
+
+import cases  # noqa: E402
+import instruments  # noqa: E402
+import plans  # noqa: E402
+import scoring  # noqa: E402
+from tool_runs import Tool, ToolError  # noqa: E402
+
+CLAIMS = ("named", "traced", "structure", "silent")
+STARTS = {"neutral": 0.0, "halved": 0.5, "doubled": 2.0, "of the other sign": -1.0}
+
+
+@dataclass(frozen=True)
+class NullCase:
+    number: int
+    seed: int
+    plan: plans.Plan
+    noise: str
+    kind: str
+
+    def __str__(self):
+        return f"case {self.number} ({self.plan}, {self.noise}, {self.kind})"
+
+
+def null_case(seed, number):
+    """Noises and troubles in turn, so that any stretch of numbers has all of them."""
+    noise = instruments.NOISES[number % 2]
+    kind = instruments.TROUBLES[(number // 2) % len(instruments.TROUBLES)]
+    draw = random.Random(f"null {seed} {number}")
+    plan = plans.Plan("GV" if draw.random() < 0.3 else "C-130", "long", 1000 * seed + number)
+    return NullCase(number, seed, plan, noise, kind)
+
+
+def model_of(case, draw):
+    """The user's model: right, or with a law that has to be fitted anew."""
+    text = plans.model_text(case.plan.aircraft)
+    if case.kind not in ("wrong start", "all"):
+        return text, []
+    start = draw.choice(list(STARTS))
+    for parameter, value in plans.LAWS[case.plan.aircraft].values():
+        text = text.replace(f"{parameter} = {value}", f"{parameter} = {STARTS[start] * value}")
+    return text, [f"the law starts {start}"]
+
+
+def run_case(tool, kept, case, references):
+    """What the tool claims, as a dictionary."""
+    folder = Path(tempfile.mkdtemp(prefix="null-"))
+    draw = random.Random(f"{case} {case.seed}")
+    pair = (plans.STATIC[case.plan.aircraft], "QCF")
+    kinds = {case.kind} if case.kind != "all" else set(draw.sample(instruments.TROUBLES[1:5], 3))
+    facts = {"case": str(case), "noise": case.noise, "kind": case.kind, "told": []}
+    try:
+        flights = []
+        for part in (0, 1):
+            flight, scenario = folder / f"flight{part}.nc", folder / "scenario.toml"
+            scenario.write_text(plans.scenario_text(case.plan, part, 10 * case.number + part, draw.choice("AB"),
+                                                    noiseless=True))
+            tool.run("simulate", scenario, "-o", flight, "--quiet")
+            facts["told"] += instruments.record(flight, pair, case.noise, kinds, [case.seed, case.number, part])
+            cases.without_truth(flight, None)
+            flights.append(flight)
+        user, fitted = folder / "user.toml", folder / "fitted.toml"
+        text, told = model_of(case, draw)
+        user.write_text(text)
+        facts["told"] += told
+        fit = tool.json_of("refit", *flights, "-m", user, "-o", fitted, *references)
+        diagnosis = tool.json_of("diagnose", *flights, "-m", fitted, *references)
+        facts |= {"rms_hpa": fit["rms_hpa"], "verdict": scoring.verdict_of(diagnosis),
+                  "claim": claim_of(diagnosis), "summary": scoring.summary_of(diagnosis)}
+    except (ToolError, OSError, ValueError, KeyError) as error:
+        facts |= {"claim": "error", "verdict": f"{type(error).__name__}: {error}"}
+    if kept and facts["claim"] in ("named", "traced", "error"):
+        shutil.copytree(folder, Path(kept) / f"{case.seed}-{case.number}", dirs_exist_ok=True)
+    shutil.rmtree(folder)
+    return facts
+
+
+def claim_of(diagnosis):
+    if diagnosis["findings"]:
+        return "named"
+    if scoring.traced_in(diagnosis):
+        return "traced"
+    return "silent" if scoring.verdict_of(diagnosis) == "silent" else "structure"
+
+
+def table_of(found):
+    lines = [f"{'noise':<8}{'trouble':<14}{'cases':>6}" + "".join(f"{claim:>11}" for claim in (*CLAIMS, "error"))]
+    kinds = sorted({(facts["noise"], facts["kind"]) for facts in found},
+                   key=lambda key: (key[0], instruments.TROUBLES.index(key[1])))
+    for noise, kind in [*kinds, ("all", "")]:
+        some = [facts for facts in found if noise == "all" or (facts["noise"], facts["kind"]) == (noise, kind)]
+        counts = [sum(facts["claim"] == claim for facts in some) for claim in (*CLAIMS, "error")]
+        lines.append(f"{noise:<8}{kind:<14}{len(some):>6}" + "".join(f"{count:>11}" for count in counts))
+    return "\n".join(lines)
+
+
+def run_numbered(arguments):
+    return run_case(*arguments)
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="nulls.py", description=__doc__.split("\n")[0],
+                                     formatter_class=argparse.ArgumentDefaultsHelpFormatter)
+    parser.add_argument("tool", help="the program pcor")
+    parser.add_argument("--cases", type=int, default=200, metavar="N")
+    parser.add_argument("--first", type=int, default=0, metavar="K", help="number of the first case")
+    parser.add_argument("--seed", type=int, default=1, metavar="S", help="other flights")
+    parser.add_argument("--reference", action="append", default=[], metavar="REF", help="as for the tool")
+    parser.add_argument("--jobs", type=int, default=2, metavar="N", help="processes side by side")
+    parser.add_argument("--keep", metavar="FOLDER", help="files of the cases with a wrong claim or an error")
+    options = parser.parse_args()
+    tool = Tool(options.tool)
+    references = [word for reference in options.reference for word in ("--reference", reference)]
+    wanted = [(tool, options.keep, null_case(options.seed, number), references)
+              for number in range(options.first, options.first + options.cases)]
+    found = []
+    with multiprocessing.Pool(options.jobs) as pool:
+        for facts in pool.imap(run_numbered, wanted):
+            found.append(facts)
+            if facts["claim"] in ("named", "traced", "error"):
+                print(f"{facts['case']}: {facts['verdict']} {facts.get('summary', '')}; {'; '.join(facts['told'])}",
+                      flush=True)
+    print(table_of(found))
+    wrong = sum(facts["claim"] in ("named", "traced") for facts in found)
+    print(f"{sum(facts['claim'] == 'named' for facts in found)} of {len(found)} named, {wrong} with any wrong claim")
+    return 1 if any(facts["claim"] == "error" for facts in found) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
