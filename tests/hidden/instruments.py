@@ -10,7 +10,8 @@ import netCDF4
 import numpy
 
 NOISES = ("ar", "1/f")
-TROUBLES = ("none", "drift of p", "drift of q", "frozen", "bursts", "wrong start", "all")
+TROUBLES = ("drift of p", "drift of q", "frozen", "bursts", "spikes and gaps")
+RADOME = (("ATTACK", "ADIFR"), ("SSLIP", "BDIFR"))  # angles that the recorder computes, and from what
 
 # rms of means over 1 s, in the variable's unit
 WHITE = {
@@ -88,6 +89,14 @@ def trouble(rng, recorded, pair, kinds):
             length = part.stop - part.start
             recorded[name][part] += size + abs(size) * 0.3 * rng.standard_normal(length)
             told.append(f"{name} off by {size:.1f} from {part.start} s for {length} s")
+    if "spikes and gaps" in kinds:
+        name = str(rng.choice(["VLAMS", "QCF"]))
+        hit = rng.random(count) < 0.01
+        recorded[name][hit] += {"VLAMS": 3.0, "QCF": 2.0}[name] * rng.standard_normal(hit.sum())
+        told.append(f"1 % of {name} are spikes")
+        for part in stretches(rng, count, 2, 20, 90):
+            recorded["VLAMS"][part] = numpy.nan
+            told.append(f"no VLAMS from {part.start} s for {part.stop - part.start} s")
     return told
 
 
@@ -108,7 +117,7 @@ def record(path, pair, noise, kinds, seed):
             for name, (least, most) in DECADE.items():
                 if name in recorded:
                     recorded[name] += rng.uniform(least, most) * one_over_f(rng, count)
-        for angle, difference in RADOME:  # computed by the recorder from the radome's pressures
+        for angle, difference in RADOME:
             flown = recorded["QCR"] > 20
             slope = numpy.polyfit(flow[angle][flown], recorded[angle][flown], 1)[0]
             now = recorded[difference] / recorded["QCR"]
@@ -117,6 +126,3 @@ def record(path, pair, noise, kinds, seed):
         for name, values in recorded.items():
             file[name][:] = numpy.ma.masked_invalid(values)
     return told
-
-
-RADOME = (("ATTACK", "ADIFR"), ("SSLIP", "BDIFR"))

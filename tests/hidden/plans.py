@@ -1,6 +1,7 @@
-"""Flights of all kinds from a number: what is flown, in what air, with what noise.
+"""Flights of all kinds from a number: what is flown, and in what air.
 
-The number decides legs, heights, speeds and air; the seed decides the random numbers of air and sensors. So flights
+The number decides legs, heights, speeds and air; the seed decides the random numbers of the air. The
+instruments are ideal: instruments.py puts others upon the flights. So flights
 of one plan and two seeds are two flights of the same day's plan, and an effect has about the same size in both.
 """
 
@@ -24,7 +25,9 @@ HEIGHTS = {
 CLIMB = {"C-130": 6, "GV": 10}
 TAKE_OFF_SPEED = {"C-130": 100, "GV": 140}
 KINDS = ("manoeuvres", "long", "steady", "short")
-NOISES = ("A", "B", "drift")
+# What the coefficients of a user's law are multiplied by before it is fitted.
+STARTS = {"right": 1.0, "neutral": 0.0, "halved": 0.5, "doubled": 2.0, "of the other sign": -1.0}
+SECOND = {"static-constant": ("a0", 0.002047), "static-alpha": ("a1", 0.008890), "static-qp": ("a2", 0.07119)}
 
 ROLES = {
     "lams_airspeed": "VLAMS", "attack": "ATTACK", "sideslip": "SSLIP", "vapor_pressure": "EDPC",
@@ -47,17 +50,29 @@ class Plan:
         return f"{self.aircraft} {self.kind} {self.number}"
 
 
-def model_text(aircraft, without=(), moist=True):
+def model_text(aircraft, without=(), moist=True, start="right", laser=True):
     """The model that the user has: the aircraft's law, less the effects `without`."""
+    roles = {role: variable for role, variable in ROLES.items() if laser or role != "lams_airspeed"}
+    law = {effect: (parameter, STARTS[start] * value) for effect, (parameter, value) in LAWS[aircraft].items()
+           if effect not in without}
+    return text_of(aircraft, (STATIC[aircraft], "QCF"), roles, law, moist)
+
+
+def second_model_text():
+    """The right model of the second static system of the C-130."""
+    roles = {role: variable for role, variable in ROLES.items() if role != "lams_airspeed"}
+    return text_of("C-130", ("PSFRD", "QCFR"), roles, SECOND)
+
+
+def text_of(aircraft, pair, roles, law, moist=True):
     thermometer, recovery = THERMOMETER[aircraft]
     lines = ['format = "pcor-model/1"', f'name = "{aircraft}"', f'aircraft = "{aircraft}"', "", "[variables]",
-             f'static_pressure = "{STATIC[aircraft]}"', 'dynamic_pressure = "QCF"',
+             f'static_pressure = "{pair[0]}"', f'dynamic_pressure = "{pair[1]}"',
              f'recovery_temperature = "{thermometer}"']
-    lines += [f'{role} = "{variable}"' for role, variable in ROLES.items()]
+    lines += [f'{role} = "{variable}"' for role, variable in roles.items()]
     lines += ["", "[temperature]", f"recovery_factor = {recovery}", "", "[humidity]", f"moist = {str(moist).lower()}"]
-    for effect, (parameter, value) in LAWS[aircraft].items():
-        if effect not in without:
-            lines += ["", "[[effect]]", f'id = "{effect}"', f"parameters = {{ {parameter} = {value} }}"]
+    for effect, (parameter, value) in law.items():
+        lines += ["", "[[effect]]", f'id = "{effect}"', f"parameters = {{ {parameter} = {value} }}"]
     return "\n".join(lines) + "\n"
 
 
@@ -137,12 +152,12 @@ def legs_of(plan, part):
     return legs + [leg("landing"), leg("ground", duration=30)]
 
 
-def atmosphere_of(plan, part, noise):
+def atmosphere_of(plan, part):
     rng = random.Random(f"{plan} air {part}")
     inversion = rng.uniform(1000, 2500)
     warm = rng.uniform(280, 300) if plan.aircraft == "C-130" else rng.uniform(294, 302)
     turbulence, layer = 1e-4, 2e-3
-    if noise == "B":  # calm and rough air change with height, the mismatch of the laser with its cube root
+    if plan.number % 2:  # calm and rough air change with height, the mismatch of the laser with its cube root
         turbulence, layer, inversion = rng.choice([1e-5, 3e-5, 3e-4]), rng.choice([1e-3, 4e-3]), rng.uniform(1300, 3500)
     base = HEIGHTS[plan.aircraft][0 if plan.kind == "short" else rng.choice([0, 1])][0] - 700
     return "\n".join([
@@ -155,32 +170,20 @@ def atmosphere_of(plan, part, noise):
         "[[atmosphere.cloud]]", f"base = {base}", f"top = {base + 1400}", f"cover = {rng.uniform(0.15, 0.4):.2f}"])
 
 
-def noise_text(plan, part, noise):
-    if noise == "drift":
-        return "[noise]\nQCF = { rms = 0.06, memory = 600 }"
-    if noise != "B":
-        return ""
-    rng = random.Random(f"{plan} faults {part}")
-    spiked, size = rng.choice([("VLAMS", 3.0), ("QCF", 2.0)])
-    return "\n".join([
-        "[noise]", "ADIFR = 0.06", "BDIFR = 0.06", "QCR = 0.05",
-        "[[outliers]]", f'variable = "{spiked}"', "fraction = 0.01", f"size = {size}",
-        "[[gap]]", f"start = {rng.uniform(500, 700):.0f}", f"duration = {rng.uniform(10, 60):.0f}",
-        "[[gap]]", 'variable = "VLAMS"', f"start = {rng.uniform(750, 900):.0f}",
-        f"duration = {rng.uniform(20, 90):.0f}"])
+def terms_of(law, without=()):
+    return ", ".join(f"{name} = {value}" for name, (_, value) in law.items() if name not in without)
 
 
-def scenario_text(plan, part, seed, noise="A", effects="", noiseless=False, without=()):
+def scenario_text(plan, part, seed, effects="", without=()):
     """A scenario of `pcor simulate`. Parts 0 and 1 of a plan are for training, part 2 is held out."""
-    law = ", ".join(f"{name} = {value}" for name, (_, value) in LAWS[plan.aircraft].items() if name not in without)
     day = random.Random(f"{plan} aircraft {part}")
     weight = day.uniform(*((54000, 60000) if plan.aircraft == "C-130" else (31000, 36000)))
     head = ['format = "pcor-scenario/1"', f'name = "{plan} {part}"', f'aircraft = "{plan.aircraft}"', f"seed = {seed}",
-            f"start = 2011-11-{10 + part}T15:00:00Z", f"noiseless = {str(noiseless).lower()}",
+            f"start = 2011-11-{10 + part}T15:00:00Z", "noiseless = true",
             f"heading = {day.uniform(0, 360):.1f}", f"weight = {weight:.0f}"]
-    system = ["[[system]]", f'static = "{STATIC[plan.aircraft]}"', 'dynamic = "QCF"', f"law = {{ {law} }}"]
+    system = ["[[system]]", f'static = "{STATIC[plan.aircraft]}"', 'dynamic = "QCF"', f"law = {{ {terms_of(LAWS[plan.aircraft], without)} }}"]
     if plan.aircraft == "C-130":
         system += ["[[system]]", 'static = "PSFRD"', 'dynamic = "QCFR"',
-                   "law = { static-constant = 0.002047, static-alpha = 0.008890, static-qp = 0.07119 }"]
-    return "\n\n".join(["\n".join(head), atmosphere_of(plan, part, noise), "\n".join(system),
-                        "\n".join(legs_of(plan, part)), noise_text(plan, part, noise), effects]) + "\n"
+                   f"law = {{ {terms_of(SECOND)} }}"]
+    return "\n\n".join(["\n".join(head), atmosphere_of(plan, part), "\n".join(system),
+                        "\n".join(legs_of(plan, part)), effects]) + "\n"

@@ -1,7 +1,11 @@
 """What is hidden in the flights, and which names count as the truth.
 
-`usual` is the size met in practice (or an estimate), in the parameter of the simulator; more than six times of it, or
-more than 4 hPa (rms) in all, is not hidden, even where the model absorbs the effect so that less is left than wanted.
+`usual` is the size met in practice (or an estimate), in the parameter of the simulator or of the change to the records.
+Sizes of 0.3 to 20 times of it are hidden, unless that is more than 6 hPa (rms) before the model absorbs any of it.
+
+Most effects are put in by the simulator. Variants of shape and place are put into its noiseless records (records.py),
+so they need nothing that the library knows: a term that scales with q where laws have p, a neighbouring power, a zero,
+gain or drift at the transducer of p, at that of q, at the port, in the thermometer, or in the other static system.
 
 Names that count as the truth besides the effect's own, because the physics is the same thing under another id, and
 for no other reason. Effects that merely look alike do not count: they have to be in the set of aliases.
@@ -16,10 +20,12 @@ for no other reason. Effects that merely look alike do not count: they have to b
 | humidity-error of the dew point | humidity-error | another parameter of the same error |
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
-LIMIT = 6.0  # times the usual size
-LARGEST = 4.0  # hPa rms, before the model absorbs any of it
+import numpy
+
+LARGEST = 6.0  # hPa rms, before the model absorbs any of it
 
 
 @dataclass(frozen=True)
@@ -33,11 +39,21 @@ class Secret:
     aircraft: tuple = ("C-130", "GV")
     moist: bool = True  # constants of the user's model
     traced: tuple = ()  # variables that a trace may name, for effects outside the catalogue
-    arguments: tuple = ()  # of the tool beside the usual ones
+    change: Callable = None  # of the Records of a flight, with the strength: what the simulator does not know
+    laser: bool = True  # there is one; otherwise the second static system is all there is to compare with
 
     @property
     def scalable(self):
-        return bool(self.body)
+        return self.moist
+
+    @property
+    def arguments(self):
+        return () if self.laser else ("--reference", "static:second.toml")
+
+    @property
+    def of_other(self):
+        """The fault is the other system's: a name of our own system alone is a wrong accusation."""
+        return any(name.startswith("reference:") for name in self.truth)
 
     @property
     def outside(self):
@@ -82,7 +98,7 @@ CATALOGUE = (
     static("static-beta-odd", "b1", 0.0018),
     static("static-beta-even", "b2", 2e-5),
     static("static-transonic", "strength", 1.0, aircraft=("GV",)),
-    static("flaps-gear", "defect", 1.5, arguments=("--max-flaps", "60")),
+    static("flaps-gear", "defect", 1.5),
     static("speedbrake-thrust", "defect", 0.5),
     static("ground-effect", "defect", 0.3),
     static("load-factor", "per_g", 1.0),
@@ -96,7 +112,7 @@ CATALOGUE = (
     effect("qcf-gain", "gain", 0.005, on="QCF", both_signs=True),
     effect("psfd-bias", "offset", 0.1, on="STATIC", both_signs=True),
     effect("transducer-thermal", "dynamic", 0.02, on="QCF", both_signs=True),
-    effect("time-drift", "dynamic", 0.2, on="QCF", both_signs=True),
+    effect("time-drift of QCF", "dynamic", 0.2, on="QCF", both_signs=True, truth=("qcf-drift",)),
     effect("qcr-angle", "attack", 0.0273),
     effect("adif-drift per hour", "per_hour", 0.005, both_signs=True, truth=("adif-drift",)),
     effect("lams-elevation", "error", 0.5, both_signs=True),
@@ -141,7 +157,60 @@ PAIRS = (
     ("total-lag", "roll-static"), ("speedbrake-thrust", "clock-skew"), ("static-beta-even", "temp-lag"),
 )
 
-BY_NAME = {secret.name: secret for secret in CATALOGUE + OUTSIDE}
+
+def variant(name, usual, change, truth=None, **rest):
+    """`name` is the id that is right, with words for the variant."""
+    return Secret(name, "", usual, truth or (name.split(" ")[0],), both_signs=True, change=change, **rest)
+
+
+VARIANTS = (
+    # Shapes: q where the law has p or the other way round, and neighbouring powers
+    variant("static-alpha by q", 0.03, lambda flight, s: flight.port(s * flight.q * flight.attack), static=True,
+            aircraft=("GV",)),
+    variant("static-beta-odd by q", 0.012, lambda flight, s: flight.port(s * flight.q * flight.sideslip), static=True),
+    variant("static-beta-even by q", 1.4e-4, lambda flight, s: flight.port(s * flight.q * flight.beta**2), static=True),
+    variant("static-beta-even of power 4", 2e-6, lambda flight, s: flight.port(s * flight.p * flight.beta**4),
+            static=True),
+    variant("static-alpha-quad by p", 4e-4, lambda flight, s: flight.port(s * flight.p * flight.attack**2), static=True),
+    variant("load-factor by q", 0.01, lambda flight, s: flight.port(s * flight.q * flight.extra_load), static=True),
+    variant("roll-static by q", 0.003, lambda flight, s: flight.port(s * flight.q * numpy.sin(flight.roll)), static=True),
+    variant("pitot-angle of power 4", 1e-5,
+            lambda flight, s: flight.pitot(s * flight.q * (flight.alpha**2 + flight.beta**2) ** 2)),
+    # Places
+    variant("psfd-gain", 2e-4, lambda flight, s: flight.add(flight.static, s * flight.p)),
+    variant("psfd-drift", 0.1, lambda flight, s: flight.add(flight.static, s * flight.hours)),
+    variant("psfd-thermal", 0.01, lambda flight, s: flight.add(flight.static, s * (flight.bay - 290))),
+    variant("time-drift of the port", 2e-4, lambda flight, s: flight.port(s * flight.p * flight.hours), static=True),
+    variant("temp-drift", 0.3, lambda flight, s: flight.add(flight.thermometer, s * flight.hours)),
+    variant("aircraft-step", 3e-4, lambda flight, s: flight.port(s * flight.p * (flight.part > 0)), static=True),
+)
+
+
+def second(name, usual, change, **rest):
+    """A fault of the second static system of the C-130."""
+    return variant(f"{name} of the other system", usual, change, (f"reference:{name}",), aircraft=("C-130",), **rest)
+
+
+def faults_of_other(**rest):
+    return (
+        second("psfd-bias", 0.2, lambda flight, s: flight.add("PSFRD", s + 0 * flight.p), **rest),
+        second("psfd-drift", 0.1, lambda flight, s: flight.add("PSFRD", s * flight.hours), **rest),
+        second("qcf-gain", 0.005, lambda flight, s: flight.add("QCFR", s * flight.q), **rest),
+        second("static-beta-odd", 0.0018, lambda flight, s: flight.other_port(s * flight.p * flight.sideslip), **rest),
+        second("static-alpha-quad", 0.0024, lambda flight, s: flight.other_port(s * flight.q * flight.attack**2), **rest),
+    )
+
+
+def without_laser(secret):
+    return replace(secret, name=f"{secret.name}, no laser", laser=False, aircraft=("C-130",))
+
+
+BY_ID = {secret.name: secret for secret in (*CATALOGUE, *VARIANTS)}
+OTHER = faults_of_other()
+TWO_SYSTEMS = tuple(map(without_laser, (
+    *(BY_ID[name] for name in ("static-beta-odd", "static-alpha-quad", "static-lag", "flaps-gear", "psfd-bias",
+                               "psfd-drift", "load-factor", "static-beta-even by q")), *OTHER)))
+BY_NAME = {secret.name: secret for secret in (*CATALOGUE, *VARIANTS, *OTHER, *TWO_SYSTEMS, *OUTSIDE)}
 
 
 

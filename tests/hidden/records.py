@@ -1,0 +1,53 @@
+"""What a flight recorded, to be changed where nature would: at a port, in a transducer, in a thermometer.
+
+delta-p is added to the measured static pressure and taken off the measured dynamic pressure, so an error of the static
+port that needs delta-p lowers the reading of the one and raises that of the other.
+"""
+
+import netCDF4
+import numpy
+
+
+class Records:
+    """The recorded series of a flight that was simulated without noise, and the truth beside them."""
+
+    def __init__(self, path, part):
+        self.part = part  # the number of the flight
+        with netCDF4.Dataset(path) as file:
+            self.values = {name: numpy.ma.filled(file[name][:].astype(float), numpy.nan) for name in file.variables
+                           if file[name].dtype.kind == "f"}
+        self.path, self.changed = path, set()
+        self.static = "PSFD" if "PSFD" in self.values else "PSF"
+        self.thermometer = "TTRR" if "TTRR" in self.values else "TTHR1"
+        self.p, self.q, self.mach = (self.values[f"TRUE_{name}"] for name in ("PS", "QC", "MACH"))
+        self.alpha, self.beta = self.values["TRUE_ALPHA"], self.values["TRUE_BETA"]  # deg
+        with numpy.errstate(all="ignore"):
+            flown = self.values["QCR"] > 20  # hPa
+            self.attack = numpy.where(flown, self.values["ADIFR"] / self.values["QCR"], 0.0)
+            self.sideslip = numpy.where(flown, self.values["BDIFR"] / self.values["QCR"], 0.0)
+        self.hours = numpy.arange(len(self.p)) / 3600.0
+        self.extra_load = self.values["TRUE_NORMA"] / 9.80665  # g beyond 1
+        self.roll = numpy.radians(self.values["ROLL"])
+        self.bay = self.values["TBAY"] + 273.15  # K, of the transducers
+
+    def add(self, name, error):
+        self.values[name] = self.values[name] + error
+        self.changed.add(name)
+
+    def port(self, delta_p):
+        """An error of the static port of the first system, hPa; the radome has the same static pressure."""
+        self.add(self.static, -delta_p)
+        self.add("QCF", delta_p)
+        self.add("QCR", delta_p)
+
+    def other_port(self, delta_p):
+        self.add("PSFRD", -delta_p)
+        self.add("QCFR", delta_p)
+
+    def pitot(self, loss):
+        self.add("QCF", -loss)
+
+    def write(self):
+        with netCDF4.Dataset(self.path, "a") as file:
+            for name in self.changed:
+                file[name][:] = numpy.ma.masked_invalid(self.values[name])
