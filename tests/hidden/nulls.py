@@ -23,10 +23,10 @@ sys.dont_write_bytecode = True  # no __pycache__ in the source directory
 for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
     os.environ.setdefault(variable, "1")  # one process for each core is enough
 
-import cases  # noqa: E402
 import instruments  # noqa: E402
 import plans  # noqa: E402
 import scoring  # noqa: E402
+from records import without_truth  # noqa: E402
 from tool_runs import Tool, ToolError  # noqa: E402
 
 TROUBLES = ("none", "drift of p", "drift of q", "frozen", "bursts", "wrong start", "all")
@@ -39,39 +39,39 @@ class NullCase:
     seed: int
     plan: plans.Plan
     noise: str
-    kind: str
+    trouble: str
 
     def __str__(self):
-        return f"case {self.number} ({self.plan}, {self.noise}, {self.kind})"
+        return f"case {self.number} ({self.plan}, {self.noise}, {self.trouble})"
 
 
 def null_case(seed, number):
     """Noises and troubles in turn, so that any stretch of numbers has all of them."""
     noise = instruments.NOISES[number % 2]
-    kind = TROUBLES[(number // 2) % len(TROUBLES)]
+    trouble = TROUBLES[(number // 2) % len(TROUBLES)]
     draw = random.Random(f"null {seed} {number}")
     plan = plans.Plan("GV" if draw.random() < 0.3 else "C-130", "long", 1000 * seed + number)
-    return NullCase(number, seed, plan, noise, kind)
+    return NullCase(number, seed, plan, noise, trouble)
 
 
-def run_case(tool, kept, case, references):
+def run_case(tool, case, references=(), kept=None):
     """What the tool claims, as a dictionary."""
     folder = Path(tempfile.mkdtemp(prefix="null-"))
     draw = random.Random(f"{case} {case.seed}")
     pair = (plans.STATIC[case.plan.aircraft], "QCF")
-    kinds = {case.kind} if case.kind != "all" else set(draw.sample(TROUBLES[1:5], 3))
-    facts = {"case": str(case), "noise": case.noise, "kind": case.kind, "told": []}
+    troubles = {case.trouble} if case.trouble != "all" else set(draw.sample(TROUBLES[1:5], 3))
+    facts = {"case": str(case), "noise": case.noise, "trouble": case.trouble, "told": []}
     try:
         flights = []
         for part in (0, 1):
             flight, scenario = folder / f"flight{part}.nc", folder / "scenario.toml"
             scenario.write_text(plans.scenario_text(case.plan, part, 10 * case.number + part))
             tool.run("simulate", scenario, "-o", flight, "--quiet")
-            facts["told"] += instruments.record(flight, pair, case.noise, kinds, [case.seed, case.number, part])
-            cases.without_truth(flight, None)
+            facts["told"] += instruments.record(flight, pair, case.noise, troubles, [case.seed, case.number, part])
+            without_truth(flight, None)
             flights.append(flight)
         user, fitted = folder / "user.toml", folder / "fitted.toml"
-        start = draw.choice(list(plans.STARTS)[1:]) if case.kind in ("wrong start", "all") else "right"
+        start = draw.choice(list(plans.STARTS)[1:]) if case.trouble in ("wrong start", "all") else "right"
         user.write_text(plans.model_text(case.plan.aircraft, start=start))
         facts["told"].append(f"the law starts {start}")
         fit = tool.json_of("refit", *flights, "-m", user, "-o", fitted, *references)
@@ -96,12 +96,12 @@ def claim_of(diagnosis):
 
 def table_of(found):
     lines = [f"{'noise':<8}{'trouble':<14}{'cases':>6}" + "".join(f"{claim:>11}" for claim in (*CLAIMS, "error"))]
-    kinds = sorted({(facts["noise"], facts["kind"]) for facts in found},
+    kinds = sorted({(facts["noise"], facts["trouble"]) for facts in found},
                    key=lambda key: (key[0], TROUBLES.index(key[1])))
-    for noise, kind in [*kinds, ("all", "")]:
-        some = [facts for facts in found if noise == "all" or (facts["noise"], facts["kind"]) == (noise, kind)]
+    for noise, trouble in [*kinds, ("all", "")]:
+        some = [facts for facts in found if noise == "all" or (facts["noise"], facts["trouble"]) == (noise, trouble)]
         counts = [sum(facts["claim"] == claim for facts in some) for claim in (*CLAIMS, "error")]
-        lines.append(f"{noise:<8}{kind:<14}{len(some):>6}" + "".join(f"{count:>11}" for count in counts))
+        lines.append(f"{noise:<8}{trouble:<14}{len(some):>6}" + "".join(f"{count:>11}" for count in counts))
     return "\n".join(lines)
 
 
@@ -122,7 +122,7 @@ def main():
     options = parser.parse_args()
     tool = Tool(options.tool)
     references = [word for reference in options.reference for word in ("--reference", reference)]
-    wanted = [(tool, options.keep, null_case(options.seed, number), references)
+    wanted = [(tool, null_case(options.seed, number), references, options.keep)
               for number in range(options.first, options.first + options.cases)]
     found = []
     with multiprocessing.Pool(options.jobs) as pool:

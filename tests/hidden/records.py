@@ -51,3 +51,30 @@ class Records:
         with netCDF4.Dataset(self.path, "a") as file:
             for name in self.changed:
                 file[name][:] = numpy.ma.masked_invalid(self.values[name])
+
+
+def without_truth(flight, kept):
+    """What the aircraft recorded, and nothing that only a simulator knows. The truth goes to `kept`."""
+    with netCDF4.Dataset(flight) as file:
+        file.set_auto_maskandscale(False)
+        recorded = flight.with_name("recorded.nc")
+        with netCDF4.Dataset(recorded, "w") as copy:
+            copy.set_fill_off()
+            for name, dimension in file.dimensions.items():
+                copy.createDimension(name, None if dimension.isunlimited() else len(dimension))
+            told = ("simulation_effects", "simulation_legs", "history")
+            copy.setncatts({name: file.getncattr(name) for name in file.ncattrs() if name not in told})
+            for name, variable in file.variables.items():
+                if name.startswith("TRUE_"):
+                    continue
+                attributes = {key: variable.getncattr(key) for key in variable.ncattrs()}
+                made = copy.createVariable(name, variable.dtype, variable.dimensions, chunksizes=[len(variable)],
+                                           fill_value=attributes.pop("_FillValue", None))
+                made.set_auto_maskandscale(False)
+                made.setncatts(attributes)
+                made[:] = variable[:]
+    if kept is None:
+        flight.unlink()
+    else:
+        flight.replace(kept)
+    recorded.replace(flight)

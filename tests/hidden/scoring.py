@@ -26,14 +26,10 @@ def summary_of(diagnosis):
             "unexplained_hpa": diagnosis.get("unexplained", {}).get("rms_hpa"), "traced": traced_in(diagnosis)[:5]}
 
 
-def of_null(diagnosis):
-    verdict = verdict_of(diagnosis)
-    return {"verdict": verdict, "named": bool(diagnosis["findings"]), "silent": verdict == "silent"}
-
-
 def of_hidden(diagnosis, secrets):
     """`wrong`: a finding in whose set there is no effect that was hidden. With the verdict partial the tool says
-    itself that the name is not the cause, so that is no wrong claim but counts as `partial`."""
+    itself that the name is not the cause, so that is no wrong claim but counts as `partial`. `own_blamed`: a finding
+    that does not admit the other static system."""
     sets = [names_in(finding) for finding in diagnosis["findings"]]
     truths = [set(secret.truth) for secret in secrets if secret.truth]
     verdict = verdict_of(diagnosis)
@@ -45,10 +41,13 @@ def of_hidden(diagnosis, secrets):
         "in_set": bool(truths) and all(names is not None for names in found),
         "first": bool(sets and truths) and any(sets[0][0] in truth for truth in truths),
         "size": len(found[0]) if found and found[0] else None,
-        "exact": bool(truths) and len(sets) == len(truths) and all(names is not None for names in found),
+        "nothing_else": len(right) == len(sets),
         "wrong": len(right) < len(sets) and verdict != "partial",
+        "own_blamed": any(not any(name.startswith("reference:") for name in names) for names in sets),
+        "twin_told": all(any(name.startswith("reference:") for name in names) for names in right),
         "claims": bool(sets),
     }
+    score["both"] = score["in_set"] and score["nothing_else"]
     outside = [secret for secret in secrets if secret.outside]
     if outside:
         traced = traced_in(diagnosis)

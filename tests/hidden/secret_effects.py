@@ -47,10 +47,6 @@ class Secret:
         return self.moist
 
     @property
-    def arguments(self):
-        return () if self.laser else ("--reference", "static:second.toml")
-
-    @property
     def of_other(self):
         """The fault is the other system's: a name of our own system alone is a wrong accusation."""
         return any(name.startswith("reference:") for name in self.truth)

@@ -1,65 +1,66 @@
 """Which flights the cases of a run have.
 
-Null flights have a plan of their own each. Cases with a secret share a number of worlds: a plan and a seed, so that
-what the best model reaches there, and what a unit of an effect leaves, is found once. A secret meets worlds of all
-kinds, and each secret begins with another one.
+Cases with a secret share a number of worlds: a plan, noise, a trouble of an instrument and a seed, so that what the
+best model reaches there is found once. A secret meets worlds of all kinds, and each secret begins with another one.
 """
 
+import instruments
 import plans
 import secret_effects
 from cases import Case
 
 EVALUATION, TUNING = 900_000, 1
-PLANS = (("C-130", "manoeuvres"), ("C-130", "manoeuvres"), ("GV", "manoeuvres"), ("C-130", "manoeuvres"),
-         ("C-130", "steady"), ("C-130", "manoeuvres"), ("C-130", "manoeuvres"), ("GV", "manoeuvres"),
+PLANS = (("C-130", "manoeuvres"), ("C-130", "long"), ("GV", "manoeuvres"), ("C-130", "manoeuvres"),
+         ("C-130", "steady"), ("C-130", "manoeuvres"), ("C-130", "long"), ("GV", "long"),
          ("C-130", "manoeuvres"), ("C-130", "manoeuvres"))
+TROUBLES = ("none", "none", *instruments.TROUBLES)
 WORLDS = 40
+TIMES = (1.0, 3.0, 0.3, 10.0, 20.0)  # the usual size
 
 
 def world(base, number):
-    """Plan, noise and seed of a world: ten plans, each with four seeds, two of them with hard noise."""
+    """Ten plans, each with four seeds; noises, troubles and wrong starts in turn, so that they meet."""
     number %= WORLDS
     variant, turn = number % len(PLANS), number // len(PLANS)
     aircraft, kind = PLANS[variant]
-    return plans.Plan(aircraft, kind, base + variant), "AB"[(variant + turn) % 2], base + number
+    starts = list(plans.STARTS)
+    return {"plan": plans.Plan(aircraft, kind, base + variant), "seed": base + number,
+            "noise": instruments.NOISES[(variant + turn) % 2], "trouble": TROUBLES[number % len(TROUBLES)],
+            "start": starts[number // 2 % len(starts)] if number % 2 else "right"}
 
 
-def null_cases(base, count, drifting):
-    made = []
-    for number in range(count + drifting):
-        plan = plans.Plan("GV" if number % 5 == 4 else "C-130", "short", base + 100 + number)
-        noise = "drift" if number >= count else "AB"[number % 2]
-        made.append(Case("null", "null", plan, noise, base + 1000 + number))
-    return made
+def null_cases(base, count):
+    """Numbered as nulls.py does it."""
+    return [Case("null", "null", plans.Plan("", "long", number), secrets=(base, number)) for number in range(count)]
 
 
-def hidden_cases(base, kind, name, secrets, count, strengths, order):
+def hidden_cases(base, kind, name, secrets, count, times, order):
     """Cases of one secret in worlds of the aircraft that it is for."""
     aircraft = set(plans.LAWS).intersection(*(secret_effects.BY_NAME[each].aircraft for each in secrets))
     made, number = [], 7 * order
     while len(made) < count:
-        plan, noise, seed = world(base, number)
+        flown = world(base, number)
         number += 1
-        if plan.aircraft in aircraft:
-            snr = strengths[len(made) % len(strengths)]
-            improved = snr >= 1.0 or len(made) % 4 == 0  # it takes longest; what it reaches is asked at SNR 1
-            made.append(Case(kind, name, plan, noise, seed, snr, tuple(secrets), improved))
+        if flown["plan"].aircraft in aircraft:
+            made.append(Case(kind, name, secrets=tuple(secrets), times=times[(len(made) + order) % len(times)],
+                             improve=len(made) % 2 == 0, **flown))
     return made
 
 
 def all_cases(base, options):
-    made = null_cases(base, options.nulls, options.drifting)
-    strengths = options.snr
-    singles = [secret for secret in secret_effects.CATALOGUE if chosen(secret.name, options.effects)]
-    outside = [secret for secret in secret_effects.OUTSIDE if chosen(secret.name, options.effects)]
-    pairs = [pair for pair in secret_effects.PAIRS if chosen(" + ".join(pair), options.effects)]
-    for order, secret in enumerate(singles):
-        count = options.cases if secret.scalable else min(options.cases, 4)
-        made += hidden_cases(base, "single", secret.name, (secret.name,), count, strengths, order)
-    for order, secret in enumerate(outside):
-        made += hidden_cases(base, "outside", secret.name, (secret.name,), options.outside_cases, (1.0, 2.0), order)
-    for order, pair in enumerate(pairs):
-        made += hidden_cases(base, "pair", " + ".join(pair), pair, options.pair_cases, (0.5, 1.0), order)
+    made = null_cases(base, options.nulls)
+    groups = (("single", [*secret_effects.CATALOGUE, *secret_effects.VARIANTS], options.cases, TIMES),
+              ("other", secret_effects.OTHER, options.cases, TIMES),
+              ("two systems", secret_effects.TWO_SYSTEMS, options.cases, TIMES),
+              ("outside", secret_effects.OUTSIDE, options.outside_cases, (1.0, 3.0)))
+    for kind, secrets, count, times in groups:
+        for order, secret in enumerate(secrets):
+            if chosen(secret.name, options.effects):
+                made += hidden_cases(base, kind, secret.name, (secret.name,), count if secret.scalable else 2, times,
+                                     order)
+    for order, pair in enumerate(secret_effects.PAIRS):
+        if chosen(" + ".join(pair), options.effects):
+            made += hidden_cases(base, "pair", " + ".join(pair), pair, options.pair_cases, (3.0, 10.0), order)
     return made
 
 
