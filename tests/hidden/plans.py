@@ -181,9 +181,9 @@ def scenario_text(plan, part, seed, effects="", without=()):
     head = ['format = "pcor-scenario/1"', f'name = "{plan} {part}"', f'aircraft = "{plan.aircraft}"', f"seed = {seed}",
             f"start = 2011-11-{10 + part}T15:00:00Z", "noiseless = true",
             f"heading = {day.uniform(0, 360):.1f}", f"weight = {weight:.0f}"]
-    system = ["[[system]]", f'static = "{STATIC[plan.aircraft]}"', 'dynamic = "QCF"', f"law = {{ {terms_of(LAWS[plan.aircraft], without)} }}"]
+    law = terms_of(LAWS[plan.aircraft], without)
+    system = ["[[system]]", f'static = "{STATIC[plan.aircraft]}"', 'dynamic = "QCF"', f"law = {{ {law} }}"]
     if plan.aircraft == "C-130":
-        system += ["[[system]]", 'static = "PSFRD"', 'dynamic = "QCFR"',
-                   f"law = {{ {terms_of(SECOND)} }}"]
+        system += ["[[system]]", 'static = "PSFRD"', 'dynamic = "QCFR"', f"law = {{ {terms_of(SECOND)} }}"]
     return "\n\n".join(["\n".join(head), atmosphere_of(plan, part), "\n".join(system),
                         "\n".join(legs_of(plan, part)), effects]) + "\n"

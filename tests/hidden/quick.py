@@ -5,7 +5,7 @@ import worlds
 from cases import Case
 
 SEED = 500
-STRONG = (("static-lag", 8.0), ("load-factor", 2.0), ("static-beta-odd", 3.0), ("clock-skew", 3.0),
+STRONG = (("static-lag", 4.0), ("load-factor", 2.0), ("static-beta-odd", 3.0), ("clock-skew", 3.0),
           ("static-alpha-quad", 4.0))
 
 

@@ -65,7 +65,8 @@ def effect_table(cases):
     lines = [HEAD]
     for name in dict.fromkeys(case["name"] for case in cases):
         of_name = [case for case in cases if case["name"] == name]
-        for some in ([case for case in of_name if is_visible(case)], [case for case in of_name if not is_visible(case)]):
+        for shown in (True, False):
+            some = [case for case in of_name if is_visible(case) == shown]
             if not some:
                 continue
             times = [hidden["times_usual"] for case in some for hidden in case["hidden"]]
@@ -78,8 +79,8 @@ def effect_table(cases):
 
 
 def outside_table(cases):
-    lines = ["| hidden | cases | SNR | called identified | any name | noticed | traced first | traced among five | held "
-             "out over noise |", "|---|---|---|---|---|---|---|---|---|"]
+    lines = ["| hidden | cases | SNR | called identified | any name | noticed | traced first | traced among five | "
+             "held out over noise |", "|---|---|---|---|---|---|---|---|---|"]
     for name in dict.fromkeys(case["name"] for case in cases):
         some = [case for case in cases if case["name"] == name]
         words = [name, str(len(some)), span([case["snr"] for case in some]), percent(scored(some, "identified")),
@@ -131,7 +132,8 @@ def targets(cases):
         ("one effect that the laser does not show: truth in a named set", len(unseen), "-",
          percent(scored(unseen, "in_set"))),
         ("the same: another name, not called partial", len(unseen), "-", percent(scored(unseen, "wrong"))),
-        ("two effects, SNR 0.1 and more: both in sets", len(seen_pairs), "100 %", percent(scored(seen_pairs, "in_set"))),
+        ("two effects, SNR 0.1 and more: both in sets", len(seen_pairs), "100 %",
+         percent(scored(seen_pairs, "in_set"))),
         ("the same: and nothing else", len(seen_pairs), "90 %", percent(scored(seen_pairs, "both"))),
         ("fault of the other system beside a laser: the own one blamed", len(beside), "0 %",
          percent(scored(beside, "own_blamed"))),
@@ -149,7 +151,8 @@ def targets(cases):
         ("outside the catalogue, SNR 0.1 and more: flagged", len(seen_outside), "89 %",
          percent(scored(seen_outside, "noticed"))),
         ("the same: called identified", len(seen_outside), "1 %", percent(scored(seen_outside, "identified"))),
-        ("the same, recorded: traced to its variable", len(seen_outside), "-", percent(scored(seen_outside, "traced"))),
+        ("the same, recorded: traced to its variable", len(seen_outside), "-",
+         percent(scored(seen_outside, "traced"))),
         ("null flights: a name", len(null), "0.5 %", claims("named")),
         ("null flights: a name or a cause traced", len(null), "2 %", claims("named", "traced")),
         ("null flights: structure, no cause", len(null), "-", claims("structure")),

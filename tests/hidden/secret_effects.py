@@ -47,11 +47,6 @@ class Secret:
         return self.moist
 
     @property
-    def of_other(self):
-        """The fault is the other system's: a name of our own system alone is a wrong accusation."""
-        return any(name.startswith("reference:") for name in self.truth)
-
-    @property
     def outside(self):
         return not self.truth
 
@@ -161,15 +156,16 @@ def variant(name, usual, change, truth=None, **rest):
 
 VARIANTS = (
     # Shapes: q where the law has p or the other way round, and neighbouring powers
-    variant("static-alpha by q", 0.03, lambda flight, s: flight.port(s * flight.q * flight.attack), static=True,
-            aircraft=("GV",)),
+    variant("static-alpha by q", 0.03, lambda flight, s: flight.port(s * flight.q * flight.attack), static=True),
     variant("static-beta-odd by q", 0.012, lambda flight, s: flight.port(s * flight.q * flight.sideslip), static=True),
     variant("static-beta-even by q", 1.4e-4, lambda flight, s: flight.port(s * flight.q * flight.beta**2), static=True),
     variant("static-beta-even of power 4", 2e-6, lambda flight, s: flight.port(s * flight.p * flight.beta**4),
             static=True),
-    variant("static-alpha-quad by p", 4e-4, lambda flight, s: flight.port(s * flight.p * flight.attack**2), static=True),
+    variant("static-alpha-quad by p", 4e-4, lambda flight, s: flight.port(s * flight.p * flight.attack**2),
+            static=True),
     variant("load-factor by q", 0.01, lambda flight, s: flight.port(s * flight.q * flight.extra_load), static=True),
-    variant("roll-static by q", 0.003, lambda flight, s: flight.port(s * flight.q * numpy.sin(flight.roll)), static=True),
+    variant("roll-static by q", 0.003, lambda flight, s: flight.port(s * flight.q * numpy.sin(flight.roll)),
+            static=True),
     variant("pitot-angle of power 4", 1e-5,
             lambda flight, s: flight.pitot(s * flight.q * (flight.alpha**2 + flight.beta**2) ** 2)),
     # Places
@@ -182,32 +178,29 @@ VARIANTS = (
 )
 
 
-def second(name, usual, change, **rest):
+def of_other(name, usual, change):
     """A fault of the second static system of the C-130."""
-    return variant(f"{name} of the other system", usual, change, (f"reference:{name}",), aircraft=("C-130",), **rest)
+    return variant(f"{name} of the other system", usual, change, (f"reference:{name}",), aircraft=("C-130",))
 
 
-def faults_of_other(**rest):
-    return (
-        second("psfd-bias", 0.2, lambda flight, s: flight.add("PSFRD", s + 0 * flight.p), **rest),
-        second("psfd-drift", 0.1, lambda flight, s: flight.add("PSFRD", s * flight.hours), **rest),
-        second("qcf-gain", 0.005, lambda flight, s: flight.add("QCFR", s * flight.q), **rest),
-        second("static-beta-odd", 0.0018, lambda flight, s: flight.other_port(s * flight.p * flight.sideslip), **rest),
-        second("static-alpha-quad", 0.0024, lambda flight, s: flight.other_port(s * flight.q * flight.attack**2), **rest),
-    )
+OTHER = (
+    of_other("psfd-bias", 0.2, lambda flight, s: flight.add("PSFRD", s)),
+    of_other("psfd-drift", 0.1, lambda flight, s: flight.add("PSFRD", s * flight.hours)),
+    of_other("qcf-gain", 0.005, lambda flight, s: flight.add("QCFR", s * flight.q)),
+    of_other("static-beta-odd", 0.0018, lambda flight, s: flight.other_port(s * flight.p * flight.sideslip)),
+    of_other("static-alpha-quad", 0.0024, lambda flight, s: flight.other_port(s * flight.q * flight.attack**2)),
+)
 
 
 def without_laser(secret):
     return replace(secret, name=f"{secret.name}, no laser", laser=False, aircraft=("C-130",))
 
 
-BY_ID = {secret.name: secret for secret in (*CATALOGUE, *VARIANTS)}
-OTHER = faults_of_other()
-TWO_SYSTEMS = tuple(map(without_laser, (
-    *(BY_ID[name] for name in ("static-beta-odd", "static-alpha-quad", "static-lag", "flaps-gear", "psfd-bias",
-                               "psfd-drift", "load-factor", "static-beta-even by q")), *OTHER)))
+OWN = ("static-beta-odd", "static-alpha-quad", "static-lag", "flaps-gear", "psfd-bias", "psfd-drift", "load-factor",
+       "static-beta-even by q")
+TWO_SYSTEMS = tuple(without_laser(secret) for secret in (*CATALOGUE, *VARIANTS, *OTHER)
+                    if secret.name in OWN or secret in OTHER)
 BY_NAME = {secret.name: secret for secret in (*CATALOGUE, *VARIANTS, *OTHER, *TWO_SYSTEMS, *OUTSIDE)}
-
 
 
 def lacking(secret, law):
