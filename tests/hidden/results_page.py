@@ -5,8 +5,8 @@ import statistics
 import nulls
 
 VISIBLE = 0.1  # SNR from which on the laser's residual shows an effect; below it other references have to
-HEAD = ("| hidden | cases | times usual | SNR | truth in set | nothing else | mean set | identified | wrong | held out "
-        "over noise | static error after/before |\n|---|---|---|---|---|---|---|---|---|---|---|")
+HEAD = ("| hidden | cases | times usual | SNR | truth in set | nothing else | mean set | identified | silent | wrong | held "
+        "out over noise | static error after/before |\n|---|---|---|---|---|---|---|---|---|---|---|---|")
 
 
 def percent(values):
@@ -72,8 +72,9 @@ def effect_table(cases):
             times = [hidden["times_usual"] for case in some for hidden in case["hidden"]]
             words = [name, str(len(some)), span(times), span([case["snr"] for case in some]),
                      percent(scored(some, "in_set")), percent(scored(some, "nothing_else")), mean(scored(some, "size")),
-                     percent(scored(some, "identified")), percent(scored(some, "wrong")),
-                     median_of(numbers(some, "held_out_after"), 4), median_of(map(growth, some))]
+                     percent(scored(some, "identified")), percent(scored(some, "silent")),
+                     percent(scored(some, "wrong")), median_of(numbers(some, "held_out_after"), 4),
+                     median_of(map(growth, some))]
             lines.append("| " + " | ".join(words) + " |")
     return "\n".join(lines)
 
@@ -125,6 +126,7 @@ def targets(cases):
         ("the same: nothing else named", len(seen), "97 %", percent(scored(seen, "nothing_else"))),
         ("the same: both", len(seen), "96 %", percent(scored(seen, "both"))),
         ("the same, mean size of the set", len(seen), "1.6", mean(scored(seen, "size"))),
+        ("the same: silence", len(seen), "-", percent(scored(seen, "silent"))),
         ("the same, first in the set", len(seen), "-", percent(scored(seen, "first"))),
         ("the same, with manoeuvres: both", len(flown), "-", percent(scored(flown, "both"))),
         ("the same, 9 to 20 times the usual size: both", len(large), "-", percent(scored(large, "both"))),

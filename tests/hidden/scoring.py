@@ -38,6 +38,7 @@ def of_hidden(diagnosis, secrets):
     score = {
         "verdict": verdict,
         "identified": verdict == "identified",
+        "silent": verdict == "silent",
         "in_set": bool(truths) and all(names is not None for names in found),
         "first": bool(sets and truths) and any(sets[0][0] in truth for truth in truths),
         "size": len(found[0]) if found and found[0] else None,

@@ -144,7 +144,7 @@ OUTSIDE = (
 )
 
 PAIRS = (
-    ("static-lag", "static-beta-odd"), ("static-alpha-quad", "time-drift"), ("load-factor", "lams-cloud"),
+    ("static-lag", "static-beta-odd"), ("static-alpha-quad", "time-drift of QCF"), ("load-factor", "lams-cloud"),
     ("total-lag", "roll-static"), ("speedbrake-thrust", "clock-skew"), ("static-beta-even", "temp-lag"),
 )
 
