@@ -168,6 +168,8 @@ VARIANTS = (
             static=True),
     variant("pitot-angle of power 4", 1e-5,
             lambda flight, s: flight.pitot(s * flight.q * (flight.alpha**2 + flight.beta**2) ** 2)),
+    variant("pitot-angle of a tube that points 3 deg up", 1e-4,
+            lambda flight, s: flight.pitot(s * flight.q * ((flight.alpha - 3) ** 2 + flight.beta**2))),
     # Places
     variant("psfd-gain", 2e-4, lambda flight, s: flight.add(flight.static, s * flight.p)),
     variant("psfd-drift", 0.1, lambda flight, s: flight.add(flight.static, s * flight.hours)),
