@@ -163,19 +163,16 @@ def visible(setting, folder, case, question, twin, hidden):
 
 
 def hide(setting, folder, case, question, twin):
-    """Secrets with their sizes, and what is told of each."""
+    """Secrets with their sizes, and what is told of each; effects are nearly linear in their size."""
     hidden, told = [], []
     for number, name in enumerate(case.secrets):
         secret = secret_effects.BY_NAME[name]
+        left, whole = visible(setting, folder, case, question, twin, [(secret, secret.usual)])
+        times = min(case.times, secret_effects.LARGEST / max(whole, 1e-9)) if secret.scalable else 1.0
         sign = -1 if secret.both_signs and (case.seed + number) % 2 else 1
-        size = sign * case.times * secret.usual
-        left, whole = visible(setting, folder, case, question, twin, [(secret, size)])
-        if secret.scalable and whole > secret_effects.LARGEST:
-            shrunk = secret_effects.LARGEST / whole
-            size, left = size * shrunk, left * shrunk
-        hidden.append((secret, size))
-        told.append({"effect": name, "strength": size, "times_usual": abs(size / secret.usual),
-                     "snr": left / twin.noise})
+        hidden.append((secret, sign * times * secret.usual))
+        told.append({"effect": name, "strength": hidden[-1][1], "times_usual": times,
+                     "snr": left * times / twin.noise})
     return hidden, told
 
 
