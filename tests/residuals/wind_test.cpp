@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "support/made_air.hpp"
+#include "support/isothermal_air.hpp"
 
 using pcor::Quantity;
 

@@ -1,95 +1,95 @@
 #pragma once
 
-#include <pcor/physics/air_data.hpp>
-#include <pcor/physics/constants.hpp>
-#include <pcor/residuals/residuals.hpp>
-
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <memory>
-#include <string>
-#include <utility>
+#include <random>
 #include <vector>
 
-/// Flights in memory through air of one temperature, with sensors that are right: residuals against their
-/// heights and speeds follow from a few lines of algebra.
+#include <pcor/physics/geodesy.hpp>
+#include <pcor/physics/moist_air.hpp>
+#include "residuals/flight_air.hpp"
+
+/// Flights in memory through an atmosphere that is known in closed form: an isothermal or linear profile of
+/// temperature over geopotential height, in hydrostatic balance.
 namespace made {
 
-inline constexpr double air_temperature = 260.0;  // K
+using namespace pcor::internal;
 
-/// A model of the pair PSFD/QCF with an ambient temperature and these effects of the catalogue.
-inline pcor::ModelFile air_model(const std::vector<std::pair<std::string, double>>& effects = {}) {
-  pcor::ModelFile file;
-  file.model.name = "made";
-  file.variables = {{pcor::Quantity::static_pressure, "PSFD"},
-                    {pcor::Quantity::dynamic_pressure, "QCF"},
-                    {pcor::Quantity::ambient_temperature, "ATX"}};
-  for (const auto& [id, value] : effects) {
-    file.model.effects.push_back(pcor::neutral_effect(id));
-    file.model.effects.back().parameters.front() = value;
+struct AirPlan {
+  std::size_t seconds = 5400;
+  unsigned seed = 1;
+  double ground_temperature = 290.0;  ///< K
+  double lapse = 6.5e-3;              ///< K/m
+  double low = 1000.0;                ///< geopotential m, of the climbs and descents
+  double high = 6000.0;
+  double period = 3600.0;   ///< s, of a climb and a descent
+  double slope_east = 0.0;  ///< of isobars
+  double slope_north = 0.0;
+  double offset = 0.0;  ///< the thermometer reads too high by offset + gain t, t in degC, K
+  double gain = 0.0;
+  double gps = 0.0;         ///< noise of the GPS height, m
+  double gps_memory = 0.0;  ///< s
+  double turning = 1500.0;  ///< s for a full turn of the heading, flown in a wide circle
+  double latitude = 40.0;   ///< deg
+};
+
+inline pcor::internal::FlightAir air(const AirPlan& plan) {
+  using pcor::constants::radians_per_degree;
+  const double gas_constant = pcor::dry_air<double>().gas_constant;
+  constexpr double gravity = pcor::constants::standard_gravity;
+  auto samples = std::make_shared<pcor::FlightSamples>();
+  samples->name = "made-air-" + std::to_string(plan.seed);
+  pcor::internal::FlightAir air;
+  std::mt19937_64 engine(plan.seed);
+  std::normal_distribution<double> normal;
+  double slow = normal(engine);
+  double east = 0.0;
+  double north = 0.0;
+  for (std::size_t i = 0; i < plan.seconds; ++i) {
+    const auto t = static_cast<double>(i);
+    // A triangle with round corners: climbs and descents at a steady rate.
+    const double wave = std::asin(0.98 * std::sin(2.0 * M_PI * (t / plan.period - 0.25))) / std::asin(0.98);
+    const double height = 0.5 * (plan.low + plan.high) + 0.5 * (plan.high - plan.low) * wave;
+    const double heading = 360.0 * std::fmod(t / plan.turning, 1.0);
+    const double to_east = 120.0 * std::sin(heading * radians_per_degree);
+    const double to_north = 120.0 * std::cos(heading * radians_per_degree);
+    // The column is lifted by the slope: where isobars are higher, this height has the air of a lower one.
+    const double level = height - plan.slope_east * east - plan.slope_north * north;
+    const double temperature = plan.ground_temperature - plan.lapse * level;
+    const double exponent = gravity / (gas_constant * plan.lapse);
+    const double shown = temperature + plan.offset + plan.gain * (temperature - pcor::constants::ice_point);
+    samples->time.push_back(1321560000.0 + t);
+    samples->motion.heading.push_back(heading);
+    samples->motion.ground_speed.push_back(120.0);
+    samples->motion.ground_track.push_back(heading);
+    air.flying.push_back(true);
+    air.pressure.push_back(1000.0 * std::pow(temperature / plan.ground_temperature, exponent));
+    air.temperature.push_back(shown);
+    // At 120 m/s and with an angle of attack that grows with the height, some 2 deg in a climb more than in a
+    // descent.
+    air.dynamic.push_back(0.5 * air.pressure.back() / (gas_constant * temperature) * 120.0 * 120.0);
+    air.attack_ratio.push_back(-0.2 + 1e-5 * height + 0.02 * std::cos(2.0 * M_PI * (t / plan.period - 0.25)));
+    air.airspeed.push_back(120.0);
+    air.gas_constant.push_back(gas_constant);
+    air.latitude.push_back(plan.latitude);
+    const double keeps = plan.gps_memory > 0.0 ? std::exp(-1.0 / plan.gps_memory) : 0.0;
+    slow = keeps * slow + std::sqrt(1.0 - keeps * keeps) * normal(engine);
+    air.geopotential_height.push_back(height + plan.gps * slow);
+    air.height.push_back(pcor::geometric_height(plan.latitude, air.geopotential_height.back()));
+    air.east_speed.push_back(to_east);
+    air.north_speed.push_back(to_north);
+    east += to_east;
+    north += to_north;
   }
-  return file;
-}
-
-/// Half an hour at 1 Hz, of which the pressures follow from heights and airspeeds.
-/// @param height geopotential, m @param airspeed m/s
-inline pcor::FlightSamples air_flight(const std::vector<double>& height,
-                                      const std::vector<double>& airspeed) {
-  using pcor::Quantity;
-  constexpr double scale_height =
-      pcor::constants::gas_constant_dry_air * air_temperature / pcor::constants::standard_gravity;
-  pcor::FlightSamples samples;
-  samples.name = "made";
-  std::vector<double> p;
-  std::vector<double> q;
-  for (std::size_t i = 0; i < height.size(); ++i) {
-    p.push_back(1000.0 * std::exp(-height[i] / scale_height));
-    const double mach =
-        airspeed[i] / std::sqrt(1.4 * pcor::constants::gas_constant_dry_air * air_temperature);
-    q.push_back(p.back() * (std::pow(1.0 + 0.2 * mach * mach, 3.5) - 1.0));
-    samples.time.push_back(1321560000.0 + static_cast<double>(i));
-  }
-  samples.model.roles = {Quantity::static_pressure, Quantity::dynamic_pressure,
-                         Quantity::ambient_temperature};
-  samples.model.columns = {
-      {Quantity::static_pressure, std::move(p)},
-      {Quantity::dynamic_pressure, std::move(q)},
-      {Quantity::ambient_temperature, std::vector<double>(height.size(), air_temperature)}};
-  samples.motion.time = samples.time;
-  samples.motion.airspeed = airspeed;
-  return samples;
-}
-
-/// The residuals of a flight, with the parameters of the model.
-inline std::vector<double> residuals_of(const pcor::FlightSamples& flight, const pcor::ModelFile& model,
-                                        const pcor::Reference& reference) {
-  const pcor::Residuals residuals(std::make_shared<const pcor::FlightSamples>(flight), model, reference);
-  return residuals.values(residuals.parameters().data());
-}
-
-/// The largest difference between the derivatives by the first parameter and finite differences of the
-/// residuals, over the largest derivative, at every tenth sample: residuals of a part are those of the whole.
-inline double derivative_error(const pcor::FlightSamples& flight, const pcor::ModelFile& model,
-                               const pcor::Reference& reference, double step) {
-  const pcor::Residuals residuals(std::make_shared<const pcor::FlightSamples>(flight), model, reference);
-  std::vector<std::size_t> places;
-  for (std::size_t i = 500; i + 500 < residuals.size(); i += 10) places.push_back(i);
-  std::vector<double> parameters = residuals.parameters();
-  std::vector<double> values(places.size());
-  std::vector<double> derivatives(places.size());
-  residuals.evaluate(places.data(), places.size(), parameters.data(), {0}, values.data(), derivatives.data());
-  parameters[0] += step;
-  const std::vector<double> above = residuals.values(parameters.data());
-  parameters[0] -= 2.0 * step;
-  const std::vector<double> below = residuals.values(parameters.data());
-  double error = 0.0;
-  double largest = 0.0;
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    const double difference = (above[places[k]] - below[places[k]]) / (2.0 * step);
-    error = std::max(error, std::abs(derivatives[k] - difference));
-    largest = std::max(largest, std::abs(difference));
-  }
-  return error / largest;
+  samples->motion.time = samples->time;
+  samples->motion.airspeed = air.airspeed;
+  air.height_variable = "GGALT";
+  for (const double p : air.pressure)
+    air.pressure_altitude.push_back(44330.8 * (1.0 - std::pow(p / 1013.25, 0.190263)));
+  air.samples = std::move(samples);
+  return air;
 }
 
 }  // namespace made
