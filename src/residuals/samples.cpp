@@ -15,6 +15,7 @@
 #include "numerics/missing.hpp"
 #include "residuals/flaps_by_lift.hpp"
 #include "residuals/frozen.hpp"
+#include "residuals/model_on_samples.hpp"
 #include "roles/model_inputs.hpp"
 #include "roles/recorded_series.hpp"
 
@@ -149,6 +150,14 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelFile&
   }
   for (const auto& [quantity, rate] : rates) {
     if (chain.derives(rate)) add(rate, rate_of(*samples.find(quantity), time, flight.time().step));
+  }
+  if (chain.derives(Quantity::airspeed_rate)) {
+    // Of corrected pressures: in a pitch manoeuvre delta-p changes faster than the dynamic pressure.
+    const ModelOnSamples law(model, samples);
+    std::vector<double> airspeed(time.size());
+    law.batch().run(law.columns(), {{Quantity::corrected_airspeed, airspeed.data()}}, airspeed.size(),
+                    law.parameters().data());
+    add(Quantity::airspeed_rate, rate_of(airspeed, time, flight.time().step));
   }
   return samples;
 }
