@@ -11,24 +11,25 @@ struct PsfdThermal {
     facts.title = "drift of the static transducer with its temperature";
     facts.family = "thermal drift";
     facts.where = Where::static_transducer;
-    facts.formula = "-per_kelvin * (transducer_temperature - 290)";
+    facts.formula = "-per_kelvin * (transducer_temperature - 290) - zero";
     facts.parameters[0] = {"per_kelvin", "hPa/K", 0.0, -2.0, 2.0, 0.02};
+    facts.parameters[1] = {"zero", "hPa", 0.0, -50.0, 50.0, 0.1};
     facts.needs = {Quantity::transducer_temperature, Quantity::count, Quantity::count, Quantity::count};
-    facts.size = "estimated 0.01 to 0.03 hPa/K";
+    facts.size = "estimated 0.01 to 0.03 hPa/K; zero is the error at 290 K";
     facts.look_alikes = "transducer-thermal, psfd-drift, psfd-bias";
     facts.manoeuvre =
         "level legs early and late at one speed, attack and level, with a second static and pitot pair";
     facts.source = "Haering, NASA TM-104316, 1995; estimate";
     facts.example.inputs[0] = {Quantity::transducer_temperature, 300.0};
-    facts.example.parameters = {0.02};
-    facts.example.value = -0.2;
+    facts.example.parameters = {0.02, 0.1};
+    facts.example.value = -0.3;
     return facts;
   }
 
   template <class State, class P>
   static auto value(const State& state, const P* parameter) {
     using S = typename State::Scalar;
-    return -(parameter[0] * (state[Quantity::transducer_temperature] - S(290.0)));
+    return -(parameter[0] * (state[Quantity::transducer_temperature] - S(290.0)) + parameter[1]);
   }
 };
 
