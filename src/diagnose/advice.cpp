@@ -29,21 +29,21 @@ struct Prospect {
 };
 
 std::vector<Prospect> prospects_of(const Analysis& analysis, const CandidateSet& set, const ModelFile& model,
-                                   const Reference& reference, const MaskOptions& mask) {
+                                   const MaskOptions& mask) {
   std::vector<std::shared_ptr<const FlightSamples>> flights;
   for (const FlightColumns& flight : analysis.flights()) flights.push_back(flight.samples);
   MaskOptions all = mask;
   all.exclude.clear();
   all.intervals.reset();
   std::vector<double> levels;
-  for (const Eigen::VectorXd& level : analysis.noise().level)
+  NoiseModel noise = analysis.noise();
+  for (const Eigen::VectorXd& level : noise.level)
     levels.insert(levels.end(), level.data(), level.data() + level.size());
   const double usual_level = median(levels);
-  NoiseModel noise = analysis.noise();
 
   std::vector<Prospect> prospects;
   for (Manoeuvre& manoeuvre : standard_manoeuvres(flights)) {
-    const FlightColumns columns = find_columns(manoeuvre.samples, model, set, reference, all, 1.0);
+    const FlightColumns columns = find_columns(manoeuvre.samples, model, set, 0, all, 1.0);
     const Binning bins(columns.given, columns.samples->time, columns.samples->step);
     if (bins.size() == 0) continue;
     const Eigen::MatrixXd binned = binned_columns(columns, bins);
@@ -77,7 +77,7 @@ double power_of(double distinct) {
 
 std::size_t number_of(const std::vector<Candidate>& candidates, const std::string& effect) {
   const auto found = std::find_if(candidates.begin(), candidates.end(),
-                                  [&](const Candidate& candidate) { return candidate.effect.id == effect; });
+                                  [&](const Candidate& candidate) { return candidate.id == effect; });
   return static_cast<std::size_t>(found - candidates.begin());
 }
 
@@ -113,24 +113,24 @@ std::string sentence_of(const Plan& plan, const Finding& finding) {
     return fmt::format(
         "no manoeuvre that this aircraft flies would tell {} from {} at the size found, with this reference "
         "alone; {}",
-        finding.effect.id, rivals, hint);
+        finding.id(), rivals, hint);
   }
   const std::string times = plan.repeats == 1 ? "" : fmt::format(" {} times", plan.repeats);
   return fmt::format(
       "fly this: {}{} ({}; {:.0f} min): it would tell {} from {} with a probability of {:.0f} %",
       plan.manoeuvre->name, times, plan.manoeuvre->how,
-      std::max(1.0, plan.repeats * plan.manoeuvre->duration / seconds_per_minute), finding.effect.id, rivals,
+      std::max(1.0, plan.repeats * plan.manoeuvre->duration / seconds_per_minute), finding.id(), rivals,
       std::min(99.0, 100.0 * plan.power));
 }
 
 }  // namespace
 
 void advise(const Analysis& analysis, const CandidateSet& set, const ModelFile& model,
-            const Reference& reference, const MaskOptions& mask, std::vector<Finding>& findings) {
+            const MaskOptions& mask, std::vector<Finding>& findings) {
   const bool any = std::any_of(findings.begin(), findings.end(),
                                [](const Finding& finding) { return !finding.aliases.empty(); });
   if (!any) return;
-  const std::vector<Prospect> prospects = prospects_of(analysis, set, model, reference, mask);
+  const std::vector<Prospect> prospects = prospects_of(analysis, set, model, mask);
   const Eigen::Index columns = analysis.scores().columns();
   const Eigen::MatrixXd now = analysis.scores().information.topLeftCorner(columns, columns);
   const double variance = analysis.search().variance(analysis.result().chosen);

@@ -15,6 +15,6 @@ namespace pcor::internal {
 /// the difference is normal with mean D and variance 4 D, where D is what of the effect, at its estimated
 /// size, the rival cannot imitate.
 void advise(const Analysis& analysis, const CandidateSet& set, const ModelFile& model,
-            const Reference& reference, const MaskOptions& mask, std::vector<Finding>& findings);
+            const MaskOptions& mask, std::vector<Finding>& findings);
 
 }  // namespace pcor::internal

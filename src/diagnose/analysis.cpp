@@ -20,20 +20,27 @@ constexpr double stretch_time = 300.0;  // s
 constexpr double least_eigenvalue = 1e-11;
 constexpr int parts = 5;
 
+template <class Value>
+std::vector<Value> part(const std::vector<Value>& all, std::size_t first, std::size_t last) {
+  return {all.begin() + static_cast<std::ptrdiff_t>(first), all.begin() + static_cast<std::ptrdiff_t>(last)};
+}
+
 }  // namespace
 
 Analysis::Analysis(std::vector<FlightColumns> flights, std::vector<ColumnGroup> groups, std::uint64_t seed,
                    double explained)
-    : flights_(std::move(flights)), groups_(std::move(groups)), seed_(seed) {
-  base_ = flights_.front().base.cols();
-  for (const FlightColumns& flight : flights_) {
+    : groups_(std::move(groups)), seed_(seed) {
+  base_ = flights.front().base.cols();
+  for (FlightColumns& flight : flights) {
     const Binning& bins = bins_.emplace_back(flight.given, flight.samples->time, flight.samples->step);
     columns_.push_back(binned_columns(flight, bins));
     residuals_.push_back(bins.means(flight.given));
+    (flight.reference == 0 ? flights_ : further_).push_back(std::move(flight));
   }
+  first_bins_ = part(bins_, 0, flights_.size());
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(base_, base_);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(base_);
-  for (std::size_t f = 0; f < flights_.size(); ++f) {
+  for (std::size_t f = 0; f < bins_.size(); ++f) {
     information += columns_[f].leftCols(base_).transpose() * columns_[f].leftCols(base_);
     right += columns_[f].leftCols(base_).transpose() * residuals_[f];
   }
@@ -41,7 +48,9 @@ Analysis::Analysis(std::vector<FlightColumns> flights, std::vector<ColumnGroup> 
   // with whatever might be an effect taken off first, and with none. The likelier end counts.
   const Eigen::VectorXd start = pseudo_solution(information, right, least_eigenvalue);
   const double by_effects = search_from(start, true, explained);
-  if (result_.chosen.empty() || noise_.model.drifts()) {
+  const bool drifts =
+      std::any_of(noise_.begin(), noise_.end(), [](const auto& each) { return each.drifts(); });
+  if (result_.chosen.empty() || drifts) {
     const SearchResult result = result_;
     const double by_drift = search_from(start, false, explained);
     if (by_effects > by_drift && result.chosen != result_.chosen) search_from(start, true, explained);
@@ -55,7 +64,7 @@ double Analysis::search_from(const Eigen::VectorXd& start, bool generous, double
   for (int round = generous ? 0 : 1; round < most_rounds; ++round) {
     replace_outliers(chosen, estimate);
     if (round == 0)
-      noise_ = {estimate_noise(bins_, left_by(chosen, estimate))};
+      find_first_noise(estimate);
     else
       find_noise(chosen, estimate);
     find_search();
@@ -74,10 +83,14 @@ double Analysis::search_from(const Eigen::VectorXd& start, bool generous, double
   }
   Eigen::Index columns = 0;
   for (const std::size_t group : chosen) columns += as_index(search_->told(group).size());
-  return noise_.likelihood - static_cast<double>(columns) * result_.threshold;
+  return likelihood_ - static_cast<double>(columns) * result_.threshold;
 }
 
 std::vector<Eigen::MatrixXd> Analysis::columns_of(const std::vector<std::size_t>& groups) const {
+  return part(all_columns_of(groups), 0, flights_.size());
+}
+
+std::vector<Eigen::MatrixXd> Analysis::all_columns_of(const std::vector<std::size_t>& groups) const {
   std::vector<Eigen::Index> places;
   for (Eigen::Index c = 0; c < base_; ++c) places.push_back(c);
   for (const std::size_t group : groups) {
@@ -92,14 +105,14 @@ std::vector<Eigen::MatrixXd> Analysis::columns_of(const std::vector<std::size_t>
 std::vector<Eigen::VectorXd> Analysis::left_by(const std::vector<std::size_t>& groups,
                                                const Eigen::VectorXd& estimate) const {
   std::vector<Eigen::VectorXd> left = residuals_;
-  const std::vector<Eigen::MatrixXd> columns = columns_of(groups);
+  const std::vector<Eigen::MatrixXd> columns = all_columns_of(groups);
   for (std::size_t f = 0; f < left.size(); ++f) left[f] -= columns[f] * estimate;
   return left;
 }
 
 std::vector<double> Analysis::added(std::size_t flight, const std::vector<std::size_t>& groups,
                                     const Eigen::VectorXd& estimate) const {
-  const FlightColumns& columns = flights_[flight];
+  const FlightColumns& columns = this->flight(flight);
   std::vector<double> result(columns.given.size(), nan);
   for (const std::size_t record : bins_[flight].records()) {
     const Eigen::Index row = as_index(record);
@@ -116,7 +129,7 @@ std::vector<double> Analysis::added(std::size_t flight, const std::vector<std::s
 
 std::vector<double> Analysis::added_by(std::size_t flight, const std::vector<std::size_t>& groups,
                                        std::size_t which, const Eigen::VectorXd& estimate) const {
-  const FlightColumns& columns = flights_[flight];
+  const FlightColumns& columns = this->flight(flight);
   Eigen::Index place = base_;
   for (std::size_t i = 0; i < which; ++i) place += groups_[groups[i]].count;
   const ColumnGroup& group = groups_[groups[which]];
@@ -131,8 +144,8 @@ std::vector<double> Analysis::added_by(std::size_t flight, const std::vector<std
 }
 
 void Analysis::replace_outliers(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate) {
-  for (std::size_t f = 0; f < flights_.size(); ++f) {
-    FlightColumns& flight = flights_[f];
+  for (std::size_t f = 0; f < bins_.size(); ++f) {
+    FlightColumns& flight = this->flight(f);
     std::size_t count = 0;
     const std::vector<double> predicted = added(f, groups, estimate);
     flight.residual =
@@ -140,14 +153,69 @@ void Analysis::replace_outliers(const std::vector<std::size_t>& groups, const Ei
     // A record that is in no bin has no prediction; it does not count anyway.
     residuals_[f] = bins_[f].means(flight.residual);
   }
+  first_residuals_ = part(residuals_, 0, flights_.size());
+}
+
+template <class Find>
+void Analysis::for_each_reference(const Find& find) {
+  noise_.resize(bins_.size());
+  for (std::size_t first = 0; first < bins_.size();) {
+    std::size_t last = first;
+    while (last < bins_.size() && flight(last).reference == flight(first).reference) ++last;
+    const NoiseModel model = find(first, last);
+    if (first == 0) first_noise_ = model;
+    for (std::size_t f = first; f < last; ++f) {
+      noise_[f] = model;
+      noise_[f].level = {model.level[f - first]};
+    }
+    first = last;
+  }
+}
+
+void Analysis::find_first_noise(const Eigen::VectorXd& estimate) {
+  const std::vector<Eigen::VectorXd> left = left_by({}, estimate);
+  for_each_reference([&](std::size_t first, std::size_t last) {
+    return estimate_noise(part(bins_, first, last), part(left, first, last));
+  });
+  keep_coefficients({}, estimate);
 }
 
 void Analysis::find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate) {
-  noise_ = internal::find_noise(bins_, columns_of(groups), left_by(groups, estimate));
+  const std::vector<Eigen::VectorXd> left = left_by(groups, estimate);
+  const std::vector<Eigen::MatrixXd> columns = all_columns_of(groups);
+  likelihood_ = 0.0;
+  for_each_reference([&](std::size_t first, std::size_t last) {
+    const FoundNoise found =
+        internal::find_noise(part(bins_, first, last), part(columns, first, last), part(left, first, last));
+    if (first == 0) drift_gain_ = found.drift_gain;
+    likelihood_ += found.likelihood;
+    return found.model;
+  });
+  keep_coefficients(groups, estimate);
+}
+
+void Analysis::keep_coefficients(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate) {
+  coefficients_ = Eigen::VectorXd::Zero(columns_.front().cols());
+  coefficients_.head(base_) = estimate.head(base_);
+  Eigen::Index place = base_;
+  for (const std::size_t group : groups) {
+    coefficients_.segment(base_ + groups_[group].first, groups_[group].count) =
+        estimate.segment(place, groups_[group].count);
+    place += groups_[group].count;
+  }
 }
 
 void Analysis::find_search() {
-  scores_ = std::make_unique<Scores>(find_scores(bins_, columns_, residuals_, noise_.model));
+  scores_ = std::make_unique<Scores>(find_scores(bins_, columns_, residuals_, noise_));
+  std::vector<Eigen::VectorXd> left;
+  for (std::size_t f = 0; f < bins_.size(); ++f) left.push_back(scores_->left(f, coefficients_));
+  for (std::size_t later = flights_.size(); later < bins_.size(); ++later) {
+    for (std::size_t earlier = 0; earlier < later; ++earlier) {
+      if (flight(earlier).samples->name == flight(later).samples->name)
+        take_out_common_noise(bins_, earlier, later, left, *scores_);
+    }
+  }
+  if (!further_.empty()) sum_up(*scores_);
   search_ = std::make_unique<Search>(*scores_, base_, groups_);
 }
 
@@ -161,7 +229,7 @@ double Analysis::held_out_rms(const std::vector<std::size_t>& groups) const {
   for (std::size_t f = 0; f < columns.size(); ++f) {
     Eigen::MatrixXd all(columns[f].rows(), width);
     all << columns[f], residuals_[f];
-    const Eigen::MatrixXd white = whitened(all, bins_[f], noise_.model, f);
+    const Eigen::MatrixXd white = whitened(all, bins_[f], noise_[f], 0);
     for (Eigen::Index i = 0; i < white.rows(); ++i) {
       const std::size_t part =
           part_of(bins_[f].time()[static_cast<std::size_t>(i)] - flights_[f].samples->time.front());
@@ -202,7 +270,7 @@ std::vector<double> Analysis::drift(std::size_t flight, const std::vector<std::s
   Eigen::VectorXd estimate;
   Eigen::MatrixXd covariance;
   search_->fit(groups, estimate, covariance);
-  const Whitening whitening(bins, noise_.model, flight);
+  const Whitening whitening(bins, noise_[flight], 0);
   const Eigen::VectorXd series = whitening.slow_parts(left_by(groups, estimate)[flight]);
   for (std::size_t k = 0; k < bins.records().size(); ++k) result[bins.records()[k]] = series[bins.bins()[k]];
   return result;

@@ -14,6 +14,10 @@ namespace pcor::internal {
 
 /// The statistics of a diagnosis: noise and missing effects of some flights, found in turn, since each needs
 /// the other.
+///
+/// A flight is there once for each reference, those against the first reference first; each reference has a
+/// noise of its own. What is told of flights without a number is told of the first reference; a number of a
+/// flight counts them all.
 class Analysis {
  public:
   /// @param groups of columns of the flights' candidates, one for each effect that is tested
@@ -22,10 +26,17 @@ class Analysis {
            double explained = 0.0);
 
   const std::vector<FlightColumns>& flights() const { return flights_; }
-  const std::vector<Binning>& bins() const { return bins_; }
-  const NoiseModel& noise() const { return noise_.model; }
-  /// Twice the gain in log-likelihood by slow drift.
-  double drift_gain() const { return noise_.drift_gain; }
+  /// How many flights there are, each counted for each reference.
+  std::size_t flight_count() const { return bins_.size(); }
+  const FlightColumns& flight(std::size_t number) const {
+    return number < flights_.size() ? flights_[number] : further_[number - flights_.size()];
+  }
+  const std::vector<Binning>& bins() const { return first_bins_; }
+  const Binning& bins(std::size_t flight) const { return bins_[flight]; }
+  /// Of the flights against the first reference.
+  const NoiseModel& noise() const { return first_noise_; }
+  /// Twice the gain in log-likelihood by slow drift against the first reference.
+  double drift_gain() const { return drift_gain_; }
   const Search& search() const { return *search_; }
   const Scores& scores() const { return *scores_; }
   const std::vector<ColumnGroup>& groups() const { return groups_; }
@@ -35,7 +46,7 @@ class Analysis {
   /// Columns of base and of some groups, in bins, of each flight.
   std::vector<Eigen::MatrixXd> columns_of(const std::vector<std::size_t>& groups) const;
   /// Residuals in bins, outliers replaced.
-  const std::vector<Eigen::VectorXd>& residuals() const { return residuals_; }
+  const std::vector<Eigen::VectorXd>& residuals() const { return first_residuals_; }
 
   /// What base and groups add to the residual of every record of a flight, hPa. @param estimate of base and
   /// the groups' columns, as `Search::fit` gives it
@@ -58,18 +69,35 @@ class Analysis {
   double search_from(const Eigen::VectorXd& start, bool generous, double explained);
   void replace_outliers(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate);
   void find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate);
+  void find_first_noise(const Eigen::VectorXd& estimate);
+  /// The noise of the flights against each reference: `find(first, last)` of them, counted here.
+  template <class Find>
+  void for_each_reference(const Find& find);
+  void keep_coefficients(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate);
   void find_search();
   std::vector<Eigen::VectorXd> left_by(const std::vector<std::size_t>& groups,
                                        const Eigen::VectorXd& estimate) const;
 
-  std::vector<FlightColumns> flights_;
+  FlightColumns& flight(std::size_t number) {
+    return number < flights_.size() ? flights_[number] : further_[number - flights_.size()];
+  }
+  std::vector<Eigen::MatrixXd> all_columns_of(const std::vector<std::size_t>& groups) const;
+
+  std::vector<FlightColumns> flights_{};
+  std::vector<FlightColumns> further_{};  // against other references
   std::vector<ColumnGroup> groups_;
   std::uint64_t seed_;
   Eigen::Index base_ = 0;
   std::vector<Binning> bins_{};
+  std::vector<Binning> first_bins_{};
   std::vector<Eigen::MatrixXd> columns_{};  // base and candidates, in bins
   std::vector<Eigen::VectorXd> residuals_{};
-  FoundNoise noise_{};
+  std::vector<Eigen::VectorXd> first_residuals_{};
+  std::vector<NoiseModel> noise_{};
+  NoiseModel first_noise_{};
+  double drift_gain_ = 0.0;
+  double likelihood_ = 0.0;
+  Eigen::VectorXd coefficients_{};  // of all columns, as the last noise was found with
   std::unique_ptr<Scores> scores_{};
   std::unique_ptr<Search> search_{};
   SearchResult result_{};

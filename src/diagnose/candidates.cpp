@@ -8,6 +8,7 @@
 
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/realtime/chain.hpp>
+#include <pcor/residuals/residuals.hpp>
 #include <pcor/units/units.hpp>
 #include <pcor/words/error.hpp>
 #include "roles/recorded_series.hpp"
@@ -46,6 +47,7 @@ void name_usual_variables(ModelFile& file, const std::vector<const Flight*>& fli
 Candidate candidate_of(const EffectFacts& facts) {
   Candidate candidate;
   candidate.effect = neutral_effect(facts.id);
+  candidate.id = candidate.effect.id;
   candidate.title = std::string(facts.title);
   for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
     const ParameterFacts& parameter = facts.parameters[i];
@@ -57,6 +59,18 @@ Candidate candidate_of(const EffectFacts& facts) {
                                 {parameter.lower - parameter.neutral, parameter.upper - parameter.neutral}});
   }
   return candidate;
+}
+
+constexpr std::array<Quantity, 5> rates_of_change{
+    Quantity::static_pressure_rate, Quantity::dynamic_pressure_rate, Quantity::recovery_temperature_rate,
+    Quantity::ambient_temperature_rate, Quantity::airspeed_rate};
+
+/// Whether an effect goes with a rate of change, so that what it is may lag behind: a delay or a lag of more
+/// than a second is not its derivative.
+bool goes_with_a_rate(const EffectFacts& facts) {
+  return std::any_of(facts.needs.begin(), facts.needs.end(), [](Quantity need) {
+    return std::find(rates_of_change.begin(), rates_of_change.end(), need) != rates_of_change.end();
+  });
 }
 
 /// The begins of the flights after the first, in the unit of the role date.
@@ -97,12 +111,21 @@ std::vector<Candidate> variants_of(const Candidate& candidate, const std::vector
     variant.effect.scaling = facts.scalings[i];
     variant.is_variant = true;
   }
+  if (goes_with_a_rate(facts)) {
+    constexpr std::array<double, 5> memories{1.0, 2.0, 4.0, 8.0, 16.0};  // s
+    for (const double memory : memories) {
+      Candidate& variant = variants.emplace_back(candidate);
+      variant.memory = memory;
+      variant.is_variant = true;
+    }
+  }
   return variants;
 }
 
 Candidate candidate_of(const ModelEffect& formula) {
   Candidate candidate;
   candidate.effect = formula;
+  candidate.id = formula.id;
   candidate.title = fmt::format("formula {}", formula.formula);
   for (std::size_t i = 0; i < formula.parameter_names.size(); ++i) {
     candidate.effect.parameters[i] = 0.0;
@@ -130,20 +153,132 @@ std::string missing_variable(const ModelEffect& effect, const std::vector<const 
   return "";
 }
 
-}  // namespace
+/// Whether an effect there can be one of the other system as well.
+bool has_a_twin(Where where) {
+  return where == Where::static_transducer || where == Where::dynamic_transducer ||
+         where == Where::static_line || where == Where::total_line || where == Where::static_defect ||
+         where == Where::pitot;
+}
 
-CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffect>& formulas,
-                             const std::vector<const Flight*>& flights, const Reference& reference) {
-  CandidateSet set;
-  set.extended = model;
-  name_usual_variables(set.extended, flights);
-  std::vector<Quantity> roles = set.extended.roles();
-  if (!reference.reads_laser())
-    roles.erase(std::remove(roles.begin(), roles.end(), Quantity::lams_airspeed), roles.end());
+Chain chain_of(const ModelFile& model, bool with_laser) {
+  std::vector<Quantity> roles = model.roles();
+  if (!with_laser) roles.erase(std::remove(roles.begin(), roles.end(), Quantity::lams_airspeed), roles.end());
   BindingError error;
   std::optional<Chain> chain = Chain::build(model.model, roles, &error);
   if (!chain)
     throw Error(Error::Code::model, fmt::format("model '{}': {}", model.model.name, error.message()));
+  return std::move(*chain);
+}
+
+/// Whether what is wrong there is often wrong on both systems, since tubes and lines are built alike.
+bool is_built_alike(Where where) {
+  return where == Where::static_line || where == Where::total_line || where == Where::pitot;
+}
+
+/// Puts behind each candidate in tubes and lines the same on both systems.
+void add_shared_ones(CandidateSet& set) {
+  std::vector<Candidate> all;
+  for (Candidate& candidate : set.candidates) {
+    const bool shared = !candidate.effect.is_formula() && !candidate.is_derived() &&
+                        is_built_alike(where_of(candidate.effect));
+    all.push_back(std::move(candidate));
+    if (!shared) continue;
+    all.push_back(all.back());
+    all.back().is_variant = true;
+    all.back().is_shared = true;
+  }
+  set.candidates = std::move(all);
+}
+
+/// Whether two models are of the same system, with the same coefficients to fit.
+bool is_same(const ModelFile& a, const ModelFile& b) {
+  const auto ids = [](const ModelFile& file) {
+    std::vector<std::string> all;
+    for (const ModelEffect& effect : file.model.effects) all.push_back(effect.id);
+    return all;
+  };
+  return a.model.name == b.model.name && a.variables == b.variables && ids(a) == ids(b) &&
+         free_parameters(a) == free_parameters(b);
+}
+
+/// Everything that the own system may have, a system that it is held against may have too. One residual of
+/// both knows their difference alone.
+void add_those_of_the_references(CandidateSet& set, const References& references,
+                                 const std::vector<const Flight*>& flights) {
+  for (std::size_t r = 0; r < references.size(); ++r) {
+    const ModelFile* const model = references[r]->model();
+    std::optional<ModelFile>& other = set.others.emplace_back();
+    set.references.push_back(references[r]);
+    set.base_of_others.push_back(set.base.size());
+    set.effects_of_others.push_back(model == nullptr ? 0 : model->model.effects.size());
+    if (model == nullptr) continue;
+    const auto same = std::find_if(references.begin(), references.begin() + static_cast<std::ptrdiff_t>(r),
+                                   [model](const auto& before) {
+                                     return before->model() != nullptr && is_same(*before->model(), *model);
+                                   });
+    if (same != references.begin() + static_cast<std::ptrdiff_t>(r)) {
+      set.base_of_others.back() = set.base_of_others[static_cast<std::size_t>(same - references.begin())];
+    } else {
+      const std::vector<std::string> names = residual_parameter_names(*model, *lams_reference());
+      for (const std::size_t parameter : free_parameters(*model))
+        set.base.push_back("reference:" + names[parameter]);
+    }
+    other = *model;
+    name_usual_variables(*other, flights);
+    Chain chain = chain_of(*other, false);
+    for (const EffectFacts& facts : effect_facts) {
+      if (!has_a_twin(facts.where) || has_effect(*model, facts.id)) continue;
+      Candidate twin = candidate_of(facts);
+      if (reads_date(facts)) {
+        const std::vector<double> begins = later_begins(flights);
+        if (begins.empty()) continue;
+        twin.effect.parameters[1] = begins.front();
+      }
+      twin.id = "reference:" + twin.id;
+      twin.title += ", of the other system";
+      BindingError error;
+      std::optional<Chain> with = chain.with_effect(twin.effect, &error);
+      if (!with) continue;
+      chain = std::move(*with);
+      auto place = std::find_if(set.candidates.begin(), set.candidates.end(),
+                                [&twin](const Candidate& each) { return each.id == twin.id; });
+      if (place == set.candidates.end()) {
+        twin.numbers_in_others.resize(references.size());
+        place = set.candidates.insert(place, std::move(twin));
+      }
+      place->numbers_in_others[r] = other->model.effects.size();
+      other->model.effects.push_back(place->effect);
+    }
+    set.references.back() = references[r]->with_model(*other);
+  }
+}
+
+}  // namespace
+
+Where where_of(const ModelEffect& effect) {
+  return effect.is_formula() ? effect.where : effect_facts[effect_named(effect.id)].where;
+}
+
+std::vector<std::size_t> free_parameters(const ModelFile& model) {
+  std::vector<std::size_t> free;
+  std::size_t number = 0;
+  for (std::size_t e = 0; e < model.model.effects.size(); ++e) {
+    for (std::size_t p = 0; p < model.model.effects[e].parameters.size(); ++p, ++number) {
+      if (!model.fit(e, p).fixed) free.push_back(number);
+    }
+  }
+  return free;
+}
+
+CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffect>& formulas,
+                             const std::vector<const Flight*>& flights, const References& references) {
+  CandidateSet set;
+  set.extended = model;
+  name_usual_variables(set.extended, flights);
+  const bool with_laser =
+      std::any_of(references.begin(), references.end(), [](const auto& each) { return each->reads_laser(); });
+  std::optional<Chain> chain = chain_of(set.extended, with_laser);
+  BindingError error;
   const auto add = [&](Candidate candidate) {
     std::optional<Chain> with = chain->with_effect(candidate.effect, &error);
     if (!with) return false;
@@ -202,6 +337,12 @@ CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffe
     }
     consider(candidate);
   }
+  const std::vector<std::string> names = residual_parameter_names(model, *lams_reference());
+  for (const std::size_t parameter : free_parameters(model)) set.base.push_back(names[parameter]);
+  const bool two_systems = std::any_of(references.begin(), references.end(),
+                                       [](const auto& each) { return each->model() != nullptr; });
+  if (two_systems) add_shared_ones(set);
+  add_those_of_the_references(set, references, flights);
   return set;
 }
 

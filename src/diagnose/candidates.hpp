@@ -1,11 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <pcor/diagnose/diagnose.hpp>
 #include <pcor/flight/flight.hpp>
 #include <pcor/laws/model_file.hpp>
+#include <pcor/residuals/reference.hpp>
 
 namespace pcor::internal {
 
@@ -18,19 +20,42 @@ struct CandidateParameter {
   Bounds bounds{};       ///< of what physics allows, as a change from the neutral value
 };
 
-/// An effect that the model may lack.
+/// An effect that the model may lack, or that of the system which it is held against.
 struct Candidate {
   ModelEffect effect;      ///< with its neutral parameters, and shapes as they are tried
+  std::string id;          ///< that of the effect, or "reference:ID" on the other system
   std::size_t number = 0;  ///< of the effect in the extended model
+  /// On the system of each reference: the number of the effect in its extended model, nothing where it has
+  /// none. Empty for an effect on the own system.
+  std::vector<std::optional<std::size_t>> numbers_in_others{};
+  /// How long the effect remembers what it goes with, s: a lag is the rate of change as the last seconds had
+  /// it, tau dx/dt low-passed with tau.
+  double memory = 0.0;
+  /// The same on the other system, built alike: what holds the two against each other does not see it.
+  bool is_shared = false;
   std::string title;
   std::vector<CandidateParameter> tested{};
   bool is_variant = false;  ///< the same effect as a candidate before it, in another shape
+
+  /// Whether its columns are those of the candidate before it, changed.
+  bool is_derived() const { return memory > 0.0 || is_shared; }
+  bool is_of_reference() const { return !numbers_in_others.empty(); }
 };
 
 /// What can be tested on some flights.
 struct CandidateSet {
   /// The model with every candidate besides, and the variables of all roles that these need.
   ModelFile extended;
+  /// The references, each with what candidates on its own system need.
+  References references{};
+  /// The model of each reference, with every candidate on its system besides; nothing where it has none.
+  std::vector<std::optional<ModelFile>> others{};
+  std::vector<std::size_t> effects_of_others{};  ///< how many effects the law of each has without candidates
+  /// The coefficients that are fitted beside every candidate, like "static-qp.a2" and
+  /// "reference:static-qp.a2".
+  std::vector<std::string> base{};
+  /// Where those of each reference's own model begin.
+  std::vector<std::size_t> base_of_others{};
   std::vector<Candidate> candidates{};
   std::vector<NotTestable> not_testable{};
 };
@@ -38,6 +63,12 @@ struct CandidateSet {
 /// The effects of the catalogue that are not in the model, and the formulas. An effect whose inputs some
 /// flight lacks is not testable, and told so. @throws Error if the model cannot be used.
 CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffect>& formulas,
-                             const std::vector<const Flight*>& flights, const Reference& reference);
+                             const std::vector<const Flight*>& flights, const References& references);
+
+/// The places among all parameters of a model of those that are fitted.
+std::vector<std::size_t> free_parameters(const ModelFile& model);
+
+/// Where an effect acts.
+Where where_of(const ModelEffect& effect);
 
 }  // namespace pcor::internal

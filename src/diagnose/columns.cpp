@@ -22,21 +22,6 @@ namespace {
 constexpr int jet_width = 3;
 using Jet = ceres::Jet<double, jet_width>;
 
-Where where_of(const ModelEffect& effect) {
-  return effect.is_formula() ? effect.where : effect_facts[effect_named(effect.id)].where;
-}
-
-std::vector<std::size_t> free_parameters(const ModelFile& model) {
-  std::vector<std::size_t> free;
-  std::size_t number = 0;
-  for (std::size_t e = 0; e < model.model.effects.size(); ++e) {
-    for (std::size_t p = 0; p < model.model.effects[e].parameters.size(); ++p, ++number) {
-      if (!model.fit(e, p).fixed) free.push_back(number);
-    }
-  }
-  return free;
-}
-
 /// One evaluation of a candidate: its derivatives by some of the tested parameters.
 struct Evaluation {
   std::size_t effect;        // number in the extended model
@@ -46,23 +31,40 @@ struct Evaluation {
   std::vector<Jet> parameters;
 };
 
-std::vector<Evaluation> evaluations_of(const CandidateSet& set, const std::vector<Where>& places) {
+/// The number of a candidate in the extended model of its system; nothing where that has none.
+std::optional<std::size_t> number_of(const Candidate& candidate, std::size_t reference) {
+  return candidate.is_of_reference() ? candidate.numbers_in_others[reference] : candidate.number;
+}
+
+/// The evaluations of the candidates of one system. Those with a memory are made of the columns without.
+std::vector<Evaluation> evaluations_of(const CandidateSet& set, std::size_t reference, bool of_reference,
+                                       const std::vector<Where>& places) {
   std::vector<Evaluation> evaluations;
   std::size_t column = 0;
   for (const Candidate& candidate : set.candidates) {
-    const auto place = std::find(places.begin(), places.end(), where_of(candidate.effect)) - places.begin();
-    const std::vector<double>& neutral = candidate.effect.parameters;
-    for (std::size_t first = 0; first < candidate.tested.size(); first += jet_width) {
-      const std::size_t width = std::min<std::size_t>(jet_width, candidate.tested.size() - first);
-      std::vector<Jet> parameters(neutral.begin(), neutral.end());
-      for (std::size_t k = 0; k < width; ++k)
-        parameters[candidate.tested[first + k].place].v[as_index(k)] = 1.0;
-      evaluations.push_back(
-          {candidate.number, static_cast<std::size_t>(place), column, width, std::move(parameters)});
-      column += width;
+    const std::size_t end = column + candidate.tested.size();
+    const std::optional<std::size_t> number = number_of(candidate, reference);
+    if (candidate.is_of_reference() == of_reference && !candidate.is_derived() && number) {
+      const auto place = std::find(places.begin(), places.end(), where_of(candidate.effect)) - places.begin();
+      const std::vector<double>& neutral = candidate.effect.parameters;
+      for (std::size_t first = 0; first < candidate.tested.size(); first += jet_width) {
+        const std::size_t width = std::min<std::size_t>(jet_width, candidate.tested.size() - first);
+        std::vector<Jet> parameters(neutral.begin(), neutral.end());
+        for (std::size_t k = 0; k < width; ++k)
+          parameters[candidate.tested[first + k].place].v[as_index(k)] = 1.0;
+        evaluations.push_back(
+            {*number, static_cast<std::size_t>(place), column + first, width, std::move(parameters)});
+      }
     }
+    column = end;
   }
   return evaluations;
+}
+
+std::size_t column_count(const CandidateSet& set) {
+  std::size_t count = 0;
+  for (const Candidate& candidate : set.candidates) count += candidate.tested.size();
+  return count;
 }
 
 /// Residuals at some samples, and their derivatives.
@@ -83,6 +85,15 @@ Linearised linearised(const Residuals& residuals, const std::shared_ptr<const Fl
                     samples};
   const double* const start = residuals.parameters().data();
   auto predicted = residuals.predicted_sensor(start);
+  if (auto common = residuals.at_common_pressures()) {
+    // Where the derivatives of one effect on both systems are exactly opposite.
+    residuals.evaluate(used.data(), used.size(), start, {}, result.residual.data(), nullptr);
+    result.at = std::move(common);
+    std::vector<double> nothing(used.size());
+    Residuals(result.at, model, reference, mask)
+        .evaluate(used.data(), used.size(), start, wanted, nothing.data(), result.derivatives.data());
+    return result;
+  }
   if (!predicted) {
     residuals.evaluate(used.data(), used.size(), start, wanted, result.residual.data(),
                        result.derivatives.data());
@@ -129,14 +140,78 @@ std::vector<std::size_t> with_flaps_out(const std::vector<Mask>& masks,
   return result;
 }
 
-std::vector<Where> places_of(const CandidateSet& set) {
+/// The places of the candidates of one system.
+std::vector<Where> places_of(const CandidateSet& set, bool of_reference) {
   std::vector<Where> places;
   for (const Candidate& candidate : set.candidates) {
+    if (candidate.is_of_reference() != of_reference) continue;
     const Where where = where_of(candidate.effect);
     if (std::find(places.begin(), places.end(), where) == places.end()) places.push_back(where);
   }
   return places;
 }
+
+/// A first-order low-pass of a column over the samples used, exact for what is linear between them. It begins
+/// anew after a gap.
+Eigen::VectorXf low_passed(const Eigen::Ref<const Eigen::VectorXf>& column,
+                           const std::vector<std::size_t>& used, const std::vector<double>& time,
+                           double memory) {
+  constexpr double gap = 10.0;  // s
+  Eigen::VectorXf result = column;
+  double value = nan;
+  for (std::size_t k = 0; k < used.size(); ++k) {
+    const auto here = static_cast<double>(column[as_index(used[k])]);
+    const double step = k == 0 ? nan : time[used[k]] - time[used[k - 1]];
+    const double before = k == 0 ? nan : static_cast<double>(column[as_index(used[k - 1])]);
+    if (!(step <= gap) || std::isnan(value + before)) {
+      value = here;
+    } else {
+      const double kept = std::exp(-step / memory);
+      const double ramp = memory / step * (1.0 - kept);
+      value = kept * value + (ramp - kept) * before + (1.0 - ramp) * here;
+    }
+    result[as_index(used[k])] = static_cast<float>(value);
+  }
+  return result;
+}
+
+/// The value of the candidates of one system at a sample, through its chain.
+class CandidateValues {
+ public:
+  CandidateValues(const Model& model, const ModelSamples& samples, const std::string& name,
+                  std::vector<Evaluation> evaluations)
+      : chain_(built(model, samples.roles, name)), evaluations_(std::move(evaluations)) {
+    for (const Quantity input : chain_.inputs()) inputs_.emplace_back(input, samples.find(input)->data());
+  }
+
+  /// Puts the columns of a sample. @param derivative of the residual by what is added at a place
+  template <class Derivative>
+  void put(std::size_t sample, const Derivative& derivative, State<double>& state,
+           Eigen::MatrixXf& columns) const {
+    NoQualityFlags flags;
+    for (const auto& [quantity, series] : inputs_) state[quantity] = series[sample];
+    chain_.measure(state, chain_.parameters().data(), flags);
+    for (const Evaluation& each : evaluations_) {
+      const Jet value = chain_.effect_value(each.effect, state, each.parameters.data());
+      const double at_place = derivative(each.place);
+      for (std::size_t p = 0; p < each.width; ++p)
+        columns(as_index(sample), as_index(each.first_column + p)) =
+            static_cast<float>(-at_place * value.v[as_index(p)]);
+    }
+  }
+
+ private:
+  static Chain built(const Model& model, const std::vector<Quantity>& roles, const std::string& name) {
+    BindingError why;
+    std::optional<Chain> chain = Chain::build(model, roles, &why);
+    if (!chain) throw Error(Error::Code::model, fmt::format("{}: {}", name, why.message()));
+    return std::move(*chain);
+  }
+
+  Chain chain_;
+  std::vector<Evaluation> evaluations_;
+  std::vector<std::pair<Quantity, const double*>> inputs_;
+};
 
 }  // namespace
 
@@ -156,24 +231,32 @@ Eigen::MatrixXd binned_columns(const FlightColumns& flight, const Binning& bins)
   return columns;
 }
 
-std::vector<std::string> base_names(const ModelFile& model) {
-  const std::vector<std::string> all = residual_parameter_names(model, *lams_reference());
-  std::vector<std::string> names;
-  for (const std::size_t parameter : free_parameters(model)) names.push_back(all[parameter]);
-  return names;
-}
-
 FlightColumns find_columns(std::shared_ptr<const FlightSamples> extended, const ModelFile& model,
-                           const CandidateSet& set, const Reference& reference, const MaskOptions& mask,
+                           const CandidateSet& set, std::size_t reference, const MaskOptions& mask,
                            double first_part) {
   const std::size_t records = extended->time.size();
-  const std::vector<Where> places = places_of(set);
+  const std::vector<Where> places = places_of(set, false);
   ModelFile with_additions = model;
   with_additions.model.additions = places;
-  const Residuals residuals(extended, with_additions, reference, mask);
+  // The other system, with what may be added there.
+  std::shared_ptr<const Reference> held_against = set.references[reference];
+  std::vector<Where> other_places;
+  std::vector<std::size_t> other_free;
+  std::size_t other_count = 0;
+  if (set.others[reference]) {
+    other_places = places_of(set, true);
+    ModelFile other = *set.others[reference];
+    other.model.effects.resize(set.effects_of_others[reference]);
+    other.model.additions = other_places;
+    other_free = free_parameters(other);
+    for (const ModelEffect& effect : other.model.effects) other_count += effect.parameters.size();
+    held_against = held_against->with_model(std::move(other));
+  }
+  const Residuals residuals(extended, with_additions, *held_against, mask);
   const std::vector<double>& start = residuals.parameters();
 
   FlightColumns columns;
+  columns.reference = reference;
   columns.samples = extended;
   columns.mask = residuals.mask();
   columns.exact = residuals.values(start.data());
@@ -183,24 +266,27 @@ FlightColumns find_columns(std::shared_ptr<const FlightSamples> extended, const 
   std::size_t own_count = 0;
   for (const ModelEffect& effect : model.model.effects) own_count += effect.parameters.size();
   for (std::size_t k = 0; k < places.size(); ++k) wanted.push_back(own_count + k);
-  const Linearised found = linearised(residuals, extended, with_additions, reference, mask, used, wanted);
+  own_count += places.size();
+  const std::size_t other_begin = wanted.size();
+  for (const std::size_t parameter : other_free) wanted.push_back(own_count + parameter);
+  for (std::size_t k = 0; k < other_places.size(); ++k) wanted.push_back(own_count + other_count + k);
+  const Linearised found = linearised(residuals, extended, with_additions, *held_against, mask, used, wanted);
   columns.given.assign(records, nan);
   columns.flaps_out.assign(records, nan);
   for (std::size_t k = 0; k < used.size(); ++k)
     (columns.mask[used[k]] == Mask::none ? columns.given : columns.flaps_out)[used[k]] = found.residual[k];
   columns.residual = columns.given;
-  columns.base.setZero(as_index(records), as_index(base_count));
-  for (std::size_t c = 0; c < base_count; ++c) {
-    for (std::size_t k = 0; k < used.size(); ++k)
-      columns.base(as_index(used[k]), as_index(c)) = static_cast<float>(-found.derivative(c, k));
-  }
+  columns.base.setZero(as_index(records), as_index(set.base.size()));
+  const auto put_base = [&](std::size_t first, std::size_t from, std::size_t count) {
+    for (std::size_t c = 0; c < count; ++c) {
+      for (std::size_t k = 0; k < used.size(); ++k)
+        columns.base(as_index(used[k]), as_index(first + c)) =
+            static_cast<float>(-found.derivative(from + c, k));
+    }
+  };
+  put_base(0, 0, base_count);
+  put_base(set.base_of_others[reference], other_begin, other_free.size());
 
-  BindingError why;
-  const std::optional<Chain> chain = Chain::build(set.extended.model, extended->model.roles, &why);
-  if (!chain) throw Error(Error::Code::model, fmt::format("{}: {}", extended->name, why.message()));
-  std::vector<std::pair<Quantity, const double*>> inputs;
-  for (const Quantity input : chain->inputs())
-    inputs.emplace_back(input, found.at->model.find(input)->data());
   const std::array<Quantity, 6> measured{Quantity::attack,
                                          Quantity::sideslip,
                                          Quantity::static_pressure_rate,
@@ -209,27 +295,42 @@ FlightColumns find_columns(std::shared_ptr<const FlightSamples> extended, const 
                                          Quantity::roll};
   for (const Quantity quantity : measured)
     columns.quantities.emplace_back(quantity, std::vector<double>(records, nan));
-  const std::vector<Evaluation> evaluations = evaluations_of(set, places);
-  const std::size_t column_count =
-      evaluations.empty() ? 0 : evaluations.back().first_column + evaluations.back().width;
-  columns.candidates.setZero(as_index(records), as_index(column_count));
+  columns.candidates.setZero(as_index(records), as_index(column_count(set)));
+  const CandidateValues own(set.extended.model, found.at->model, extended->name,
+                            evaluations_of(set, reference, false, places));
+  std::optional<CandidateValues> others;
+  if (set.others[reference])
+    others.emplace(set.others[reference]->model, found.at->reference, extended->name,
+                   evaluations_of(set, reference, true, other_places));
   for (std::size_t k = 0; k < used.size(); ++k) {
     const std::size_t sample = used[k];
     State<double> state;
-    NoQualityFlags flags;
-    for (const auto& [quantity, series] : inputs) state[quantity] = series[sample];
-    chain->measure(state, chain->parameters().data(), flags);
-    for (const Evaluation& each : evaluations) {
-      const Jet value = chain->effect_value(each.effect, state, each.parameters.data());
-      const double at_place = found.derivative(base_count + each.place, k);
-      for (std::size_t p = 0; p < each.width; ++p)
-        columns.candidates(as_index(sample), as_index(each.first_column + p)) =
-            static_cast<float>(-at_place * value.v[as_index(p)]);
-    }
+    own.put(
+        sample, [&](std::size_t place) { return found.derivative(base_count + place, k); }, state,
+        columns.candidates);
     for (std::size_t q = 0; q < measured.size(); ++q)
       columns.quantities[q].second[sample] = state[measured[q]];
+    if (!others) continue;
+    State<double> other_state;
+    others->put(
+        sample,
+        [&](std::size_t place) { return found.derivative(other_begin + other_free.size() + place, k); },
+        other_state, columns.candidates);
   }
-  for (Eigen::Index c = 0; c < columns.candidates.cols(); ++c) bridge(columns.candidates.col(c), used);
+  Eigen::Index column = 0;
+  Eigen::Index source = 0;  // of what a derived candidate is derived from
+  for (const Candidate& candidate : set.candidates) {
+    if (!candidate.is_derived()) source = column;
+    for (Eigen::Index c = 0; c < as_index(candidate.tested.size()); ++c, ++column) {
+      if (candidate.is_shared && !set.others[reference])
+        columns.candidates.col(column) = columns.candidates.col(source + c);
+      else if (candidate.memory > 0.0)
+        columns.candidates.col(column) =
+            low_passed(columns.candidates.col(source + c), used, extended->time, candidate.memory);
+      else if (!candidate.is_shared)
+        bridge(columns.candidates.col(column), used);
+    }
+  }
 
   columns.quantities.emplace_back(Quantity::corrected_mach,
                                   residuals.quantity(Quantity::corrected_mach, start.data()));

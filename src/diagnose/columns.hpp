@@ -11,12 +11,13 @@
 
 namespace pcor::internal {
 
-/// What a diagnosis sees of a flight, one value for each record.
+/// What a diagnosis sees of a flight against one reference, one value for each record.
 ///
 /// Columns are changes of the residual, with the sign turned: what a unit of a coefficient takes away. They
 /// are derivatives through the whole chain where the model says that the air is, never at the noisy speed of
 /// the laser, whose noise is that of the residual.
 struct FlightColumns {
+  std::size_t reference = 0;  ///< which of the references
   std::shared_ptr<const FlightSamples> samples;
   std::vector<Mask> mask;
   std::vector<double> given;     ///< the residual with the coefficients of the model, hPa; NaN where not used
@@ -26,7 +27,7 @@ struct FlightColumns {
   /// As `given`, of samples that are not used because flaps are out; NaN at all others. Columns are found for
   /// them too.
   std::vector<double> flaps_out{};
-  Eigen::MatrixXf base;        ///< of the model's free coefficients, hPa per unit
+  Eigen::MatrixXf base;        ///< of the free coefficients of the models, hPa per unit
   Eigen::MatrixXf candidates;  ///< of the tested parameters of all candidates, one after another
   /// How the flight was flown, for smooth functions and pictures; NaN everywhere where not known.
   std::vector<std::pair<Quantity, std::vector<double>>> quantities{};
@@ -35,19 +36,16 @@ struct FlightColumns {
   const std::vector<double>& quantity(Quantity quantity) const;
 };
 
-/// Finds the columns of one flight.
+/// Finds the columns of one flight against one of the set's references.
 ///
-/// @param extended samples that hold what the model and all candidates read
+/// @param extended samples that hold what the model, all candidates and the reference read
 /// @param first_part only the first part of the samples is used, 0 to 1
 /// @throws Error if the model cannot be used on the samples.
 FlightColumns find_columns(std::shared_ptr<const FlightSamples> extended, const ModelFile& model,
-                           const CandidateSet& set, const Reference& reference, const MaskOptions& mask,
+                           const CandidateSet& set, std::size_t reference, const MaskOptions& mask,
                            double first_part);
 
 /// Base and candidates of a flight side by side, in bins.
 Eigen::MatrixXd binned_columns(const FlightColumns& flight, const Binning& bins);
-
-/// The names of the free coefficients of a model, like "static-qp.a2": the base of the columns.
-std::vector<std::string> base_names(const ModelFile& model);
 
 }  // namespace pcor::internal

@@ -6,7 +6,9 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <set>
 
+#include <pcor/effects/catalogue.hpp>
 #include <pcor/flight/same_aircraft.hpp>
 #include <pcor/words/error.hpp>
 #include "diagnose/advice.hpp"
@@ -54,6 +56,31 @@ std::string trouble_of(const std::vector<FlightColumns>& flights, Eigen::Index f
   return "";
 }
 
+/// The references that a diagnosis can use; a note on each of the others.
+References usable(const References& references, std::vector<std::string>& notes) {
+  References result;
+  for (const auto& reference : references) {
+    if (reference->is_of_one_sample()) {
+      result.push_back(reference);
+    } else {
+      notes.push_back(fmt::format(
+          "the reference {} took no part in the diagnosis: it holds a minute or more together, and what an "
+          "effect does to it is not known there; compare shows it, and refit uses it",
+          reference->name()));
+    }
+  }
+  if (result.empty())
+    throw Error(
+        "nothing to diagnose with: give a reference that tells of each sample, such as --reference lams");
+  return result;
+}
+
+std::string description_of(const References& references) {
+  std::string text;
+  for (const auto& reference : references) text += (text.empty() ? "" : "; ") + reference->description();
+  return text;
+}
+
 /// Takes out the candidates that cannot be tested, and their columns.
 void drop_untestable(CandidateSet& set, std::vector<FlightColumns>& flights) {
   std::vector<Eigen::Index> kept;
@@ -66,7 +93,7 @@ void drop_untestable(CandidateSet& set, std::vector<FlightColumns>& flights) {
       for (Eigen::Index k = 0; k < count; ++k) kept.push_back(first + k);
       candidates.push_back(std::move(candidate));
     } else if (!candidate.is_variant) {
-      set.not_testable.push_back({candidate.effect.id, candidate.title, std::move(trouble)});
+      set.not_testable.push_back({candidate.id, candidate.title, std::move(trouble)});
     }
     first += count;
   }
@@ -75,19 +102,66 @@ void drop_untestable(CandidateSet& set, std::vector<FlightColumns>& flights) {
     flight.candidates = Eigen::MatrixXf(flight.candidates(Eigen::all, kept));
 }
 
-std::vector<ColumnGroup> groups_of(const std::vector<Candidate>& candidates) {
+/// The sign that physics gives a coefficient. How large it is met is a prior, how large it may be is no
+/// bound.
+Bounds sign_of(const Bounds& bounds) {
+  constexpr double any = std::numeric_limits<double>::infinity();
+  return {bounds.lower == 0.0 ? 0.0 : -any, bounds.upper == 0.0 ? 0.0 : any};
+}
+
+/// The variables that effects of the catalogue read.
+std::set<std::string> inputs_of(const std::vector<Finding>& findings, const ModelFile& model) {
+  std::set<std::string> names;
+  for (const Finding& finding : findings) {
+    const std::size_t known = effect_named(finding.effect.id);
+    if (known == catalogue_size || finding.of_reference) continue;
+    for (const Quantity need : effect_facts[known].needs) {
+      const auto variable = model.variables.find(need);
+      if (variable != model.variables.end()) names.insert(variable->second);
+    }
+  }
+  return names;
+}
+
+/// Whether an effect reads the flow angles, which the radome tells by more than one sensor.
+bool reads_flow_angles(const EffectFacts& facts) {
+  return std::any_of(facts.needs.begin(), facts.needs.end(), [](Quantity need) {
+    return need == Quantity::attack || need == Quantity::attack_ratio || need == Quantity::sideslip ||
+           need == Quantity::sideslip_ratio;
+  });
+}
+
+/// Whether an effect of the catalogue is of the family and the place of one that a model has, by other
+/// sensors.
+bool is_like_one_of(const ModelFile& model, const Candidate& candidate) {
+  const std::size_t known = effect_named(candidate.effect.id);
+  if (known == catalogue_size || candidate.is_of_reference()) return false;
+  const EffectFacts& facts = effect_facts[known];
+  if (!reads_flow_angles(facts)) return false;
+  return std::any_of(model.model.effects.begin(), model.model.effects.end(), [&](const ModelEffect& effect) {
+    const std::size_t other = effect_named(effect.id);
+    return other != catalogue_size && effect_facts[other].family == facts.family &&
+           effect_facts[other].where == facts.where;
+  });
+}
+
+std::vector<ColumnGroup> groups_of(const ModelFile& model, const std::vector<Candidate>& candidates) {
   std::vector<ColumnGroup> groups;
   Eigen::Index first = 0;
   std::size_t effect = 0;
   std::string before;
   for (const Candidate& candidate : candidates) {
-    if (candidate.effect.id != before) ++effect;
-    before = candidate.effect.id;
+    if (candidate.id != before) ++effect;
+    before = candidate.id;
     ColumnGroup& group = groups.emplace_back();
     group.effect = effect;
+    group.is_like_the_base = is_like_one_of(model, candidate);
     group.first = first;
     group.count = as_index(candidate.tested.size());
-    for (const CandidateParameter& parameter : candidate.tested) group.bounds.push_back(parameter.bounds);
+    for (const CandidateParameter& parameter : candidate.tested) {
+      group.bounds.push_back(sign_of(parameter.bounds));
+      group.usual.push_back(parameter.typical);
+    }
     first += group.count;
   }
   return groups;
@@ -144,6 +218,7 @@ void add_statistics(const std::vector<FlightColumns>& flights, double share, Dia
   std::vector<std::vector<double>> blocks;
   std::vector<std::size_t> held_out_blocks;
   for (const FlightColumns& flight : flights) {
+    if (flight.reference != 0) continue;
     const FlightSamples& samples = *flight.samples;
     const std::vector<std::size_t> first = used_samples(flight.mask, share);
     std::vector<std::size_t> later = used_samples(flight.mask);
@@ -184,7 +259,7 @@ void overrule(Diagnosis& diagnosis) {
     diagnosis.notes.push_back(fmt::format(
         "{} explains a part of what is missing, but a line in {} explains more: it is not taken "
         "for the cause",
-        finding.effect.id,
+        finding.id(),
         (diagnosis.unexplained.variables.empty() ? std::string("one variable")
                                                  : diagnosis.unexplained.variables.front().name)));
   }
@@ -225,8 +300,7 @@ void judge_held_out(Diagnosis& diagnosis) {
 }
 
 Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelFile& model,
-                   const References& references, const DiagnoseOptions& options) {
-  const Reference& reference = first_of(references);
+                   const References& all_references, const DiagnoseOptions& options) {
   if (paths.empty()) throw Error("nothing to diagnose; give at least one flight");
   require_each_once(paths);
   std::vector<Flight> files;
@@ -240,18 +314,36 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
   for (const Flight& file : files) flights.push_back(&file);
 
   Diagnosis diagnosis;
-  diagnosis.reference = reference.description();
-  CandidateSet set = find_candidates(model, options.formulas, flights, reference);
+  const References references = usable(all_references, diagnosis.notes);
+  const Reference& reference = first_of(references);
+  diagnosis.reference = description_of(references);
+  CandidateSet set = find_candidates(model, options.formulas, flights, references);
   std::vector<FlightColumns> columns;
-  for (const Flight* flight : flights) {
-    auto samples =
-        std::make_shared<FlightSamples>(read_samples(*flight, set.extended, reference, options.mask));
-    diagnosis.notes.insert(diagnosis.notes.end(), samples->notes.begin(), samples->notes.end());
-    columns.push_back(
-        find_columns(std::move(samples), model, set, reference, options.mask, options.training_share));
-    for (const Mask mask : columns.back().mask) ++diagnosis.masks[static_cast<std::size_t>(mask)];
-    if (options.progress) options.progress(columns.size(), flights.size());
+  for (std::size_t r = 0; r < references.size(); ++r) {
+    for (std::size_t f = 0; f < flights.size(); ++f) {
+      auto samples = std::make_shared<FlightSamples>(
+          r == 0 ? read_samples(*flights[f], set.extended, *set.references[0], options.mask)
+                 : *columns[f].samples);
+      if (r > 0) {
+        samples->notes.clear();
+        samples->reference = set.references[r]->read(*flights[f], samples->time, samples->notes);
+      }
+      diagnosis.notes.insert(diagnosis.notes.end(), samples->notes.begin(), samples->notes.end());
+      columns.push_back(
+          find_columns(std::move(samples), model, set, r, options.mask, options.training_share));
+      if (r > 0) continue;
+      for (const Mask mask : columns.back().mask) ++diagnosis.masks[static_cast<std::size_t>(mask)];
+      if (options.progress) options.progress(columns.size(), flights.size());
+    }
   }
+  columns.erase(
+      std::remove_if(columns.begin(), columns.end(),
+                     [](const FlightColumns& flight) {
+                       const auto used = std::count(flight.mask.begin(), flight.mask.end(), Mask::none);
+                       return !has_value(flight.given) ||
+                              (flight.reference != 0 && used < static_cast<std::ptrdiff_t>(fewest_samples));
+                     }),
+      columns.end());
   add_statistics(columns, options.training_share, diagnosis);
   if (diagnosis.samples < diagnosis.masks[0]) {
     diagnosis.notes.push_back(fmt::format("{} samples of the later parts of the flights took no part",
@@ -268,11 +360,12 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
                     [](const Candidate& candidate) { return !candidate.is_variant; }));
 
   const auto started = std::chrono::steady_clock::now();
-  const Analysis analysis(std::move(columns), groups_of(set.candidates), options.seed, options.explained);
+  const Analysis analysis(std::move(columns), groups_of(model, set.candidates), options.seed,
+                          options.explained);
   diagnosis.threshold = analysis.result().threshold;
   diagnosis.findings = findings_of(analysis, set.candidates);
-  advise(analysis, set, model, reference, options.mask, diagnosis.findings);
-  diagnosis.absorbed = absorbed_of(analysis, set.candidates, base_names(model));
+  advise(analysis, set, model, options.mask, diagnosis.findings);
+  diagnosis.absorbed = absorbed_of(analysis, set.candidates, set.base);
   diagnosis.limits = limits_of(analysis, set.candidates, diagnosis.findings);
   diagnosis.not_testable = std::move(set.not_testable);
   diagnosis.flights = flights_of(analysis);
@@ -282,13 +375,15 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
   diagnosis.statistics_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   const double rms_after = rms_of(diagnosis.flights, &FlightDiagnosis::after);
-  UnexplainedStructure structure = find_unexplained(analysis, files, model, reference, options, rms_after,
-                                                    diagnosis.noise_rms_with_findings);
+  UnexplainedStructure structure =
+      find_unexplained(analysis, files, model, reference, inputs_of(diagnosis.findings, set.extended),
+                       options, rms_after, diagnosis.noise_rms_with_findings);
   diagnosis.unexplained = std::move(structure.found);
   for (std::size_t f = 0; f < structure.traced.size(); ++f)
     diagnosis.flights[f].traced = std::move(structure.traced[f]);
   if (structure.overrules) overrule(diagnosis);
-  if (!flaps.empty()) diagnose_flaps(analysis, flaps, groups_of(flaps.candidates), options.seed, diagnosis);
+  if (!flaps.empty())
+    diagnose_flaps(analysis, flaps, groups_of(model, flaps.candidates), options.seed, diagnosis);
   double explained = 0.0;
   for (const Finding& finding : diagnosis.findings) explained += finding.chi2;
   diagnosis.verdict = verdict_of(diagnosis, explained, structure.left);

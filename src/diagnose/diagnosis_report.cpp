@@ -1,6 +1,7 @@
 #include <pcor/diagnose/diagnosis_report.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -25,7 +26,7 @@ constexpr std::size_t limits_in_summary = 3;
 constexpr std::size_t rivals_in_title = 2;
 
 std::string either(const Finding& finding) {
-  std::string names = finding.effect.id;
+  std::string names = finding.id();
   if (finding.aliases.size() > rivals_in_title) {
     names += fmt::format(" or one of {} others", finding.aliases.size());
   } else {
@@ -84,7 +85,7 @@ BarPanel ranking_bars(const Diagnosis& diagnosis) {
       "By how much chi2 falls with each effect that was found, and with each rival (\"or\") in its place.";
   bars.axis = "fall of chi2";
   for (const Finding& finding : diagnosis.findings) {
-    bars.bars.push_back({finding.effect.id, finding.chi2});
+    bars.bars.push_back({finding.id(), finding.chi2});
     for (const Alias& alias : finding.aliases)
       bars.bars.push_back({"or " + alias.effect, finding.chi2 - alias.chi2_less});
   }
@@ -106,7 +107,7 @@ ReportTable ranking_table(const Diagnosis& diagnosis) {
                    "what"};
   for (std::size_t i = 0; i < diagnosis.findings.size(); ++i) {
     const Finding& finding = diagnosis.findings[i];
-    table.rows.push_back({std::to_string(i + 1), finding.effect.id, estimates_text(finding.estimates),
+    table.rows.push_back({std::to_string(i + 1), finding.id(), estimates_text(finding.estimates),
                           cell(finding.rms, 3), cell(finding.chi2, 1), "",
                           ratio_cell(size_to_usual(finding.estimates)), finding.title});
     for (const Alias& alias : finding.aliases) {
@@ -125,7 +126,7 @@ ReportTable evidence_table(const std::vector<Finding>& findings) {
   table.headers = {"effect", "flight", "begin (UTC)", "end", "share", "regimes"};
   for (const Finding& finding : findings) {
     for (const Evidence& evidence : finding.evidence) {
-      table.rows.push_back({finding.effect.id, evidence.flight, utc_text(evidence.begin),
+      table.rows.push_back({finding.id(), evidence.flight, utc_text(evidence.begin),
                             utc_text(evidence.end, "%H:%M:%S"), percent(evidence.share), evidence.regimes});
     }
   }
@@ -140,7 +141,7 @@ void add_findings(DiagnosisPanels& panels, const Diagnosis& diagnosis,
   std::vector<std::string> evidence;
   std::vector<std::string> added;
   for (std::size_t i = 0; i < findings.size(); ++i) {
-    const std::string& id = findings[i].effect.id;
+    const std::string id = findings[i].id();
     if (std::string name = numbered("evidence", i);
         panels.add_column(name, "evidence for " + id, "1/min", diagnosis.flights,
                           [i](const F& f) { return one_of(f.evidence, i); }))
@@ -159,7 +160,7 @@ void add_findings(DiagnosisPanels& panels, const Diagnosis& diagnosis,
   panels.add(ranking_table(diagnosis));
   panels.add_table(evidence_table(findings));
   for (std::size_t i = 0; i < findings.size(); ++i) {
-    const std::string& id = findings[i].effect.id;
+    const std::string id = findings[i].id();
     panels.add(
         finding_page(findings[i], diagnosis.threshold,
                      findings.size() == 1 ? "The finding: " + id : fmt::format("Finding {}: {}", i + 1, id)));
@@ -176,7 +177,7 @@ void add_findings(DiagnosisPanels& panels, const Diagnosis& diagnosis,
 
 std::string verdict_text(const Diagnosis& diagnosis) {
   std::vector<std::string> ids;
-  for (const Finding& finding : diagnosis.findings) ids.push_back(finding.effect.id);
+  for (const Finding& finding : diagnosis.findings) ids.push_back(finding.id());
   const std::string effects = ids.size() == 1 ? "An effect is missing: " + diagnosis.findings.front().title
                                               : "Effects are missing: " + list_text(ids);
   switch (diagnosis.verdict) {
@@ -249,6 +250,19 @@ Report diagnosis_report(const Diagnosis& diagnosis, const ModelFile& model) {
   add_unexplained(panels, diagnosis, residuals.back());
   add_tables(panels, diagnosis);
   return std::move(report);
+}
+
+std::string kind_text(const Finding& finding) {
+  constexpr double far = 5.0;  // usual sizes
+  std::string text = fmt::format("place: {}", fmt::join(finding.places, " or "));
+  if (!finding.family.empty()) text = fmt::format("family: {}; {}", finding.family, text);
+  if (!finding.shape.empty()) text += "; shape: " + finding.shape;
+  if (finding.times_usual > far)
+    text += fmt::format(
+        "; {:.2g} times its usual size, so look first for a wrong entry in the model, or for another cause",
+        finding.times_usual);
+  if (finding.of_reference) text += "; the model itself is not to be changed for it";
+  return text;
 }
 
 }  // namespace pcor

@@ -42,7 +42,7 @@ Law law_of(const ModelEffect& effect) {
 std::string times_usual(double ratio) { return ratio_text(ratio) + " times the usual size"; }
 
 std::string what_it_is(const Finding& finding, const Law& law) {
-  std::string text = "What is missing: " + name_with_id(finding.title, finding.effect.id) + ".";
+  std::string text = "What is missing: " + name_with_id(finding.title, finding.id()) + ".";
   if (law.formula.empty()) return text;
   const bool defect = law.added_to.rfind("delta-p", 0) == 0;
   return text + fmt::format(" The correction {}{} is added to {}.", law.formula,
@@ -176,7 +176,7 @@ std::string stretch_text(const Evidence& evidence) {
 
 std::string finding_summary(const Finding& finding) {
   std::string text =
-      fmt::format("Missing: {}, {}. It adds {} hPa rms", name_with_id(finding.title, finding.effect.id),
+      fmt::format("Missing: {}, {}. It adds {} hPa rms", name_with_id(finding.title, finding.id()),
                   estimates_text(finding.estimates), hpa(finding.rms));
   if (std::isfinite(finding.worst)) text += fmt::format(", at most {:+.3f} hPa", finding.worst);
   text += fmt::format("; chance would do as well with a probability of {}.", probability(finding.p_value));
@@ -219,12 +219,11 @@ std::vector<std::string> unexplained_text(const Unexplained& unexplained) {
     }
     with += ".";
     if (!first.sampling.empty()) with += fmt::format(" Of the variable {} are used.", first.sampling);
-    with += first.where
-                ? fmt::format(" It acts on the {}.", facts_of(*first.where).adds_to)
-                : std::string(" Where it acts is not known: one residual does not tell places apart.");
+    with += " Where it acts is not known: one residual does not tell places apart.";
     if (!first.formula.empty()) {
-      with += fmt::format(" The formula {} would describe it{}.", first.formula,
-                          first.where ? "" : ", added to the static pressure as well as at any other place");
+      with += fmt::format(
+          " The formula {} would describe it, added to the static pressure as well as at any other place.",
+          first.formula);
     }
     all.push_back(with);
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include <pcor/effects/catalogue.hpp>
@@ -63,7 +64,7 @@ std::vector<Event> events_of(const Analysis& analysis, const Eigen::VectorXd& ev
   const double share = evidence.cwiseMax(0.0).sum() / static_cast<double>(evidence.size());
   std::vector<Event> events;
   for (std::size_t f = 0; f < scores.block.size(); ++f) {
-    const std::vector<double>& time = analysis.bins()[f].time();
+    const std::vector<double>& time = analysis.bins(f).time();
     Eigen::Index before = -1;
     bool open = false;
     for (std::size_t i = 0; i < time.size(); ++i) {
@@ -95,35 +96,64 @@ double count_of(const std::vector<Event>& events) {
 bool is_one_of(const std::string& effect, const std::vector<std::size_t>& chosen,
                const std::vector<Candidate>& candidates) {
   return std::any_of(chosen.begin(), chosen.end(),
-                     [&](std::size_t group) { return candidates[group].effect.id == effect; });
+                     [&](std::size_t group) { return candidates[group].id == effect; });
+}
+
+/// What a set of effects, with one of them in place of another, is less likely than the set that was chosen.
+struct Rival {
+  std::size_t group;
+  double less;  ///< in the logarithm of the marginal likelihood
+};
+
+/// The groups that may stand in the place of one that was chosen. The shape of an effect in nature is that of
+/// the catalogue to a tenth or so, so that of a strong effect a rival may be better by chance.
+std::vector<Rival> rivals_of(const Analysis& analysis, const std::vector<Candidate>& candidates,
+                             std::size_t winner, const std::vector<std::size_t>& chosen) {
+  constexpr double doubt_of_shape = 0.1;
+  const Search& search = analysis.search();
+  const double best = search.evidence(chosen);
+  const double margin =
+      0.5 * (alias_margin + doubt_of_shape * doubt_of_shape * search.score(winner, chosen).chi2);
+  std::vector<std::size_t> others = chosen;
+  others.erase(std::find(others.begin(), others.end(), winner));
+  std::vector<Rival> rivals;
+  for (std::size_t g = 0; g < candidates.size(); ++g) {
+    if (g == winner || search.is_absorbed(g) || is_one_of(candidates[g].id, others, candidates)) continue;
+    if (!search.score(g, others).possible) continue;
+    std::vector<std::size_t> instead = others;
+    instead.push_back(g);
+    const double less = best - search.evidence(instead);
+    if (less < margin) rivals.push_back({g, less});
+  }
+  return rivals;
 }
 
 std::vector<Alias> aliases_of(const Analysis& analysis, const std::vector<Candidate>& candidates,
-                              std::size_t winner, const std::vector<std::size_t>& chosen) {
+                              std::size_t winner, const std::vector<std::size_t>& chosen,
+                              const std::vector<Rival>& rivals) {
   const Search& search = analysis.search();
   const GroupScore best = search.score(winner, chosen);
   std::vector<std::size_t> others = chosen;
   others.erase(std::find(others.begin(), others.end(), winner));
   std::vector<Alias> aliases;
-  for (std::size_t g = 0; g < candidates.size(); ++g) {
-    if (search.is_absorbed(g) || std::find(chosen.begin(), chosen.end(), g) != chosen.end()) continue;
-    if (is_one_of(candidates[g].effect.id, chosen, candidates)) continue;
+  for (const Rival& rival : rivals) {
+    const std::size_t g = rival.group;
+    if (candidates[g].id == candidates[winner].id) continue;
     const GroupScore score = search.score(g, others);
-    // Each direction explains one unit of noise.
-    const double less = (best.chi2 - best.freedom) - (score.chi2 - score.freedom);
-    if (!score.possible || less > alias_margin) continue;
     Alias alias;
-    alias.effect = candidates[g].effect.id;
+    alias.effect = candidates[g].id;
     alias.title = candidates[g].title;
     alias.correlation = search.correlation(winner, g, others);
-    alias.chi2_less = less;
+    // Each direction explains one unit of noise.
+    alias.chi2_less = (best.chi2 - best.freedom) - (score.chi2 - score.freedom);
+    alias.log_likelihood_less = rival.less;
     alias.estimates = estimates_of(candidates[g], search.told(g), score.estimate, score.covariance);
     const Estimate& first = alias.estimates.front();
     if (first.typical != 0.0) alias.size_to_usual = first.value / first.typical;
     aliases.push_back(std::move(alias));
   }
   std::sort(aliases.begin(), aliases.end(),
-            [](const Alias& a, const Alias& b) { return a.chi2_less < b.chi2_less; });
+            [](const Alias& a, const Alias& b) { return a.log_likelihood_less < b.log_likelihood_less; });
   // Of an effect in several shapes the best one stands for all.
   std::set<std::string> seen;
   aliases.erase(std::remove_if(aliases.begin(), aliases.end(),
@@ -133,8 +163,9 @@ std::vector<Alias> aliases_of(const Analysis& analysis, const std::vector<Candid
 }
 
 /// Whether an effect there is part of the corrected static pressure.
-bool corrects_static_pressure(const ModelEffect& effect) {
-  const Where where = effect.is_formula() ? effect.where : effect_facts[effect_named(effect.id)].where;
+bool corrects_static_pressure(const Candidate& candidate) {
+  if (candidate.is_of_reference()) return false;
+  const Where where = where_of(candidate.effect);
   return where == Where::static_defect || where == Where::static_line || where == Where::static_transducer;
 }
 
@@ -150,7 +181,7 @@ std::vector<double> static_change(const Analysis& analysis, const std::vector<Ca
   Eigen::Index place = analysis.base();
   for (const std::size_t group : groups) {
     const Eigen::Index count = analysis.groups()[group].count;
-    if (!corrects_static_pressure(candidates[group].effect)) with.segment(place, count).setZero();
+    if (!corrects_static_pressure(candidates[group])) with.segment(place, count).setZero();
     place += count;
   }
   std::vector<double> change;
@@ -174,7 +205,7 @@ double static_risk(const Analysis& analysis, const std::vector<Candidate>& candi
   double risk = 0.0;
   for (std::size_t g = 0; g < candidates.size(); ++g) {
     const bool is_alias = std::any_of(aliases.begin(), aliases.end(), [&](const Alias& alias) {
-      return alias.effect == candidates[g].effect.id && !candidates[g].is_variant;
+      return alias.effect == candidates[g].id && !candidates[g].is_variant;
     });
     if (!is_alias) continue;
     std::vector<std::size_t> instead = chosen;
@@ -186,15 +217,17 @@ double static_risk(const Analysis& analysis, const std::vector<Candidate>& candi
   return risk;
 }
 
-/// Its rms and its extreme over all records used.
+/// Its rms and its extreme over all records used: against the first reference, or, of an effect on the other
+/// system, against those that see it.
 void measure(const Analysis& analysis, const std::vector<std::size_t>& chosen, std::size_t which,
              const Eigen::VectorXd& estimate, Finding& finding) {
   double squares = 0.0;
   double count = 0.0;
-  for (std::size_t f = 0; f < analysis.flights().size(); ++f) {
+  for (std::size_t f = 0; f < analysis.flight_count(); ++f) {
+    if ((analysis.flight(f).reference != 0) != finding.of_reference) continue;
     const std::vector<double> added = analysis.added_by(f, chosen, which, estimate);
-    const FlightSamples& samples = *analysis.flights()[f].samples;
-    for (const std::size_t record : analysis.bins()[f].records()) {
+    const FlightSamples& samples = *analysis.flight(f).samples;
+    for (const std::size_t record : analysis.bins(f).records()) {
       squares += added[record] * added[record];
       count += 1.0;
       if (std::abs(added[record]) <= std::abs(finding.worst)) continue;
@@ -203,7 +236,61 @@ void measure(const Analysis& analysis, const std::vector<std::size_t>& chosen, s
       finding.worst_time = samples.time[record];
     }
   }
-  finding.rms = std::sqrt(squares / count);
+  finding.rms = count > 0.0 ? std::sqrt(squares / count) : 0.0;
+}
+
+/// What shape a candidate is tried in, in words; empty in that of the catalogue.
+std::string shape_of(const Candidate& candidate) {
+  if (!candidate.is_variant) return "";
+  if (candidate.is_shared) return "alike on the other system";
+  if (candidate.memory > 0.0) return fmt::format("with a memory of {:g} s", candidate.memory);
+  const Scaling& scaling = candidate.effect.scaling;
+  if (!scaling.is_none())
+    return fmt::format("times p^{} q^{}", scaling.static_pressure, scaling.dynamic_pressure);
+  const EffectFacts& facts = effect_facts[effect_named(candidate.effect.id)];
+  std::string text;
+  for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
+    if (!facts.parameters[i].shape) continue;
+    const std::string_view unit = facts.parameters[i].unit;
+    text += fmt::format("{}{} = {:g}{}{}", text.empty() ? "" : ", ", facts.parameters[i].name,
+                        candidate.effect.parameters[i], unit == "1" ? "" : " ", unit == "1" ? "" : unit);
+  }
+  return text;
+}
+
+std::string place_of(const Candidate& candidate) {
+  if (candidate.is_of_reference()) return "other-system";
+  const std::size_t known = effect_named(candidate.effect.id);
+  return std::string(known < catalogue_size ? pcor::place_of(effect_facts[known])
+                                            : facts_of(candidate.effect.where).place);
+}
+
+/// Family, places, shapes, size and probability of a finding.
+void describe(const std::vector<Candidate>& candidates, std::size_t winner, const std::vector<Rival>& rivals,
+              Finding& finding) {
+  const Candidate& own = candidates[winner];
+  const std::size_t known = effect_named(own.effect.id);
+  if (known < catalogue_size) finding.family = std::string(effect_facts[known].family);
+  finding.shape = shape_of(own);
+  finding.places = {place_of(own)};
+  std::map<std::string, double> weights{{own.id, 1.0}};
+  for (const Rival& rival : rivals) {
+    const Candidate& candidate = candidates[rival.group];
+    if (candidate.id == own.id) finding.variants.push_back(shape_of(candidate));
+    const std::string place = place_of(candidate);
+    if (std::find(finding.places.begin(), finding.places.end(), place) == finding.places.end())
+      finding.places.push_back(place);
+    double& weight = weights[candidate.id];
+    weight = std::max(weight, std::exp(-rival.less));
+  }
+  double sum = 0.0;
+  for (const auto& [id, weight] : weights) sum += weight;
+  finding.probability = weights[own.id] / sum;
+  for (Alias& alias : finding.aliases) alias.probability = weights[alias.effect] / sum;
+  for (const Estimate& estimate : finding.estimates) {
+    if (estimate.typical != 0.0)
+      finding.times_usual = std::max(finding.times_usual, std::abs(estimate.value / estimate.typical));
+  }
 }
 
 }  // namespace
@@ -232,6 +319,7 @@ std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Can
     const Eigen::Index count = as_index(candidate.tested.size());
     Finding finding;
     finding.effect = candidate.effect;
+    finding.of_reference = candidate.is_of_reference();
     finding.title = candidate.title;
     const std::vector<Eigen::Index>& told = analysis.search().told(group);
     finding.estimates = estimates_of(candidate, told, estimate.segment(place, count),
@@ -255,12 +343,14 @@ std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Can
     std::sort(events.begin(), events.end(),
               [](const Event& a, const Event& b) { return a.evidence > b.evidence; });
     for (std::size_t k = 0; k < std::min(events.size(), most_evidence); ++k) {
-      const FlightSamples& samples = *analysis.flights()[events[k].flight].samples;
+      const FlightSamples& samples = *analysis.flight(events[k].flight).samples;
       finding.evidence.push_back({samples.name, events[k].begin, events[k].end,
                                   regimes_between(samples, events[k].begin, events[k].end),
                                   events[k].evidence / evidence.cwiseMax(0.0).sum()});
     }
-    finding.aliases = aliases_of(analysis, candidates, group, chosen);
+    const std::vector<Rival> rivals = rivals_of(analysis, candidates, group, chosen);
+    finding.aliases = aliases_of(analysis, candidates, group, chosen, rivals);
+    describe(candidates, group, rivals, finding);
     finding.static_change = rms_of(static_change(analysis, candidates, chosen));
     finding.static_risk = static_risk(analysis, candidates, group, chosen, finding.aliases);
     findings.push_back(std::move(finding));
@@ -269,7 +359,7 @@ std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Can
 }
 
 std::vector<std::vector<double>> evidence_along(const Analysis& analysis, std::size_t flight) {
-  const Binning& bins = analysis.bins()[flight];
+  const Binning& bins = analysis.bins(flight);
   std::vector<std::vector<double>> along;
   for (const std::size_t group : analysis.result().chosen) {
     const Eigen::VectorXd evidence = evidence_of(analysis, group, analysis.result().chosen);
@@ -289,7 +379,7 @@ std::vector<AbsorbedEffect> absorbed_of(const Analysis& analysis, const std::vec
   for (std::size_t g = 0; g < candidates.size(); ++g) {
     if (!analysis.search().is_absorbed(g) || candidates[g].is_variant) continue;
     AbsorbedEffect effect;
-    effect.effect = candidates[g].effect.id;
+    effect.effect = candidates[g].id;
     effect.title = candidates[g].title;
     effect.remaining = analysis.search().remaining(g);
     // The coefficients whose columns, in the fit to the effect's, are large.
@@ -315,16 +405,16 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
   std::vector<UpperLimit> limits;
   for (std::size_t g = 0; g < candidates.size(); ++g) {
     if (search.is_absorbed(g) || candidates[g].is_variant) continue;
-    if (is_one_of(candidates[g].effect.id, chosen, candidates)) continue;
+    if (is_one_of(candidates[g].id, chosen, candidates)) continue;
     const auto is_alias = [&](const Finding& finding) {
       return std::any_of(finding.aliases.begin(), finding.aliases.end(),
-                         [&](const Alias& alias) { return alias.effect == candidates[g].effect.id; });
+                         [&](const Alias& alias) { return alias.effect == candidates[g].id; });
     };
     if (std::any_of(findings.begin(), findings.end(), is_alias)) continue;
     const GroupScore score = search.score(g, chosen);
     if (score.freedom == 0.0) continue;
     UpperLimit limit;
-    limit.effect = candidates[g].effect.id;
+    limit.effect = candidates[g].id;
     limit.title = candidates[g].title;
     limit.estimates = estimates_of(candidates[g], search.told(g), score.estimate, score.covariance);
     bool seen = false;  // any coefficient better than by its bounds

@@ -37,6 +37,7 @@ std::vector<double> all_given(const FlightColumns& flight) {
 bool can_be_tested(const std::vector<FlightColumns>& flights, Eigen::Index first, Eigen::Index count) {
   bool varies = false;
   for (const FlightColumns& flight : flights) {
+    if (flight.reference != 0) continue;
     const std::vector<double> given = all_given(flight);
     for (std::size_t i = 0; i < given.size(); ++i) {
       if (std::isnan(given[i])) continue;
@@ -76,6 +77,7 @@ FlapsCandidates find_flaps_candidates(const CandidateSet& set, const std::vector
   FlapsCandidates flaps;
   std::size_t samples = 0;
   for (const FlightColumns& flight : flights) {
+    if (flight.reference != 0) continue;
     samples += static_cast<std::size_t>(std::count_if(flight.flaps_out.begin(), flight.flaps_out.end(),
                                                       [](double x) { return !std::isnan(x); }));
   }
@@ -108,7 +110,8 @@ void diagnose_flaps(const Analysis& analysis, const FlapsCandidates& flaps, std:
   test.search().fit(chosen, estimate, covariance);
   std::vector<std::string> tested;
   for (std::size_t i = 0; i < flaps.candidates.size(); ++i) {
-    if (flaps.reads_flaps[i]) tested.push_back(flaps.candidates[i].effect.id);
+    if (flaps.reads_flaps[i] && !flaps.candidates[i].is_variant)
+      tested.push_back(flaps.candidates[i].effect.id);
   }
   const auto is_tested = [&tested](const std::string& effect) {
     return std::find(tested.begin(), tested.end(), effect) != tested.end();

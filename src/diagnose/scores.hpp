@@ -7,8 +7,8 @@
 
 namespace pcor::internal {
 
-/// Whitened columns and residuals of all flights, and the sums that a search needs: those of a generalised
-/// least-squares problem.
+/// Whitened columns and residuals of all flights, each against each of its references, and the sums that a
+/// search needs: those of a generalised least-squares problem.
 struct Scores {
   std::vector<Eigen::MatrixXd> rows{};             ///< of each flight, whitened columns and last the residual
   std::vector<std::vector<Eigen::Index>> block{};  ///< of each flight, the number of the minute of each row
@@ -23,8 +23,25 @@ struct Scores {
   Eigen::VectorXd left(std::size_t flight, const Eigen::VectorXd& coefficients) const;
 };
 
-/// @param columns of each flight, in bins; @param residuals likewise, hPa
+/// @param columns of each flight, in bins; @param residuals likewise, hPa; @param noise likewise, each of one
+/// flight alone
+Scores find_scores(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
+                   const std::vector<Eigen::VectorXd>& residuals, const std::vector<NoiseModel>& noise);
+
+/// The same with one noise for all flights.
 Scores find_scores(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
                    const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise);
+
+/// Takes out of the rows of `later` what their noise has in common with that of `earlier`, the same flight
+/// against another reference: both hold the noise of the aircraft's own sensors. What is left of the rows
+/// stays in units of the noise.
+///
+/// @param noise what is left of the whitened residual of each flight when all that was found is taken off; of
+/// the later one without what is common, from here on
+void take_out_common_noise(const std::vector<Binning>& bins, std::size_t earlier, std::size_t later,
+                           std::vector<Eigen::VectorXd>& noise, Scores& scores);
+
+/// Sums the rows of all flights.
+void sum_up(Scores& scores);
 
 }  // namespace pcor::internal

@@ -3,10 +3,12 @@
 #include <boost/random/normal_distribution.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <random>
+#include <utility>
 
 #include "numerics/chi_squared.hpp"
 #include "numerics/decompositions.hpp"
@@ -15,12 +17,21 @@
 namespace pcor::internal {
 namespace {
 
-constexpr double absorbed_below = 5e-3;   // of a variance: 7 % of the amplitude
-constexpr double redundant_below = 1e-3;  // of what the base leaves, given others
+constexpr double absorbed_below = 1e-6;       // of a variance: what rounding of single precision leaves of it
+constexpr double like_the_base_below = 0.02;  // the same for an effect that the base has by other sensors
+constexpr double redundant_below = 1e-3;      // of what the base leaves, given others
 constexpr double errors_beyond_bounds = 2.0;
 constexpr double least_share = 0.08;  // of the rms that is explained already, for one more effect
 constexpr double enough_blocks = 12.0;
 constexpr double few_blocks_penalty = 6.0;
+
+// Sizes of effects: three times the usual one is a standard deviation; a part of all effects is larger.
+constexpr double spread_of_sizes = 3.0;
+struct Tail {
+  double times;
+  double share;
+};
+constexpr std::array<Tail, 3> tails{{{1.0, 0.75}, {3.0, 0.2}, {10.0, 0.05}}};
 
 /// `one_degree_equivalent` from a table: draws ask for it thousands of times.
 class EquivalentTable {
@@ -87,10 +98,9 @@ Search::Search(const Scores& scores, Eigen::Index base, const std::vector<Column
       scale_.asDiagonal() * information.topLeftCorner(columns, columns) * scale_.asDiagonal();
   const Eigen::VectorXd right = scale_.asDiagonal() * information.col(columns).head(columns);
   const Eigen::MatrixXd inverse = pseudo_inverse(scaled.topLeftCorner(base, base), 1e-12);
-  base_solution_ = inverse * scaled.topRightCorner(base, tested);
-  const Eigen::MatrixXd after =
-      scaled.bottomRightCorner(tested, tested) - scaled.bottomLeftCorner(tested, base) * base_solution_;
-  const Eigen::VectorXd score = right.tail(tested) - base_solution_.transpose() * right.head(base);
+  const Eigen::MatrixXd solution = inverse * scaled.topRightCorner(base, tested);
+  left_ = scaled.bottomRightCorner(tested, tested) - scaled.bottomLeftCorner(tested, base) * solution;
+  left_score_ = right.tail(tested) - solution.transpose() * right.head(base);
   squares_ = information(columns, columns) - right.head(base).dot(inverse * right.head(base));
 
   // What the base imitates has nothing to do with drift: a drift that is likely hides slow columns, but they
@@ -106,7 +116,7 @@ Search::Search(const Scores& scores, Eigen::Index base, const std::vector<Column
 
   Eigen::Index width = 0;
   for (const ColumnGroup& group : groups) {
-    const Eigen::MatrixXd own = after.block(group.first, group.first, group.count, group.count);
+    const Eigen::MatrixXd own = left_.block(group.first, group.first, group.count, group.count);
     std::vector<Eigen::Index>& told = told_.emplace_back();
     remaining_.push_back(0.0);
     // After the base and the columns that are told already.
@@ -115,7 +125,7 @@ Search::Search(const Scores& scores, Eigen::Index base, const std::vector<Column
       Eigen::Index next = 0;
       const double most = left.diagonal().maxCoeff(&next);
       if (told.empty()) remaining_.back() = std::clamp(most, 0.0, 1.0);
-      if (!(most > absorbed_below)) break;
+      if (!(most > (group.is_like_the_base ? like_the_base_below : absorbed_below))) break;
       told.push_back(next);
       left -= Eigen::MatrixXd(left.col(next) * left.row(next) / most);
       for (const Eigen::Index column : told) left(column, column) = 0.0;
@@ -136,8 +146,8 @@ Search::Search(const Scores& scores, Eigen::Index base, const std::vector<Column
   for (std::size_t g = 0; g < groups.size(); ++g) {
     turn.block(groups[g].first, begin_[g], groups[g].count, turned_[g].cols()) = turned_[g];
   }
-  information_ = turn.transpose() * after * turn;
-  score_ = turn.transpose() * score;
+  information_ = turn.transpose() * left_ * turn;
+  score_ = turn.transpose() * left_score_;
 }
 
 std::vector<Eigen::Index> Search::places_of(const std::vector<std::size_t>& groups) const {
@@ -338,38 +348,104 @@ bool Search::all_possible(const std::vector<std::size_t>& chosen) const {
   });
 }
 
-void Search::improve(std::vector<std::size_t>& chosen) const {
-  // The penalty of the criterion of Akaike for each direction, as scores have the noise in them already.
-  const auto merit = [this](const std::vector<std::size_t>& set) {
-    const std::vector<Eigen::Index> places = places_of(set);
-    const Eigen::VectorXd score = score_(places);
-    return score.dot(pseudo_inverse(information_(places, places), redundant_below) * score) /
-               given(set).variance -
-           2.0 * static_cast<double>(places.size());
+Eigen::VectorXd Search::precision_of(std::size_t group, double times) const {
+  const ColumnGroup& columns = groups_[group];
+  // A size that nobody knows: as much as all the rest of the residual.
+  Eigen::VectorXd precision =
+      Eigen::VectorXd::Constant(columns.count, 1.0 / static_cast<double>(scores_->row_count()));
+  for (std::size_t k = 0; k < columns.usual.size(); ++k) {
+    if (columns.usual[k] == 0.0) continue;
+    const double deviation = spread_of_sizes * columns.usual[k] * times;
+    const double scaled = scale_[base_ + columns.first + as_index(k)] / deviation;
+    precision[as_index(k)] = scaled * scaled;
+  }
+  return precision;
+}
+
+double Search::log_ratio(const std::vector<Eigen::Index>& columns, const Eigen::VectorXd& precision) const {
+  const Eigen::VectorXd deviation = precision.cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd inner = deviation.asDiagonal() * left_(columns, columns) * deviation.asDiagonal();
+  const Eigen::LLT<Eigen::MatrixXd> factor(Eigen::MatrixXd::Identity(inner.rows(), inner.cols()) + inner);
+  const Eigen::VectorXd right = deviation.cwiseProduct(left_score_(columns));
+  const double explained = right.dot(factor.solve(right));
+  const double freedom = static_cast<double>(scores_->row_count()) - static_cast<double>(base_);
+  const double determinant = factor.matrixLLT().diagonal().array().log().sum();
+  return -0.5 * freedom * std::log1p(-std::min(explained / squares_, 1.0 - 1e-12)) - determinant;
+}
+
+double Search::evidence(const std::vector<std::size_t>& set) const {
+  std::vector<Eigen::Index> columns;
+  std::vector<Eigen::Index> begin;
+  for (const std::size_t group : set) {
+    begin.push_back(as_index(columns.size()));
+    for (const Eigen::Index column : told_[group]) columns.push_back(groups_[group].first + column);
+  }
+  if (columns.empty()) return 0.0;
+  Eigen::VectorXd precision(as_index(columns.size()));
+  const auto choose = [&](std::size_t i, const Tail& tail) {
+    precision.segment(begin[i], as_index(told_[set[i]].size())) =
+        precision_of(set[i], tail.times)(told_[set[i]]);
+  };
+  std::vector<double> share(set.size(), std::log(tails.front().share));
+  for (std::size_t i = 0; i < set.size(); ++i) choose(i, tails.front());
+  double best = log_ratio(columns, precision);
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    const Tail* chosen = &tails.front();
+    for (const Tail& tail : tails) {
+      choose(i, tail);
+      const double value = log_ratio(columns, precision);
+      if (value + std::log(tail.share) <= best + share[i]) continue;
+      best = value;
+      share[i] = std::log(tail.share);
+      chosen = &tail;
+    }
+    choose(i, *chosen);
+  }
+  return best + std::accumulate(share.begin(), share.end(), 0.0);
+}
+
+void Search::improve(std::vector<std::size_t>& chosen, double price) const {
+  const auto merit = [&](const std::vector<std::size_t>& set) {
+    return evidence(set) - price * static_cast<double>(set.size());
   };
   double best = merit(chosen);
-  const auto consider = [&](const std::vector<std::size_t>& set) {
-    const double value = merit(set);
-    if (!(value > best) || !all_possible(set)) return;
-    best = value;
-    chosen = set;
-  };
-  if (chosen.size() == 2) {
-    for (std::size_t a = 0; a < groups_.size(); ++a) {
-      for (std::size_t b = 0; b < a; ++b) {
-        if (!is_absorbed(a) && !is_absorbed(b)) consider({a, b});
+  for (bool moved = true; moved;) {
+    moved = false;
+    const std::vector<std::size_t> now = chosen;
+    const auto consider = [&](const std::vector<std::size_t>& set) {
+      const double value = merit(set);
+      if (!(value > best) || !all_possible(set)) return;
+      best = value;
+      chosen = set;
+      moved = true;
+    };
+    for (const std::size_t out : now) {
+      const std::vector<std::size_t> rest = without(now, out);
+      consider(rest);
+      for (std::size_t in = 0; in < groups_.size(); ++in) {
+        if (is_absorbed(in) || is_in(in, now)) continue;
+        std::vector<std::size_t> set = rest;
+        set.push_back(in);
+        consider(set);
+        for (const std::size_t other : rest) {
+          if (other < out) consider(without(set, other));
+        }
       }
     }
-    return;
   }
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    const std::vector<std::size_t> now = chosen;
-    for (std::size_t other = 0; other < groups_.size(); ++other) {
-      if (is_absorbed(other) || is_in(other, now)) continue;
-      std::vector<std::size_t> set = now;
-      set[i] = other;
-      consider(set);
-    }
+}
+
+void Search::prefer_usual_shapes(std::vector<std::size_t>& chosen) const {
+  constexpr double told = 4.5;  // of the logarithm of the likelihood: chi2 of 9
+  for (std::size_t& group : chosen) {
+    const auto usual = std::find_if(groups_.begin(), groups_.end(), [&](const ColumnGroup& each) {
+      return each.effect == groups_[group].effect;
+    });
+    const auto first = static_cast<std::size_t>(usual - groups_.begin());
+    if (first == group || is_absorbed(first)) continue;
+    const double as_it_is = evidence(chosen);
+    const std::size_t shape = std::exchange(group, first);
+    if (evidence(chosen) < as_it_is - told || !all_possible(chosen)) group = shape;
   }
 }
 
@@ -384,16 +460,25 @@ SearchResult Search::run(const SearchOptions& options) const {
     result.threshold = std::numeric_limits<double>::infinity();
     return result;
   }
+  // One of so many effects: each of a set has to be paid for by the flights.
+  const double price = std::log(static_cast<double>(open.size()));
+  std::vector<std::vector<std::size_t>> seen;
   while (true) {
     const Conditional conditional = given(chosen);
     std::vector<std::size_t> rest;
     std::size_t winner = groups_.size();
+    double most = 0.0;
     GroupScore best;
     for (const std::size_t group : open) {
       if (is_in(group, chosen) || is_taken(group, chosen)) continue;
       rest.push_back(group);
       const GroupScore score = score_in(conditional, group);
-      if (!score.possible || (winner != groups_.size() && score.equivalent <= best.equivalent)) continue;
+      if (!score.possible) continue;
+      std::vector<std::size_t> with = chosen;
+      with.push_back(group);
+      const double value = evidence(with);
+      if (winner != groups_.size() && value <= most) continue;
+      most = value;
       best = score;
       winner = group;
     }
@@ -405,8 +490,11 @@ SearchResult Search::run(const SearchOptions& options) const {
     if (!options.threshold && !(best.equivalent > level(winner, chosen, threshold))) break;
     if (best.chi2 < least_share * least_share * (options.explained + explained(chosen))) break;
     chosen.push_back(winner);
-    if (chosen.size() >= 2) improve(chosen);
+    improve(chosen, price);
+    if (std::find(seen.begin(), seen.end(), chosen) != seen.end()) break;
+    seen.push_back(chosen);
   }
+  if (!options.threshold) prefer_usual_shapes(chosen);
   for (bool pruned = true; pruned;) {
     pruned = false;
     for (const std::size_t group : std::vector<std::size_t>(chosen)) {
@@ -458,10 +546,18 @@ void Search::fit(const std::vector<std::size_t>& chosen, Eigen::VectorXd& estima
     size += groups_[group].count;
   }
   const Eigen::VectorXd scale = scale_(places);
-  const Eigen::MatrixXd inverse =
-      scale.asDiagonal() *
-      pseudo_inverse(scale.asDiagonal() * scores_->information(places, places) * scale.asDiagonal(), 1e-11) *
-      scale.asDiagonal();
+  Eigen::MatrixXd scaled = scale.asDiagonal() * scores_->information(places, places) * scale.asDiagonal();
+  Eigen::Index place = base_;
+  for (const std::size_t group : chosen) {
+    const Eigen::VectorXd precision = precision_of(group, tails.back().times);
+    for (const Eigen::Index column : told_[group]) {
+      const auto k = static_cast<std::size_t>(column);
+      if (k < groups_[group].usual.size() && groups_[group].usual[k] != 0.0)
+        scaled(place, place) += precision[column];
+      ++place;
+    }
+  }
+  const Eigen::MatrixXd inverse = scale.asDiagonal() * pseudo_inverse(scaled, 1e-11) * scale.asDiagonal();
   estimate = Eigen::VectorXd::Zero(size);
   estimate(out) = inverse * scores_->information.col(scores_->columns())(places);
   covariance = Eigen::MatrixXd::Zero(size, size);

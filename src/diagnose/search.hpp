@@ -16,6 +16,11 @@ struct ColumnGroup {
   Eigen::Index count = 0;
   std::size_t effect = 0;        ///< groups of one effect, in several shapes, exclude each other
   std::vector<Bounds> bounds{};  ///< of each column's coefficient; an effect beyond them is impossible
+  /// Of the family and the place of an effect of the base: what differs of the two may be the noise of their
+  /// sensors.
+  bool is_like_the_base = false;
+  /// As large as each coefficient is met in practice; 0, or nothing, where nobody knows.
+  std::vector<double> usual{};
 };
 
 struct SearchOptions {
@@ -52,7 +57,7 @@ class Search {
 
   /// The part of a group's variance that the base leaves, of its best direction. 0 to 1.
   double remaining(std::size_t group) const { return remaining_[group]; }
-  /// A group of which the base leaves so little is absorbed: it is not searched for.
+  /// A group of which the base leaves nothing that could be seen is absorbed: it is not searched for.
   bool is_absorbed(std::size_t group) const { return turned_[group].cols() == 0; }
 
   /// The columns of a group that base and the group's other columns do not imitate, counted within it. The
@@ -64,12 +69,19 @@ class Search {
   /// The score of a group beside the others of a set (itself left out of it).
   GroupScore score(std::size_t group, const std::vector<std::size_t>& others) const;
 
+  /// By how much the flights make a set of effects more likely than none: the logarithm of the ratio of the
+  /// marginal likelihoods, in which the size of the noise and the coefficients are averaged over, the model's
+  /// own with all sizes alike, those of the effects with sizes about the usual ones. An effect of ten times
+  /// its usual size is not impossible, but needs more of the flights than a usual one (the tails are those of
+  /// a mixture of normal distributions).
+  double evidence(const std::vector<std::size_t>& set) const;
+
   /// Of what base and `others` leave of two groups, the largest correlation, with sign where both have one
   /// column.
   double correlation(std::size_t a, std::size_t b, const std::vector<std::size_t>& others) const;
 
   /// Estimates and covariance of base and chosen columns together, in the order base, then the columns of
-  /// the groups as given.
+  /// the groups as given. What the flights hardly see of an effect has its usual size for an error.
   void fit(const std::vector<std::size_t>& chosen, Eigen::VectorXd& estimate,
            Eigen::MatrixXd& covariance) const;
 
@@ -106,7 +118,12 @@ class Search {
   /// By minutes, the noise in the score of a group: what is left of it when its effect is taken off.
   Eigen::VectorXd own_noise(std::size_t group, const std::vector<std::size_t>& others) const;
   double effective_blocks(std::size_t group, const std::vector<std::size_t>& others) const;
-  void improve(std::vector<std::size_t>& chosen) const;
+  /// Gives each effect its first shape, that of the catalogue, where the flights do not tell another.
+  void prefer_usual_shapes(std::vector<std::size_t>& chosen) const;
+  /// Exchanges, joins and drops effects for as long as that makes the set more likely.
+  void improve(std::vector<std::size_t>& chosen, double price) const;
+  double log_ratio(const std::vector<Eigen::Index>& columns, const Eigen::VectorXd& precision) const;
+  Eigen::VectorXd precision_of(std::size_t group, double times) const;
   double explained(const std::vector<std::size_t>& chosen) const;
   bool is_taken(std::size_t group, const std::vector<std::size_t>& chosen) const;
   bool all_possible(const std::vector<std::size_t>& chosen) const;
@@ -119,8 +136,9 @@ class Search {
   std::vector<std::vector<Eigen::Index>> told_;
   std::vector<Eigen::MatrixXd> turned_;  // scaled columns of a group to its directions
   std::vector<Eigen::Index> begin_;      // of each group among the turned columns
-  Eigen::MatrixXd base_solution_;        // scaled candidates on scaled base
-  Eigen::MatrixXd information_;          // of turned columns after the base
+  Eigen::MatrixXd left_;                 // information of scaled candidates after the base
+  Eigen::VectorXd left_score_;
+  Eigen::MatrixXd information_;  // the same of turned columns
   Eigen::VectorXd score_;
   double squares_ = 0.0;
 };

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <pcor/physics/constants.hpp>
 #include <pcor/words/error.hpp>
+#include "numerics/missing.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -110,6 +112,7 @@ TestedVariable read_variable(const std::vector<Flight>& files, const std::vector
   variable.unit = info.units;
   variable.description = info.long_name;
   variable.in_file = true;
+  variable.may_be_cause = true;
   if (info.rate > 1) variable.sampling = fmt::format("means of {} samples a record", info.rate);
   const double turn = turn_of(info);
   std::vector<Values> of_files;
@@ -126,6 +129,25 @@ TestedVariable read_variable(const std::vector<Flight>& files, const std::vector
   }
   if (turn > 0.0 && takes_all_directions(of_files, turn)) variable.turn = turn;
   for (const std::size_t file : file_of_flight) variable.values.push_back(of_files[file]);
+  return variable;
+}
+
+/// The climb that the aircraft flies or could fly for its acceleration, m/s: vertical speed + V/g dV/dt. It
+/// is thrust less drag over weight, times V, and so goes with what the engines do.
+TestedVariable specific_excess_power(const std::vector<FlightColumns>& flights) {
+  TestedVariable variable;
+  variable.name = "specific excess power";
+  variable.unit = "m/s";
+  variable.description = "vertical speed and acceleration together, as the power of the engines makes them";
+  variable.may_be_cause = true;
+  for (const FlightColumns& flight : flights) {
+    const FlightMotion& motion = flight.samples->motion;
+    const std::vector<double>* const rate = flight.samples->model.find(Quantity::airspeed_rate);
+    auto values = std::make_shared<std::vector<double>>(flight.given.size(), nan);
+    for (std::size_t i = 0; i < values->size() && rate != nullptr && !motion.vertical_speed.empty(); ++i)
+      (*values)[i] = motion.vertical_speed[i] + motion.airspeed[i] / constants::standard_gravity * (*rate)[i];
+    variable.values.push_back(std::move(values));
+  }
   return variable;
 }
 
@@ -157,6 +179,7 @@ std::vector<TestedVariable> flown_variables(const std::vector<FlightColumns>& fl
     return flight.corrected_pressure;
   });
   result.push_back(product("attack times Mach number", flights, Quantity::attack, Quantity::corrected_mach));
+  result.push_back(specific_excess_power(flights));
   result.push_back(
       product("sideslip times Mach number", flights, Quantity::sideslip, Quantity::corrected_mach));
   return result;

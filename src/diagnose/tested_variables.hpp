@@ -16,6 +16,8 @@ struct TestedVariable {
   std::string unit{};
   std::string description{};
   bool in_file = false;
+  /// Whether a line in it may be a cause by itself: what is recorded, and the power that the aircraft has.
+  bool may_be_cause = false;
   double turn = 0.0;  ///< of an angle that takes all directions, in its unit; 0 for what is none
   /// Whether a curve against it may bend many times, as over heights and speeds it does; of what is rarely
   /// far from its mean, such a curve describes the noise of a few samples.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <set>
@@ -176,20 +177,33 @@ struct Tested {
   }
 };
 
-/// Whether a line in one variable explains more than all chosen effects. A line that any of many variables
-/// may win with has to be that much better.
-bool line_overrules(const Analysis& analysis, const std::vector<std::size_t>& chosen, const Tested& tested) {
+/// Whether a line in one variable is likelier than all chosen effects: one that explains a tenth more than an
+/// effect does, or, since causes rarely come together, one that does the work of several. A line that any of
+/// many variables may win with has to be that much better. What an effect reads is no rival of it.
+bool line_overrules(const Analysis& analysis, const std::vector<std::size_t>& chosen, const Tested& tested,
+                    const std::set<std::string>& inputs) {
+  if (tested.variables.empty()) return false;
+  const Search& search = analysis.search();
+  const auto rows = static_cast<double>(analysis.scores().row_count());
+  const double choices = std::log(static_cast<double>(tested.variables.size()));
   double by_effects = 0.0;
-  for (const std::size_t group : chosen) by_effects += analysis.search().score(group, {}).freedom;
-  const double together = (analysis.search().variance({}) / analysis.search().variance(chosen) - 1.0) *
-                          static_cast<double>(analysis.scores().row_count());
-  const double margin = 9.0 + 2.0 * std::log(static_cast<double>(tested.variables.size()));
+  for (const std::size_t group : chosen) by_effects += search.score(group, {}).freedom;
+  const double together = (search.variance({}) / search.variance(chosen) - 1.0) * rows;
   double line = 0.0;
   for (std::size_t i = 0; i < tested.variables.size(); ++i) {
-    if (tested.variables[i]->in_file) line = std::max(line, tested.test.structures()[i].line_chi2);
+    const TestedVariable& variable = *tested.variables[i];
+    if (variable.may_be_cause && inputs.count(variable.name) == 0)
+      line = std::max(line, tested.test.structures()[i].line_chi2);
+  }
+  if (chosen.size() > 1) {
+    const double likelihood = -0.5 * rows * std::log1p(-std::min(line / rows, 0.999)) - 0.5 * std::log(rows);
+    const double price = std::log(static_cast<double>(analysis.groups().size()));
+    if (likelihood - choices > search.evidence(chosen) - price * static_cast<double>(chosen.size()))
+      return true;
   }
   // Both in units of the noise that all effects leave.
-  line *= analysis.search().variance({}) / analysis.search().variance(chosen);
+  line *= search.variance({}) / search.variance(chosen);
+  const double margin = 9.0 + 2.0 * choices;
   return line - 1.0 > least_gain * (together - by_effects) + margin;
 }
 
@@ -233,7 +247,8 @@ std::vector<FlightStep> steps_between(const Analysis& analysis, const std::vecto
 
 UnexplainedStructure find_unexplained(const Analysis& analysis, const std::vector<Flight>& files,
                                       const ModelFile& model, const Reference& reference,
-                                      const DiagnoseOptions& options, double residual_rms, double noise_rms) {
+                                      const std::set<std::string>& inputs, const DiagnoseOptions& options,
+                                      double residual_rms, double noise_rms) {
   UnexplainedStructure result;
   Unexplained& found = result.found;
   const std::vector<std::size_t>& chosen = analysis.result().chosen;
@@ -247,10 +262,10 @@ UnexplainedStructure find_unexplained(const Analysis& analysis, const std::vecto
     if (by_variables < chance) result.left = std::max(result.left, structure.gain - structure.freedom);
   }
   std::unique_ptr<const Tested> beside_base;
-  if (by_variables < chance && !chosen.empty()) {
+  if (!chosen.empty() && (by_variables < chance || chosen.size() > 1)) {
     beside_base =
         std::make_unique<const Tested>(analysis, std::vector<std::size_t>(), variables, options.seed);
-    result.overrules = line_overrules(analysis, chosen, *beside_base);
+    result.overrules = line_overrules(analysis, chosen, *beside_base, inputs);
   }
   const Tested& shown = result.overrules ? *beside_base : beside_all;
 
@@ -260,7 +275,7 @@ UnexplainedStructure find_unexplained(const Analysis& analysis, const std::vecto
   found.drift_rms = rms_of(drift, whole);
   const bool drifts = analysis.drift_gain() > least_drift_gain && found.drift_rms > least_drift * noise_rms;
   found.steps = steps_between(analysis, chosen);
-  found.significant = by_variables < chance || drifts || !found.steps.empty();
+  found.significant = by_variables < chance || drifts || !found.steps.empty() || result.overrules;
   if (!found.significant) return result;
 
   const std::vector<std::vector<double>> left = result.overrules ? residuals_after(analysis, {}) : after;

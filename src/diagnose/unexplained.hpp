@@ -1,5 +1,7 @@
 #pragma once
 
+#include <set>
+#include <string>
 #include <vector>
 
 #include <pcor/diagnose/diagnose.hpp>
@@ -24,6 +26,7 @@ struct UnexplainedStructure {
 /// @param residual_rms and @param noise_rms after the chosen effects, hPa
 UnexplainedStructure find_unexplained(const Analysis& analysis, const std::vector<Flight>& files,
                                       const ModelFile& model, const Reference& reference,
-                                      const DiagnoseOptions& options, double residual_rms, double noise_rms);
+                                      const std::set<std::string>& inputs, const DiagnoseOptions& options,
+                                      double residual_rms, double noise_rms);
 
 }  // namespace pcor::internal

@@ -24,6 +24,7 @@ namespace {
 // to be, must earn its place.
 constexpr double named_limit = 1.0;
 constexpr double unnamed_limit = 0.99;
+constexpr double unseen_limit = 1.01;  // of an effect that another reference than the first shows
 // Of the fit, which weighs samples by their noise and outliers not at all, the rms may grow so much.
 constexpr double fit_limit = 1.005;
 
@@ -104,8 +105,11 @@ std::string shown(double rms) { return fmt::format("{:.4f} hPa", rms); }
 struct Judged {
   double rms_before = nan;  ///< hPa; NaN where there are none
   double rms_after = nan;
-  double gain = 0.0;  ///< fall of the squared residuals, in units of the noise
+  double gain = 0.0;  ///< fall of the squared residuals of all references, in units of the noise
   double gain_variance = 0.0;
+
+  /// Whether the fall is more than chance.
+  bool is_sure() const { return gain > 2.0 * std::sqrt(gain_variance); }
 };
 
 /// Those that took no part in the fit, or those that did.
@@ -114,6 +118,11 @@ Judged judged(const RefitResult& fit, bool held_out) {
   double before = 0.0;
   double after = 0.0;
   double samples = 0.0;
+  for (const FlightFit& flight : fit.further) {
+    if (flight.holdout != held_out || flight.after.samples == 0) continue;
+    result.gain += flight.gain;
+    result.gain_variance += flight.gain_error * flight.gain_error;
+  }
   for (const FlightFit& flight : fit.flights) {
     if (flight.holdout != held_out || flight.after.samples == 0) continue;
     const auto count = static_cast<double>(flight.after.samples);
@@ -219,7 +228,7 @@ class Climb {
     if (now.verdict == Verdict::silent) return candidates;
     candidates.all = now.verdict == Verdict::identified || now.verdict == Verdict::ambiguous;
     for (const Finding& finding : now.findings) {
-      if (!has(result_.fit.model, finding.effect.id) && !is_a_gamble(finding, now))
+      if (!finding.of_reference && !has(result_.fit.model, finding.effect.id) && !is_a_gamble(finding, now))
         candidates.effects.push_back(candidate_of(finding, now.verdict));
     }
     if (candidates.all || !loop_.trace_variables) return candidates;
@@ -259,6 +268,12 @@ class Climb {
           off.empty() ? "" : "; but ", fmt::join(off, "; "));
     }
     for (const Finding& finding : now.findings) {
+      if (finding.of_reference) {
+        return fmt::format(
+            "{} is of the system that the model is held against, and nothing of the model is to be changed "
+            "for it",
+            finding.id());
+      }
       if (!is_a_gamble(finding, now)) continue;
       std::vector<std::string> names;
       for (const Alias& alias : finding.aliases) names.push_back(alias.effect);
@@ -266,13 +281,12 @@ class Climb {
         return fmt::format(
             "{} may not be the cause, and would change the corrected static pressure by {}, much more than "
             "it takes off the residual; choose it yourself with pcor add",
-            finding.effect.id, shown(finding.static_change));
+            finding.id(), shown(finding.static_change));
       }
       return fmt::format(
           "these flights cannot tell {} from {}, and the corrected static pressure would differ by {} "
           "between them; {}; or choose one yourself with pcor add",
-          finding.effect.id, fmt::join(names, ", "),
-          shown(std::max(finding.static_risk, finding.static_change)),
+          finding.id(), fmt::join(names, ", "), shown(std::max(finding.static_risk, finding.static_change)),
           finding.advice.sentence.empty() ? "fly a manoeuvre that tells them apart"
                                           : finding.advice.sentence);
     }
@@ -319,7 +333,11 @@ class Climb {
       return fmt::format("{} was tried and dropped: with it the rms of the fit is {}, without it {}", id,
                          shown(step.rms_train), shown(train));
     }
-    if (!(after <= candidate.limit * before)) {
+    // What another reference shows, the first may not see: then the sum of all decides, as long as the first
+    // hardly minds.
+    const bool shown_elsewhere = candidate.limit == named_limit && !fit.further.empty() &&
+                                 after <= unseen_limit * before && judged(fit, loop_.has_holdout).is_sure();
+    if (!(after <= candidate.limit * before) && !shown_elsewhere) {
       const std::string condition =
           candidate.limit < 1.0 ? fmt::format("; a term whose cause is not known has to take {:.0f} % off it",
                                               100.0 * (1.0 - candidate.limit))
@@ -434,7 +452,9 @@ Improvement improve(const std::vector<std::filesystem::path>& flights, const Mod
       if (before != found.end()) diagnose_with.explained += before->second.chi2;
     }
     Diagnosis diagnosis = diagnose(flights, file, references, diagnose_with);
-    for (const Finding& finding : diagnosis.findings) found.insert_or_assign(finding.effect.id, finding);
+    for (const Finding& finding : diagnosis.findings) {
+      if (!finding.of_reference) found.insert_or_assign(finding.effect.id, finding);
+    }
     return diagnosis;
   };
   loop.add = [&](const ModelFile& file, const ModelEffect& effect) {

@@ -109,8 +109,9 @@ void add_rung(DiagnosisPanels& panels, const Improvement& improvement, std::size
     if (effect.id == step.added) inputs = inputs_of(effect);
   }
   inputs.push_back(added);
-  const auto finding = std::find_if(before.findings.begin(), before.findings.end(),
-                                    [&](const Finding& one) { return one.effect.id == step.added; });
+  const auto finding = std::find_if(before.findings.begin(), before.findings.end(), [&](const Finding& one) {
+    return !one.of_reference && one.effect.id == step.added;
+  });
   ReportText page{heading, unexplained_text(before.unexplained)};
   page.paragraphs.insert(page.paragraphs.begin(), "Added: " + name_with_id(step.title, step.added) + ".");
   if (finding != before.findings.end()) {

@@ -125,7 +125,7 @@ class Add(DiagnosisTest):
     def test_what_is_added_does_nothing_yet(self):
         """Neutral coefficients change no residual: not even its last bit."""
         self.add("static-lag", "static-attack", "static-mach2")
-        first, second = self.compare("-m", self.path / "out.toml")["models"]
+        first, second = self.compare("-m", self.path / "out.toml")["models"][:2]
         self.assertEqual(first["rms_hpa"], second["rms_hpa"])
 
     def test_what_is_added_can_be_fitted(self):

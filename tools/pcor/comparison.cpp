@@ -1,5 +1,7 @@
 #include "comparison.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -86,9 +88,11 @@ std::vector<std::filesystem::path> flight_paths(const ComparisonOptions& options
 
 std::vector<std::filesystem::path> input_files(const ComparisonOptions& options) {
   std::vector<std::filesystem::path> files = flight_paths(options);
-  const std::string prefix = "static:";
   for (const std::string& reference : options.references) {
-    if (reference.compare(0, prefix.size(), prefix) == 0) files.emplace_back(reference.substr(prefix.size()));
+    for (const std::string prefix : {"static:", "total:"}) {
+      if (reference.compare(0, prefix.size(), prefix) == 0)
+        files.emplace_back(reference.substr(prefix.size()));
+    }
   }
   files.emplace_back(options.intervals);
   return files;
@@ -108,10 +112,20 @@ std::string command_line(const ComparisonOptions& options) {
   return line;
 }
 
-ChosenReferences references_to_fit(const ComparisonOptions& options, const ModelFile& model) {
-  std::vector<std::string> texts = options.references;
-  if (texts.empty()) texts.emplace_back("lams");
-  return read_references(texts, model, flight_paths(options));
+ChosenReferences references_to_fit(const ComparisonOptions& options, const ModelFile& model,
+                                   const std::vector<std::string>& holdout) {
+  std::vector<std::filesystem::path> flights = flight_paths(options);
+  flights.insert(flights.end(), holdout.begin(), holdout.end());
+  ChosenReferences chosen = read_references(options.references, model, flights);
+  if (!options.references.empty()) return chosen;
+  const auto held_together = std::stable_partition(chosen.used.begin(), chosen.used.end(),
+                                                   [](const auto& each) { return each->is_of_one_sample(); });
+  for (auto each = held_together; each != chosen.used.end(); ++each) {
+    chosen.not_used.push_back((*each)->name() +
+                              ": compare shows it; a fit takes it where --reference names it");
+  }
+  chosen.used.erase(held_together, chosen.used.end());
+  return chosen;
 }
 
 void print_references(const ChosenReferences& references) {

@@ -45,9 +45,12 @@ std::string command_line(const ComparisonOptions& options);
 
 std::vector<std::filesystem::path> flight_paths(const ComparisonOptions& options);
 
-/// What a model is fitted to: the references that the options name, else LAMS alone. What the others leave to
-/// their noise, winds that change and heights of GPS, is not known well enough to be taken unasked.
-ChosenReferences references_to_fit(const ComparisonOptions& options, const ModelFile& model);
+/// What a model is fitted to: the references that the options name, else LAMS and the total pressure of a
+/// second pair. What the others leave to their noise, winds that change and slopes of surfaces of one
+/// pressure, is not known well enough to be taken unasked.
+/// @param holdout flights that are held out, which must allow the references too
+ChosenReferences references_to_fit(const ComparisonOptions& options, const ModelFile& model,
+                                   const std::vector<std::string>& holdout = {});
 
 /// Prints which references a model is held against and which not, where there are several to tell of.
 void print_references(const ChosenReferences& references);

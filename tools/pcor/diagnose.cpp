@@ -32,10 +32,13 @@ struct Options {
 constexpr std::size_t shortened = 5;
 
 void print_finding(const Finding& finding) {
-  fmt::print("\n{}: {}\n", finding.effect.id, finding.title);
+  fmt::print("\n{}: {}\n", finding.id(), finding.title);
   if (finding.effect.is_formula()) fmt::print("  formula: {}\n", finding.effect.formula);
-  fmt::print("  largest: {:+.3f} hPa in {} at {}\n", finding.worst, finding.worst_flight,
-             utc_text(finding.worst_time));
+  fmt::print("  {}\n", kind_text(finding));
+  if (!finding.worst_flight.empty()) {
+    fmt::print("  largest: {:+.3f} hPa in {} at {}\n", finding.worst, finding.worst_flight,
+               utc_text(finding.worst_time));
+  }
   for (const Evidence& evidence : finding.evidence) {
     fmt::print("  {:>3.0f} % of the evidence: {} {} to {}  {}\n", 100.0 * evidence.share, evidence.flight,
                utc_text(evidence.begin), utc_text(evidence.end, "%H:%M:%S"), evidence.regimes);
@@ -59,8 +62,8 @@ void print_findings(const std::vector<Finding>& findings) {
   fmt::print("\n{:<20} {:<32} {:>9} {:>9} {:>8} {:>8} {:>9} {:>9} {:>7}\n", "missing effect", "coefficient",
              "rms, hPa", "largest", "chi2", "p", "before", "after", "events");
   for (const Finding& finding : findings) {
-    fmt::print("{:<20} {:<32} {:>9.3f} {:>+9.3f} {:>8.1f} {:>8} {:>9.4f} {:>9.4f} {:>7.0f}\n",
-               finding.effect.id, estimates_text(finding.estimates), finding.rms, finding.worst, finding.chi2,
+    fmt::print("{:<20} {:<32} {:>9.3f} {:>+9.3f} {:>8.1f} {:>8} {:>9.4f} {:>9.4f} {:>7.0f}\n", finding.id(),
+               estimates_text(finding.estimates), finding.rms, finding.worst, finding.chi2,
                probability(finding.p_value), finding.rms_before, finding.rms_after, finding.events);
   }
   fmt::print(
@@ -112,8 +115,18 @@ std::string next_command(const Diagnosis& diagnosis, const Options& options) {
                                       const std::string& where) {
     return fmt::format("pcor add {} --formula {} --where {}{}", quoted(id), quoted(formula), where, and_fit);
   };
-  const auto of_catalogue = [](const Finding& finding) { return !finding.effect.is_formula(); };
+  const auto of_catalogue = [](const Finding& finding) {
+    return !finding.effect.is_formula() && !finding.of_reference;
+  };
   const std::vector<Finding>& findings = diagnosis.findings;
+  const auto of_reference = [](const Finding& finding) { return finding.of_reference; };
+  if (!findings.empty() && std::all_of(findings.begin(), findings.end(), of_reference)) {
+    return fmt::format(
+        "It is of the system that the model is held against: the model stays as it is; to see it: pcor "
+        "compare {} "
+        "-m {}",
+        flights, model);
+  }
   const bool sure = diagnosis.verdict == Verdict::identified || diagnosis.verdict == Verdict::ambiguous;
   if (sure && std::all_of(findings.begin(), findings.end(), of_catalogue)) {
     std::string add = "pcor add";

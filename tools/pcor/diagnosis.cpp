@@ -72,6 +72,13 @@ Json finding_as_json(const Finding& finding) {
   json["evidence"] = list_of(finding.evidence, evidence_as_json);
   json["aliases"] = list_of(finding.aliases, [](const Alias& alias) { return Json(alias.effect); });
   json["alias_details"] = list_of(finding.aliases, alias_as_json);
+  json["effect"] = finding.id();
+  json["family"] = finding.family;
+  json["shape"] = finding.shape;
+  json["variants"] = finding.variants;
+  json["places"] = finding.places;
+  json["times_usual"] = finding.times_usual;
+  json["probability"] = finding.probability;
   json["advice"] = finding.advice.sentence;
   json["advice_details"] = {{"manoeuvre", finding.advice.manoeuvre},
                             {"duration_s", finding.advice.duration},
@@ -95,7 +102,6 @@ Json variable_as_json(const TracedVariable& variable) {
           {"slope_stderr", variable.slope_error},
           {"centre", variable.centre},
           {"formula", variable.formula},
-          {"where", variable.where ? Json(facts_of(*variable.where).name) : Json()},
           {"sampling", variable.sampling}};
 }
 
@@ -191,7 +197,7 @@ void print_unexplained(const Unexplained& unexplained) {
                fmt::format("{:.3g} +- {:.2g}", variable.slope, variable.slope_error), variable.formula,
                variable.description);
   }
-  if (!unexplained.variables.empty() && !unexplained.variables.front().where) {
+  if (!unexplained.variables.empty()) {
     fmt::print(
         "where it acts is not known{}\n",
         unexplained.variables.front().formula.empty()

@@ -106,7 +106,7 @@ void run(const Options& options) {
   for (const std::string& output : {options.output, options.common.report}) require_writable(output);
   JsonResult json(options.common);
   const ModelFile model = read_model(options.model);
-  const References references = references_to_fit(options.comparison, model).used;
+  const References references = references_to_fit(options.comparison, model, options.holdout).used;
   ImproveOptions improve_with = improve_options(options, model);
   Improvement improvement;
   {

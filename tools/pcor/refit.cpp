@@ -264,7 +264,7 @@ void run(const Options& options) {
     require_writable(output);
   JsonResult json(options.common);
   const ModelFile model = read_model(options.model);
-  const ChosenReferences references = references_to_fit(options.comparison, model);
+  const ChosenReferences references = references_to_fit(options.comparison, model, options.holdout);
   RefitOptions refit_with = refit_options(options);
   RefitResult result;
   {

@@ -71,6 +71,9 @@ struct Alias {
   double chi2_less = 0.0;      ///< by so much its chi2 is below that of the one named; negative: above
   double size_to_usual = 0.0;  ///< its coefficient over its typical size; 0 where nobody knows
   std::vector<Estimate> estimates{};
+  /// As `chi2_less` of the logarithm of the marginal likelihood, which knows how large either is met.
+  double log_likelihood_less = 0.0;
+  double probability = 0.0;  ///< of being the one that is there, among the one named and its aliases
 };
 
 /// A manoeuvre that would tell rivals apart.
@@ -84,7 +87,8 @@ struct Advice {
 
 /// A missing effect.
 struct Finding {
-  ModelEffect effect;  ///< with the estimated coefficients, ready for a model
+  ModelEffect effect;         ///< with the estimated coefficients, ready for a model
+  bool of_reference = false;  ///< it acts on the system that the model is held against
   std::string title;
   std::vector<Estimate> estimates{};
   /// Parameters that the model's own coefficients imitate: neutral in `effect`, to be held in a fit.
@@ -98,9 +102,15 @@ struct Finding {
   /// Of residuals on stretches that took no part in the fit of model and effect (five parts in turn), hPa.
   double rms_before = 0.0;
   double rms_after = 0.0;
-  double events = 0.0;               ///< on how many separate events the evidence rests
-  std::vector<Evidence> evidence{};  ///< the strongest first, at most six
-  std::vector<Alias> aliases{};      ///< the most alike first
+  double events = 0.0;                  ///< on how many separate events the evidence rests
+  std::vector<Evidence> evidence{};     ///< the strongest first, at most six
+  std::vector<Alias> aliases{};         ///< the most likely first
+  std::string family{};                 ///< what it shares with its other shapes and places, e.g. "lag"
+  std::string shape{};                  ///< in which it was found; empty: that of the catalogue
+  std::vector<std::string> variants{};  ///< shapes of it that do as well, empty text for the catalogue's
+  std::vector<std::string> places{};    ///< where it may act, e.g. "port", "other-system"; its own first
+  double probability = 1.0;             ///< of being the one that is there, among itself and its aliases
+  double times_usual = 0.0;             ///< its size over the usual one; 0 where nobody knows
   /// By how much the corrected static pressure would differ, rms hPa, were the worst of the aliases the cause
   /// and not this effect; 0 without aliases.
   double static_risk = 0.0;
@@ -108,6 +118,9 @@ struct Finding {
   /// an effect that the model nearly imitates, many times what it takes off the residual.
   double static_change = 0.0;
   Advice advice{};
+
+  /// That of the effect, or "reference:ID".
+  std::string id() const { return (of_reference ? "reference:" : "") + effect.id; }
 };
 
 /// An effect that the model's own coefficients imitate.
@@ -144,11 +157,8 @@ struct TracedVariable {
   double linear_r2 = 0.0;  ///< part that a straight line explains; 0 for an angle
   double slope = 0.0;      ///< of the line, hPa per unit of the variable
   double slope_error = 0.0;
-  double centre = 0.0;    ///< mean of the variable over the samples used
-  std::string formula{};  ///< of an effect that would describe it, e.g. "k * (ENGTRQ - 48)"
-  /// Where the formula acts, as far as the references tell; nothing where they do not. It is written as added
-  /// to the static pressure then, which describes it as well as any other place.
-  std::optional<Where> where{};
+  double centre = 0.0;     ///< mean of the variable over the samples used
+  std::string formula{};   ///< of an effect that would describe it, e.g. "k * (ENGTRQ - 48)"
   std::string sampling{};  ///< how it was brought to one value a record, in words; empty where it has one
 };
 

@@ -23,4 +23,8 @@ std::string limits_text(const UpperLimit& limit);
 /// @param model the one that was diagnosed
 Report diagnosis_report(const Diagnosis& diagnosis, const ModelFile& model);
 
+/// What kind of effect it is, where it may act, and how large it is beside the usual: "family: zero; place:
+/// p-transducer or other-system; 15 times its usual size: ...".
+std::string kind_text(const Finding& finding);
+
 }  // namespace pcor

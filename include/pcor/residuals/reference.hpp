@@ -55,6 +55,10 @@ class Reference {
   virtual ModelSamples read(const Flight& flight, const std::vector<double>& time,
                             std::vector<std::string>& notes) const;
 
+  /// True where its residual is of one sample alone, not of many around it: only then the diagnosis knows
+  /// what an effect that changes from sample to sample does to it.
+  virtual bool is_of_one_sample() const { return true; }
+
   /// What it says of every sample. Both arguments must outlive the result.
   virtual std::unique_ptr<internal::ReferenceOnSamples> on(const FlightSamples& samples,
                                                            const internal::ModelOnSamples& model) const = 0;

@@ -90,6 +90,7 @@ class HeightReference final : public Reference {
   std::string description() const override { return "hydrostatic height against that of GPS"; }
   std::string name() const override { return "height"; }
   bool is_static_pressure() const override { return false; }
+  bool is_of_one_sample() const override { return false; }
 
   ModelSamples read(const Flight& flight, const std::vector<double>&,
                     std::vector<std::string>&) const override {

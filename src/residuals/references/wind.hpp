@@ -144,6 +144,7 @@ class WindReference final : public Reference {
   std::string description() const override { return "airspeed against ground speed and a steady wind"; }
   std::string name() const override { return "wind"; }
   bool is_static_pressure() const override { return false; }
+  bool is_of_one_sample() const override { return false; }
 
   ModelSamples read(const Flight& flight, const std::vector<double>&,
                     std::vector<std::string>&) const override {
