@@ -1,13 +1,46 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <pcor/residuals/reference.hpp>
+#include "residuals/model_on_samples.hpp"
+#include "residuals/reference_on_samples.hpp"
 #include "residuals/samples.hpp"
 
 namespace pcor::internal {
+
+/// A second system on the samples of a flight: what it reads, its law, and why a sample is missing are the
+/// same whatever of it is held against the model.
+class SecondSystemOnSamples : public ReferenceOnSamples {
+ public:
+  SecondSystemOnSamples(const ModelFile& system, const FlightSamples& samples, const ModelOnSamples& model)
+      : own_(system, samples.reference), model_(model) {}
+
+  std::vector<Batch::Input> columns() const override { return own_.columns(); }
+  const ModelOnSamples* model() const override { return &own_; }
+
+  Mask why_missing(std::size_t sample) const override {
+    if (model_.is_missing_needed(sample)) return Mask::missing;
+    return own_.is_missing_needed(sample) ? Mask::reference : Mask::impossible;
+  }
+
+ protected:
+  /// The system's own law, and the model that is held against it.
+  const ModelOnSamples& law() const { return own_; }
+  const ModelOnSamples& held_against() const { return model_; }
+  /// Those of the system's own law, among all.
+  template <class S>
+  const S* own_of(const S* parameters) const {
+    return parameters + model_.parameters().size();
+  }
+
+ private:
+  ModelOnSamples own_;
+  const ModelOnSamples& model_;
+};
 
 /// A reference that is another pair of pressures of the aircraft, corrected by a model of its own.
 class SecondSystem : public Reference {

@@ -7,47 +7,31 @@
 #include <utility>
 
 #include <pcor/residuals/reference.hpp>
-#include "residuals/reference_on_samples.hpp"
 #include "residuals/references/second_system.hpp"
-#include "residuals/samples.hpp"
 
 namespace pcor::internal {
 
-class StaticSystemOnSamples final : public ReferenceOnSamples {
+class StaticSystemOnSamples final : public SecondSystemOnSamples {
  public:
-  StaticSystemOnSamples(const ModelFile& own, const FlightSamples& samples, const ModelOnSamples& model)
-      : own_(own, samples.reference), model_(model) {}
+  using SecondSystemOnSamples::SecondSystemOnSamples;
 
   void residuals(const Block& block, const double* parameters, double* out) const override {
     std::vector<double> corrected(block.count);
-    model_.corrected_static_pressure(block.model, block.count, parameters, corrected.data());
-    own_.corrected_static_pressure(block.reference, block.count, parameters + model_.parameters().size(),
-                                   out);
+    held_against().corrected_static_pressure(block.model, block.count, parameters, corrected.data());
+    law().corrected_static_pressure(block.reference, block.count, own_of(parameters), out);
     for (std::size_t i = 0; i < block.count; ++i) out[i] -= corrected[i];
   }
 
   void residuals(const std::size_t* samples, std::size_t count, const Jet* parameters,
                  Jet* out) const override {
-    const Jet* const own_parameters = parameters + model_.parameters().size();
+    const Jet* const own_parameters = own_of(parameters);
     for (std::size_t i = 0; i < count; ++i) {
       State<Jet> state;
       State<Jet> own_state;
-      out[i] = own_.corrected_static_pressure(samples[i], own_parameters, own_state) -
-               model_.corrected_static_pressure(samples[i], parameters, state);
+      out[i] = law().corrected_static_pressure(samples[i], own_parameters, own_state) -
+               held_against().corrected_static_pressure(samples[i], parameters, state);
     }
   }
-
-  std::vector<Batch::Input> columns() const override { return own_.columns(); }
-  const ModelOnSamples* model() const override { return &own_; }
-
-  Mask why_missing(std::size_t sample) const override {
-    if (model_.is_missing_needed(sample)) return Mask::missing;
-    return own_.is_missing_needed(sample) ? Mask::reference : Mask::impossible;
-  }
-
- private:
-  ModelOnSamples own_;
-  const ModelOnSamples& model_;
 };
 
 class StaticSystemReference final : public SecondSystem {

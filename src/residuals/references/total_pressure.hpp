@@ -7,44 +7,29 @@
 #include <utility>
 #include <vector>
 
-#include "residuals/model_on_samples.hpp"
-#include "residuals/reference_on_samples.hpp"
 #include "residuals/references/second_system.hpp"
 
 namespace pcor::internal {
 
-class TotalPressureOnSamples final : public ReferenceOnSamples {
+class TotalPressureOnSamples final : public SecondSystemOnSamples {
  public:
-  TotalPressureOnSamples(const ModelFile& own, const FlightSamples& samples, const ModelOnSamples& model)
-      : own_(own, samples.reference), model_(model) {}
+  using SecondSystemOnSamples::SecondSystemOnSamples;
 
   void residuals(const Block& block, const double* parameters, double* out) const override {
     std::vector<double> total(block.count);
-    model_.total_pressure(block.model, block.count, parameters, total.data());
-    own_.total_pressure(block.reference, block.count, parameters + model_.parameters().size(), out);
+    held_against().total_pressure(block.model, block.count, parameters, total.data());
+    law().total_pressure(block.reference, block.count, own_of(parameters), out);
     for (std::size_t i = 0; i < block.count; ++i) out[i] -= total[i];
   }
 
   void residuals(const std::size_t* samples, std::size_t count, const Jet* parameters,
                  Jet* out) const override {
-    const Jet* const own_parameters = parameters + model_.parameters().size();
+    const Jet* const own_parameters = own_of(parameters);
     for (std::size_t i = 0; i < count; ++i) {
-      out[i] =
-          own_.total_pressure(samples[i], own_parameters) - model_.total_pressure(samples[i], parameters);
+      out[i] = law().total_pressure(samples[i], own_parameters) -
+               held_against().total_pressure(samples[i], parameters);
     }
   }
-
-  std::vector<Batch::Input> columns() const override { return own_.columns(); }
-  const ModelOnSamples* model() const override { return &own_; }
-
-  Mask why_missing(std::size_t sample) const override {
-    if (model_.is_missing_needed(sample)) return Mask::missing;
-    return own_.is_missing_needed(sample) ? Mask::reference : Mask::impossible;
-  }
-
- private:
-  ModelOnSamples own_;
-  const ModelOnSamples& model_;
 };
 
 class TotalPressureReference final : public SecondSystem {
