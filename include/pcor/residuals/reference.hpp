@@ -43,7 +43,7 @@ class Reference {
 
   /// The same reference with another model of its own; null where it has none. It reads all that the other
   /// model reads.
-  virtual std::shared_ptr<const Reference> with_model(ModelFile) const { return nullptr; }
+  virtual std::shared_ptr<const Reference> with_model(const ModelFile&) const { return nullptr; }
 
   /// The variables of a flight that it reads for itself, beside those of the model that is held against it.
   virtual std::vector<std::string> variables() const { return {}; }
