@@ -219,21 +219,23 @@ void Analysis::find_search() {
   search_ = std::make_unique<Search>(*scores_, base_, groups_);
 }
 
-double Analysis::held_out_rms(const std::vector<std::size_t>& groups) const {
-  const std::vector<Eigen::MatrixXd> columns = columns_of(groups);
+HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
+  const std::vector<Eigen::MatrixXd> columns = all_columns_of(groups);
   const Eigen::Index width = columns.front().cols() + 1;
   std::vector<Eigen::MatrixXd> information(parts, Eigen::MatrixXd::Zero(width, width));
-  const auto part_of = [](double seconds) {
-    return static_cast<std::size_t>(std::fmod(std::floor(seconds / stretch_time), parts));
+  const auto part_of = [this](std::size_t f, double time) {
+    return static_cast<std::size_t>(
+        std::fmod(std::floor((time - flight(f).samples->time.front()) / stretch_time), parts));
   };
+  std::vector<Eigen::MatrixXd> white;
   for (std::size_t f = 0; f < columns.size(); ++f) {
     Eigen::MatrixXd all(columns[f].rows(), width);
     all << columns[f], residuals_[f];
-    const Eigen::MatrixXd white = whitened(all, bins_[f], noise_[f], 0);
-    for (Eigen::Index i = 0; i < white.rows(); ++i) {
-      const std::size_t part =
-          part_of(bins_[f].time()[static_cast<std::size_t>(i)] - flights_[f].samples->time.front());
-      information[part].selfadjointView<Eigen::Lower>().rankUpdate(white.row(i).transpose());
+    white.push_back(whitened(all, bins_[f], noise_[f], 0));
+    for (Eigen::Index i = 0; i < white[f].rows(); ++i) {
+      information[part_of(f, bins_[f].time()[static_cast<std::size_t>(i)])]
+          .selfadjointView<Eigen::Lower>()
+          .rankUpdate(white[f].row(i).transpose());
     }
   }
   Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(width, width);
@@ -247,21 +249,31 @@ double Analysis::held_out_rms(const std::vector<std::size_t>& groups) const {
     estimates.push_back(pseudo_solution(rest.topLeftCorner(width - 1, width - 1),
                                         rest.col(width - 1).head(width - 1), least_eigenvalue));
   }
+  HeldOut result;
+  result.chi2 = Eigen::VectorXd::Zero(scores_->blocks);
+  for (std::size_t f = 0; f < columns.size(); ++f) {
+    for (Eigen::Index i = 0; i < white[f].rows(); ++i) {
+      const auto bin = static_cast<std::size_t>(i);
+      const Eigen::VectorXd& estimate = estimates[part_of(f, bins_[f].time()[bin])];
+      const double left = white[f](i, width - 1) - white[f].row(i).head(width - 1) * estimate;
+      result.chi2[scores_->block[f][bin]] += left * left;
+    }
+  }
   double squares = 0.0;
   double count = 0.0;
-  for (std::size_t f = 0; f < columns.size(); ++f) {
+  for (std::size_t f = 0; f < flights_.size(); ++f) {
     std::vector<std::vector<double>> predicted;
     for (const Eigen::VectorXd& estimate : estimates) predicted.push_back(added(f, groups, estimate));
-    const FlightSamples& samples = *flights_[f].samples;
     for (const std::size_t record : bins_[f].records()) {
       if (flights_[f].residual[record] != flights_[f].given[record]) continue;  // an outlier
-      const std::size_t part = part_of(samples.time[record] - samples.time.front());
+      const std::size_t part = part_of(f, flights_[f].samples->time[record]);
       const double left = flights_[f].given[record] - predicted[part][record];
       squares += left * left;
       count += 1.0;
     }
   }
-  return std::sqrt(squares / count);
+  result.rms = std::sqrt(squares / count);
+  return result;
 }
 
 std::vector<double> Analysis::drift(std::size_t flight, const std::vector<std::size_t>& groups) const {

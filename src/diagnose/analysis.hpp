@@ -12,6 +12,12 @@
 
 namespace pcor::internal {
 
+/// What is left on stretches that took no part in a fit.
+struct HeldOut {
+  double rms = 0.0;      ///< hPa, with the first reference, without outliers
+  Eigen::VectorXd chi2;  ///< of each minute, squared innovations of all references in units of the noise
+};
+
 /// The statistics of a diagnosis: noise and missing effects of some flights, found in turn, since each needs
 /// the other.
 ///
@@ -56,9 +62,9 @@ class Analysis {
   std::vector<double> added_by(std::size_t flight, const std::vector<std::size_t>& groups, std::size_t which,
                                const Eigen::VectorXd& estimate) const;
 
-  /// The rms of residuals, hPa, on stretches of five minutes that took no part in the fit of base and
-  /// groups: one in five of them at a time. Outliers are left out.
-  double held_out_rms(const std::vector<std::size_t>& groups) const;
+  /// What base and groups leave on stretches of five minutes that took no part in their fit: one in five of
+  /// them at a time.
+  HeldOut held_out(const std::vector<std::size_t>& groups) const;
 
   /// The drift of a flight that is most likely after base and `groups`, one value for each record, hPa.
   std::vector<double> drift(std::size_t flight, const std::vector<std::size_t>& groups) const;

@@ -370,7 +370,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
   diagnosis.not_testable = std::move(set.not_testable);
   diagnosis.flights = flights_of(analysis);
   diagnosis.residual_rms = rms_of(diagnosis.flights, &FlightDiagnosis::before);
-  diagnosis.residual_rms_held_out = analysis.held_out_rms({});
+  diagnosis.residual_rms_held_out = analysis.held_out({}).rms;
   diagnosis.noise_rms_with_findings = noise_with_findings(diagnosis.flights);
   diagnosis.statistics_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();

@@ -31,6 +31,24 @@ std::vector<Estimate> estimates_of(const Candidate& candidate, const std::vector
   return estimates;
 }
 
+/// The effect of a candidate with estimated coefficients.
+ModelEffect with_estimate(const Candidate& candidate, const Eigen::VectorXd& estimate) {
+  ModelEffect effect = candidate.effect;
+  for (std::size_t k = 0; k < candidate.tested.size(); ++k)
+    effect.parameters[candidate.tested[k].place] += estimate[as_index(k)];
+  return effect;
+}
+
+/// The parameters that these flights do not tell.
+std::vector<std::string> held_of(const Candidate& candidate, const std::vector<Eigen::Index>& told) {
+  std::vector<std::string> held;
+  for (std::size_t k = 0; k < candidate.tested.size(); ++k) {
+    if (std::find(told.begin(), told.end(), as_index(k)) == told.end())
+      held.push_back(candidate.tested[k].name);
+  }
+  return held;
+}
+
 /// A stretch of minutes in a row that speak for an effect.
 struct Event {
   std::size_t flight = 0;
@@ -143,6 +161,9 @@ std::vector<Alias> aliases_of(const Analysis& analysis, const std::vector<Candid
     Alias alias;
     alias.effect = candidates[g].id;
     alias.title = candidates[g].title;
+    alias.correction = with_estimate(candidates[g], score.estimate);
+    alias.held = held_of(candidates[g], search.told(g));
+    alias.is_alike = candidates[g].is_shared;
     alias.correlation = search.correlation(winner, g, others);
     // Each direction explains one unit of noise.
     alias.chi2_less = (best.chi2 - best.freedom) - (score.chi2 - score.freedom);
@@ -310,7 +331,7 @@ std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Can
   Eigen::VectorXd estimate;
   Eigen::MatrixXd covariance;
   analysis.search().fit(chosen, estimate, covariance);
-  const double with_all = chosen.empty() ? 0.0 : analysis.held_out_rms(chosen);
+  const HeldOut with_all = chosen.empty() ? HeldOut{} : analysis.held_out(chosen);
   std::vector<Finding> findings;
   Eigen::Index place = analysis.base();
   for (std::size_t i = 0; i < chosen.size(); ++i) {
@@ -318,25 +339,25 @@ std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Can
     const Candidate& candidate = candidates[group];
     const Eigen::Index count = as_index(candidate.tested.size());
     Finding finding;
-    finding.effect = candidate.effect;
+    finding.effect = with_estimate(candidate, estimate.segment(place, count));
     finding.of_reference = candidate.is_of_reference();
+    finding.is_alike = candidate.is_shared;
     finding.title = candidate.title;
     const std::vector<Eigen::Index>& told = analysis.search().told(group);
     finding.estimates = estimates_of(candidate, told, estimate.segment(place, count),
                                      covariance.block(place, place, count, count));
-    for (Eigen::Index k = 0; k < count; ++k) {
-      const CandidateParameter& parameter = candidate.tested[static_cast<std::size_t>(k)];
-      finding.effect.parameters[parameter.place] += estimate[place + k];
-      if (std::find(told.begin(), told.end(), k) == told.end()) finding.held.push_back(parameter.name);
-    }
+    finding.held = held_of(candidate, told);
     place += count;
     measure(analysis, chosen, i, estimate, finding);
     finding.chi2 = analysis.search().score(group, chosen).chi2;
     finding.p_value = analysis.result().p_values[i];
     std::vector<std::size_t> without = chosen;
     without.erase(without.begin() + static_cast<std::ptrdiff_t>(i));
-    finding.rms_before = analysis.held_out_rms(without);
-    finding.rms_after = with_all;
+    const HeldOut without_it = analysis.held_out(without);
+    finding.rms_before = without_it.rms;
+    finding.rms_after = with_all.rms;
+    finding.gain = (without_it.chi2 - with_all.chi2).sum();
+    finding.gain_error = (without_it.chi2 - with_all.chi2).norm();
     const Eigen::VectorXd evidence = evidence_of(analysis, group, chosen);
     std::vector<Event> events = events_of(analysis, evidence);
     finding.events = count_of(events);

@@ -8,8 +8,6 @@
 namespace pcor::internal {
 namespace {
 
-constexpr double minute = 60.0;  // s
-
 /// A flight before and after the fit.
 struct Compared {
   std::vector<FlightFit> parts{};  ///< the part that was fitted, and the part that was held out
@@ -19,23 +17,6 @@ struct Compared {
   std::vector<std::string> notes{};
   RegimeSet flown{};
 };
-
-/// By how much the squared residuals fall, and its error, from minute to minute.
-void find_gain(const FlightSamples& samples, const std::vector<double>& before,
-               const std::vector<double>& after, const NoiseFloor& noise, FlightFit& part) {
-  double squares = 0.0;
-  for (std::size_t i = 0; i < after.size();) {
-    const double end = samples.time[i] + minute;
-    double gain = 0.0;
-    for (; i < after.size() && samples.time[i] < end; ++i) {
-      if (!std::isnan(after[i]) && noise.local_rms[i] > 0.0)
-        gain += (before[i] * before[i] - after[i] * after[i]) / (noise.local_rms[i] * noise.local_rms[i]);
-    }
-    part.gain += gain;
-    squares += gain * gain;
-  }
-  part.gain_error = std::sqrt(squares);
-}
 
 Compared compared(const Residuals& residuals, const FitTask& task, const Eigen::VectorXd& values,
                   double training_share) {
@@ -54,7 +35,9 @@ Compared compared(const Residuals& residuals, const FitTask& task, const Eigen::
     result.parts.push_back({samples.name, held, sums_of_flight(samples, was, noise).statistics(),
                             sums_of_flight(samples, is, noise).statistics()});
     result.parts.back().reference = task.reference.name();
-    find_gain(samples, was, is, noise, result.parts.back());
+    const Gain gain = gain_between(samples, was, is, noise);
+    result.parts.back().gain = gain.value;
+    result.parts.back().gain_error = gain.error;
     const std::vector<double> means = means_of_blocks(samples, is);
     if (held) {
       result.held_out_blocks = means.size();

@@ -7,12 +7,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include <pcor/flight/flight.hpp>
 #include <pcor/words/error.hpp>
+#include "improve/average.hpp"
 #include "improve/improve_loop.hpp"
 #include "numerics/missing.hpp"
+#include "residuals/flight_statistics.hpp"
 
 namespace pcor {
 
@@ -20,21 +23,32 @@ using namespace internal;
 
 namespace {
 
-// An effect that is named stays unless the held-out rms gets worse. One that is not the cause, or not known
-// to be, must earn its place.
-constexpr double named_limit = 1.0;
+// An effect that is not the cause, or not known to be, must take so much off the held-out rms.
 constexpr double unnamed_limit = 0.99;
-constexpr double unseen_limit = 1.01;  // of an effect that another reference than the first shows
 // Of the fit, which weighs samples by their noise and outliers not at all, the rms may grow so much.
 constexpr double fit_limit = 1.005;
+constexpr double surely = 2.0;  // standard deviations
+// Less likely rivals have no say in the correction.
+constexpr double least_probability = 0.05;
+// Of the noise: differences of the static pressure below this do not matter.
+constexpr double negligible = 0.1;
+
+/// An effect that may be the cause of what is left.
+struct Choice {
+  AddedEffect added;
+  double probability = 1.0;
+};
 
 /// An effect that the loop may add, and what has to come of it.
 struct Candidate {
-  ModelEffect effect;
+  std::vector<Choice> choices{};  ///< itself, and the rivals that the flights cannot tell from it
   std::string title;
   std::vector<std::string> aliases;
-  double limit = named_limit;  ///< of the held-out rms, as a part of that before
-  std::string caution;         ///< ends the sentence on what was learnt
+  bool is_named = true;  ///< it counts as the cause, or one of the rivals does
+  bool is_sure = false;  ///< on stretches of the fitted flights that took no part in its estimate
+  std::string caution;   ///< ends the sentence on what was learnt
+
+  const ModelEffect& effect() const { return choices.front().added.effect; }
 };
 
 /// What may be added after a diagnosis: all of it, or the first that helps.
@@ -49,12 +63,6 @@ bool has(const ModelFile& model, const std::string& effect) {
                      [&effect](const ModelEffect& each) { return each.id == effect; });
 }
 
-/// The coefficients with which an effect does nothing.
-std::vector<double> neutral_of(const ModelEffect& effect) {
-  return effect.is_formula() ? std::vector<double>(effect.parameters.size(), 0.0)
-                             : neutral_effect(effect.id).parameters;
-}
-
 std::string id_of_trace(const std::string& variable) {
   std::string id = "traced-";
   for (const char letter : variable) {
@@ -67,11 +75,16 @@ std::string id_of_trace(const std::string& variable) {
 
 Candidate candidate_of(const Finding& finding, Verdict verdict) {
   Candidate candidate;
-  candidate.effect = finding.effect;
+  candidate.choices.push_back({{finding.effect, finding.held, finding.is_alike}, finding.probability});
   candidate.title = finding.title;
-  for (const Alias& alias : finding.aliases) candidate.aliases.push_back(alias.effect);
+  candidate.is_sure = finding.gain > surely * finding.gain_error;
+  for (const Alias& alias : finding.aliases) {
+    candidate.aliases.push_back(alias.effect);
+    if (alias.probability >= least_probability)
+      candidate.choices.push_back({{alias.correction, alias.held, alias.is_alike}, alias.probability});
+  }
   if (verdict == Verdict::partial) {
-    candidate.limit = unnamed_limit;
+    candidate.is_named = false;
     candidate.caution =
         "; structure is left that it does not explain, so its name is not to be taken for the cause";
   } else if (!candidate.aliases.empty()) {
@@ -83,60 +96,49 @@ Candidate candidate_of(const Finding& finding, Verdict verdict) {
 }
 
 Candidate candidate_of(const TracedVariable& variable, const std::string& flights) {
+  ModelEffect effect;
+  effect.id = id_of_trace(variable.name);
+  effect.parameter_names = {"k"};
+  effect.parameters = {variable.slope};
+  effect.formula = variable.formula;
+  effect.unit = "hPa";
+  effect.source = fmt::format("traced in the residuals of {}: {:.0f} % of their variance, p = {:.2g}",
+                              flights, 100.0 * variable.r2, variable.p_value);
   Candidate candidate;
-  candidate.effect.id = id_of_trace(variable.name);
-  candidate.effect.parameter_names = {"k"};
-  candidate.effect.parameters = {variable.slope};
-  candidate.effect.formula = variable.formula;
-  candidate.effect.unit = "hPa";
-  candidate.effect.source =
-      fmt::format("traced in the residuals of {}: {:.0f} % of their variance, p = {:.2g}", flights,
-                  100.0 * variable.r2, variable.p_value);
+  candidate.choices = {{{std::move(effect)}, 1.0}};
   candidate.title = fmt::format("what goes with {}{}", variable.name,
                                 variable.description.empty() ? "" : ", " + variable.description);
-  candidate.limit = unnamed_limit;
+  candidate.is_named = false;
+  candidate.is_sure = true;  // only what chance does not explain is traced
   candidate.caution = "; no effect of the catalogue explains it, so the cause is still to be found";
   return candidate;
 }
 
-std::string shown(double rms) { return fmt::format("{:.4f} hPa", rms); }
-
-/// Some of the samples of a fit, before and after it.
-struct Judged {
-  double rms_before = nan;  ///< hPa; NaN where there are none
-  double rms_after = nan;
-  double gain = 0.0;  ///< fall of the squared residuals of all references, in units of the noise
-  double gain_variance = 0.0;
-
-  /// Whether the fall is more than chance.
-  bool is_sure() const { return gain > 2.0 * std::sqrt(gain_variance); }
-};
-
-/// Those that took no part in the fit, or those that did.
-Judged judged(const RefitResult& fit, bool held_out) {
-  Judged result;
-  double before = 0.0;
-  double after = 0.0;
-  double samples = 0.0;
-  for (const FlightFit& flight : fit.further) {
-    if (flight.holdout != held_out || flight.after.samples == 0) continue;
-    result.gain += flight.gain;
-    result.gain_variance += flight.gain_error * flight.gain_error;
+double rms_of(const std::vector<double>& values) {
+  double squares = 0.0;
+  double count = 0.0;
+  for (const double value : values) {
+    if (std::isnan(value)) continue;
+    squares += value * value;
+    count += 1.0;
   }
-  for (const FlightFit& flight : fit.flights) {
-    if (flight.holdout != held_out || flight.after.samples == 0) continue;
-    const auto count = static_cast<double>(flight.after.samples);
-    before += flight.before.rms * flight.before.rms * count;
-    after += flight.after.rms * flight.after.rms * count;
-    samples += count;
-    result.gain += flight.gain;
-    result.gain_variance += flight.gain_error * flight.gain_error;
-  }
-  if (samples == 0.0) return result;
-  result.rms_before = std::sqrt(before / samples);
-  result.rms_after = std::sqrt(after / samples);
-  return result;
+  return count > 0.0 ? std::sqrt(squares / count) : nan;
 }
+
+/// Of the samples that are held out, hPa; NaN where there are none.
+double held_out_rms(const RefitResult& fit) {
+  double squares = 0.0;
+  double samples = 0.0;
+  for (const FlightFit& flight : fit.flights) {
+    if (!flight.holdout || flight.after.samples == 0) continue;
+    const auto count = static_cast<double>(flight.after.samples);
+    squares += flight.after.rms * flight.after.rms * count;
+    samples += count;
+  }
+  return samples > 0.0 ? std::sqrt(squares / samples) : nan;
+}
+
+std::string shown(double rms) { return fmt::format("{:.4f} hPa", rms); }
 
 /// "tau = 0.21 +- 0.02 s": the fitted coefficients of an effect.
 std::string coefficients_of(const RefitResult& fit, const std::string& effect) {
@@ -154,14 +156,23 @@ std::string coefficients_of(const RefitResult& fit, const std::string& effect) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
+/// A finding of which an effect of the other system may be the cause: then nothing of the model is.
+bool may_be_of_reference(const Finding& finding) {
+  constexpr std::string_view prefix = "reference:";
+  return finding.of_reference ||
+         std::any_of(finding.aliases.begin(), finding.aliases.end(), [prefix](const Alias& alias) {
+           return alias.probability >= least_probability && alias.effect.rfind(prefix, 0) == 0;
+         });
+}
+
 /// The climb: the ladder so far, and how it goes on.
 class Climb {
  public:
-  Climb(const ImproveLoop& loop, const ModelFile& model) : loop_(loop) {
+  Climb(const ImproveLoop& loop, const ModelFile& model) : loop_(loop), given_{model} {
     result_.holdout_is_flights = loop.has_holdout;
     ImproveStep first;
-    RefitResult fit = loop.refit(model);
-    measure(first, fit);
+    RefitResult fit = loop.refit(given_);
+    measure(first, fit, {});
     if (std::isnan(first.rms_holdout)) {
       throw Error(
           "no sample of what is held out can be used, so no step can be tested; give another flight with "
@@ -169,32 +180,118 @@ class Climb {
     }
     first.learnt = fmt::format("the coefficients fitted again: rms {} before, {} after",
                                shown(fit.rms_before), shown(fit.rms));
-    const Judged by_fit = judged(fit, loop_.has_holdout);
-    if (by_fit.rms_before > 0.0) growth_ = by_fit.rms_after / by_fit.rms_before;
-    gain_ = by_fit.gain;
-    gain_error_ = std::sqrt(by_fit.gain_variance);
-    take(std::move(first), std::move(fit));
+    take(std::move(first), std::move(fit), {}, {});
   }
 
   Improvement run() {
     while (result_.why_stopped.empty()) climb_on();
     result_.model = result_.fit.model;
-    result_.worse = why_worse();
+    average();
+    compare_with_the_given();
     return std::move(result_);
   }
 
  private:
   const Diagnosis& diagnosis() const { return result_.steps.back().diagnosis; }
+  TrialModel top() const { return {result_.fit.model, alike_}; }
+
+  /// The model with one choice of each rung; without the effect of the rung number `without`.
+  TrialModel model_with(const std::vector<std::size_t>& choice, std::size_t without) const {
+    TrialModel model = given_;
+    for (std::size_t rung = 0; rung < rungs_.size(); ++rung) {
+      if (rung != without) model = loop_.add(model, rungs_[rung][choice[rung]].added);
+    }
+    model.file = loop_.refit(model).model;
+    return model;
+  }
+
+  /// Where it matters for the static pressure which of a rung's rivals is there, the model gets their
+  /// average.
+  void average() {
+    std::vector<Mixture> mixtures;
+    for (std::size_t rung = 0; rung < rungs_.size(); ++rung) {
+      if (rungs_[rung].size() < 2) continue;
+      Mixture mixture = mixture_of(rung, result_.steps[rung + 1]);
+      if (!mixture.empty()) mixtures.push_back(std::move(mixture));
+    }
+    if (mixtures.empty()) return;
+    result_.model = averaged(result_.fit.model, mixtures);
+    ProvenanceList rivals;
+    for (const ImproveStep& step : result_.steps) {
+      for (const RungRival& rival : step.rivals)
+        rivals.emplace_back(fmt::format("{} for {}: {:.3f}", rival.effect, step.added, rival.probability));
+    }
+    result_.model.provenance.emplace_back("averaged_over", ProvenanceValue{std::move(rivals)});
+  }
+
+  /// The models that the rivals of a rung make, and that without any of them; none where it does not matter
+  /// which of the rivals is there.
+  Mixture mixture_of(std::size_t rung, ImproveStep& step) const {
+    std::vector<std::size_t> choice(rungs_.size(), 0);
+    std::vector<TrialModel> models{model_with(choice, rung), top()};
+    std::vector<std::string> names{rungs_[rung].front().added.effect.id};
+    std::vector<double> weights{rungs_[rung].front().probability};
+    for (std::size_t k = 1; k < rungs_[rung].size(); ++k) {
+      choice[rung] = k;
+      try {
+        models.push_back(model_with(choice, rungs_.size()));
+      } catch (const Error&) {
+        continue;  // what cannot be fitted here is no rival
+      }
+      names.push_back(rungs_[rung][k].added.effect.id);
+      weights.push_back(rungs_[rung][k].probability);
+    }
+    const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+    for (double& weight : weights) weight /= sum;
+    const std::vector<TrialFlight> tried = loop_.try_models(models);
+    const std::vector<double> without = static_pressures_of(tried, 0);
+    std::vector<std::vector<double>> changes;
+    for (std::size_t k = 1; k < models.size(); ++k) {
+      std::vector<double>& change = changes.emplace_back(static_pressures_of(tried, k));
+      for (std::size_t i = 0; i < change.size(); ++i) change[i] -= without[i];
+    }
+    const double matters = negligible * step.noise_rms;
+    const double spread = spread_of(changes, weights);
+    if (!(spread > matters)) return {};
+    step.spread = spread;
+    step.share = harmless_share(changes, weights, matters);
+    Mixture mixture{{std::move(models.front().file), 1.0 - step.share}};
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      step.rivals.push_back({names[k], weights[k], rms_of(changes[k])});
+      mixture.push_back({std::move(models[k + 1].file), step.share * weights[k]});
+    }
+    return mixture;
+  }
+
+  /// What the whole ladder came to.
+  void compare_with_the_given() {
+    std::vector<TrialFlight> tried = loop_.try_models({given_, {refitted_}, {result_.model, alike_}});
+    const Comparison train = comparison_of(tried, 0, 2, false);
+    const Comparison holdout = comparison_of(tried, 0, 2, true);
+    result_.given_rms_train = train.rms_before;
+    result_.rms_train = train.rms_after;
+    result_.given_rms_holdout = holdout.rms_before;
+    result_.rms_holdout = holdout.rms_after;
+    result_.worse = why_worse(loop_.has_holdout ? holdout : train);
+    for (TrialFlight& flight : tried) {
+      if (!flight.first_reference) continue;
+      std::vector<std::size_t> used = flight.fitted;
+      used.insert(used.end(), flight.held_out.begin(), flight.held_out.end());
+      const auto shown = [&](std::size_t model) { return only_at(flight.residuals[model], used); };
+      result_.flights.push_back({flight.samples, !flight.held_out.empty(), shown(0), shown(1), shown(2)});
+    }
+  }
 
   /// Whether the ladder as a whole made the residual worse: much, or surely.
-  std::string why_worse() const {
+  std::string why_worse(const Comparison& whole) const {
     constexpr double much = 1.02;
-    constexpr double surely = 2.0;  // standard deviations
-    if (!(growth_ > much) && !(growth_ > 1.0 && gain_ < -surely * gain_error_)) return "";
+    const double growth = whole.rms_after / whole.rms_before;
+    if (!(growth > much) && !(growth > 1.0 && whole.is_worse())) return "";
     return fmt::format(
-        "{} the rms of the best model is {:.4f} times that of the model as it was given (fitting the latter "
-        "again added {:.0f} +- {:.0f} to its squared residuals in units of the noise)",
-        loop_.has_holdout ? "on what was held out" : "on these flights", growth_, -gain_, gain_error_);
+        "{} the rms of the best model is {:.4f} times that of the model as it was given (its squared "
+        "residuals are larger by {:.0f} +- {:.0f} in units of the noise)",
+        loop_.has_holdout ? "on what was held out" : "on these flights", growth, -whole.gain,
+        whole.gain_error);
   }
 
   void climb_on() {
@@ -228,7 +325,8 @@ class Climb {
     if (now.verdict == Verdict::silent) return candidates;
     candidates.all = now.verdict == Verdict::identified || now.verdict == Verdict::ambiguous;
     for (const Finding& finding : now.findings) {
-      if (!finding.of_reference && !has(result_.fit.model, finding.effect.id) && !is_a_gamble(finding, now))
+      if (!may_be_of_reference(finding) && !has(result_.fit.model, finding.effect.id) &&
+          !is_a_gamble(finding, now))
         candidates.effects.push_back(candidate_of(finding, now.verdict));
     }
     if (candidates.all || !loop_.trace_variables) return candidates;
@@ -240,18 +338,16 @@ class Climb {
     return candidates;
   }
 
-  /// Whether the wrong choice does harm: another of its aliases would correct the static pressure otherwise,
-  /// or the effect is not surely the cause and changes that pressure by much more than it takes off the
-  /// residual.
+  /// Whether the effect is not surely the cause, and changes the static pressure by much more than it takes
+  /// off the residual.
   static bool is_a_gamble(const Finding& finding, const Diagnosis& diagnosis) {
     constexpr double tolerable = 0.35;  // of the noise
     constexpr double leverage = 2.0;
-    const double limit = tolerable * diagnosis.noise_rms_with_findings;
-    if (finding.static_risk > limit) return true;
-    if (diagnosis.verdict == Verdict::identified) return false;
+    if (diagnosis.verdict != Verdict::partial) return false;
     const double explained = std::sqrt(
         std::max(0.0, finding.rms_before * finding.rms_before - finding.rms_after * finding.rms_after));
-    return finding.static_change > std::max(limit, leverage * explained);
+    return finding.static_change >
+           std::max(tolerable * diagnosis.noise_rms_with_findings, leverage * explained);
   }
 
   std::string why_nothing_is_added() const {
@@ -268,27 +364,19 @@ class Climb {
           off.empty() ? "" : "; but ", fmt::join(off, "; "));
     }
     for (const Finding& finding : now.findings) {
-      if (finding.of_reference) {
+      if (may_be_of_reference(finding)) {
         return fmt::format(
-            "{} is of the system that the model is held against, and nothing of the model is to be changed "
-            "for it",
-            finding.id());
+            "{} {} of the system that the model is held against, and nothing of the model is to be changed "
+            "for it{}{}",
+            finding.id(), finding.of_reference ? "is" : "may be an error",
+            finding.advice.sentence.empty() ? "" : "; ", finding.advice.sentence);
       }
-      if (!is_a_gamble(finding, now)) continue;
-      std::vector<std::string> names;
-      for (const Alias& alias : finding.aliases) names.push_back(alias.effect);
-      if (names.empty()) {
+      if (is_a_gamble(finding, now)) {
         return fmt::format(
             "{} may not be the cause, and would change the corrected static pressure by {}, much more than "
             "it takes off the residual; choose it yourself with pcor add",
             finding.id(), shown(finding.static_change));
       }
-      return fmt::format(
-          "these flights cannot tell {} from {}, and the corrected static pressure would differ by {} "
-          "between them; {}; or choose one yourself with pcor add",
-          finding.id(), fmt::join(names, ", "), shown(std::max(finding.static_risk, finding.static_change)),
-          finding.advice.sentence.empty() ? "fly a manoeuvre that tells them apart"
-                                          : finding.advice.sentence);
     }
     if (!now.findings.empty()) return "what the diagnosis names is in the model already";
     const Unexplained& left = now.unexplained;
@@ -304,72 +392,82 @@ class Climb {
 
   /// Adds the candidate and keeps it where that helps; else says why not.
   std::string refusal_of(const Candidate& candidate) {
-    const std::string& id = candidate.effect.id;
+    const std::string& id = candidate.effect().id;
     ImproveStep step;
     step.added = id;
     step.title = candidate.title;
     step.aliases = candidate.aliases;
+    TrialModel model;
     RefitResult fit;
     try {
-      fit = loop_.refit(loop_.add(result_.fit.model, candidate.effect));
+      model = loop_.add(top(), candidate.choices.front().added);
+      fit = loop_.refit(model);
     } catch (const Error& error) {
       return fmt::format("{} was tried, but cannot be fitted: {}", id, error.what());
     }
-    measure(step, fit);
-    double before = result_.steps.back().rms_holdout;
-    double train = result_.steps.back().rms_train;
-    double after = step.rms_holdout;
-    // Where the model describes more samples than before, those with flaps out, both are compared on these.
-    if (fit.samples != result_.fit.samples) {
-      ModelEffect nothing = candidate.effect;
-      nothing.parameters = neutral_of(candidate.effect);
-      const RefitResult from_before = loop_.refit(loop_.add(result_.fit.model, nothing));
-      const Judged same_samples = judged(from_before, loop_.has_holdout);
-      train = from_before.rms_before;
-      before = same_samples.rms_before;
-      after = same_samples.rms_after;
-    }
-    if (!loop_.has_holdout && step.rms_train > fit_limit * train) {
+    measure(step, fit, model.alike);
+    const std::vector<TrialFlight> tried = loop_.try_models({top(), {fit.model, model.alike}});
+    const Comparison fitted = comparison_of(tried, 0, 1, false);
+    const Comparison held_out = comparison_of(tried, 0, 1, true);
+    if (fitted.rms_after > fit_limit * fitted.rms_before && !fitted.is_better()) {
       return fmt::format("{} was tried and dropped: with it the rms of the fit is {}, without it {}", id,
-                         shown(step.rms_train), shown(train));
+                         shown(fitted.rms_after), shown(fitted.rms_before));
     }
-    // What another reference shows, the first may not see: then the sum of all decides, as long as the first
-    // hardly minds.
-    const bool shown_elsewhere = candidate.limit == named_limit && !fit.further.empty() &&
-                                 after <= unseen_limit * before && judged(fit, loop_.has_holdout).is_sure();
-    if (!(after <= candidate.limit * before) && !shown_elsewhere) {
-      const std::string condition =
-          candidate.limit < 1.0 ? fmt::format("; a term whose cause is not known has to take {:.0f} % off it",
-                                              100.0 * (1.0 - candidate.limit))
-                                : "";
-      return fmt::format("{} was tried and dropped: with it the held-out rms is {}, without it {}{}", id,
-                         shown(after), shown(before), condition);
+    // Without held-out flights the parts in turn of the diagnosis count. Where the model describes more
+    // samples than before, those with flaps out, both are compared on these.
+    const bool same_samples = fit.samples == result_.fit.samples;
+    const bool in_turn = !loop_.has_holdout && same_samples;
+    const Comparison& judged = loop_.has_holdout ? held_out : fitted;
+    const double before = in_turn ? result_.steps.back().rms_holdout : judged.rms_before;
+    const double after = in_turn ? step.rms_holdout : judged.rms_after;
+    const bool better = in_turn ? after <= before && candidate.is_sure : judged.is_better();
+    const bool worse = in_turn ? after > before : judged.is_worse();
+    const std::string figures =
+        fmt::format("with it the held-out rms is {}, without it {}", shown(after), shown(before));
+    const std::string gain =
+        in_turn ? ""
+                : fmt::format(" (its squared residuals fall by {:.0f} +- {:.0f} in units of the noise)",
+                              judged.gain, judged.gain_error);
+    if (worse || !(better || (candidate.is_named && candidate.is_sure && fitted.is_better()))) {
+      return fmt::format("{} was tried and dropped: {}{}{}", id, figures, gain,
+                         worse ? "" : ", which is no more than chance");
     }
-    step.learnt = fmt::format("{}: {}; held-out rms {} before, {} after{}", id, coefficients_of(fit, id),
-                              shown(before), shown(after), candidate.caution);
-    growth_ *= after / before;
-    take(std::move(step), std::move(fit));
+    if (!candidate.is_named && !(after <= unnamed_limit * before)) {
+      return fmt::format(
+          "{} was tried and dropped: {}; a term whose cause is not known has to take {:.0f} % off it", id,
+          figures, 100.0 * (1.0 - unnamed_limit));
+    }
+    step.learnt = fmt::format("{}: {}; held-out rms {} before, {} after{}{}", id, coefficients_of(fit, id),
+                              shown(before), shown(after),
+                              better ? "" : ", which tells nothing: the fitted flights speak for it",
+                              candidate.caution);
+    take(std::move(step), std::move(fit), candidate.choices, std::move(model.alike));
     return "";
   }
 
   /// The figures of a rung. Without samples that are held out those of a diagnosis stand for them.
-  void measure(ImproveStep& step, const RefitResult& fit) const {
+  void measure(ImproveStep& step, const RefitResult& fit, const std::vector<ModelEffect>& alike) const {
     step.rms_train = fit.rms;
     step.noise_rms = fit.noise_rms;
     step.terms = static_cast<std::size_t>(
         std::count_if(fit.parameters.begin(), fit.parameters.end(),
                       [](const FittedParameter& parameter) { return parameter.fitted; }));
     if (loop_.has_holdout) {
-      step.rms_holdout = judged(fit, true).rms_after;
+      step.rms_holdout = held_out_rms(fit);
     } else {
-      step.diagnosis = loop_.diagnose(fit.model);
+      step.diagnosis = loop_.diagnose({fit.model, alike});
       step.rms_holdout = step.diagnosis.residual_rms_held_out;
     }
   }
 
   /// A rung that was measured is part of the ladder, with what is still missing there.
-  void take(ImproveStep step, RefitResult fit) {
-    if (loop_.has_holdout) step.diagnosis = loop_.diagnose(fit.model);
+  void take(ImproveStep step, RefitResult fit, std::vector<Choice> choices, std::vector<ModelEffect> alike) {
+    if (result_.steps.empty())
+      refitted_ = fit.model;
+    else
+      rungs_.push_back(std::move(choices));
+    alike_ = std::move(alike);
+    if (loop_.has_holdout) step.diagnosis = loop_.diagnose({fit.model, alike_});
     std::vector<HeldOutPart>& held_out = step.diagnosis.held_out;
     held_out.clear();
     for (const FlightFit& flight : fit.flights) {
@@ -382,10 +480,10 @@ class Climb {
 
   const ImproveLoop& loop_;
   Improvement result_;
-  // On what is held out, else on all samples.
-  double growth_ = 1.0;  // of the rms, over the whole ladder
-  double gain_ = 0.0;    // by the first fit
-  double gain_error_ = 0.0;
+  TrialModel given_;
+  ModelFile refitted_;
+  std::vector<ModelEffect> alike_{};          // of the model at the top of the ladder
+  std::vector<std::vector<Choice>> rungs_{};  // what may be each effect that was added, itself first
 };
 
 /// The variables that all the flights have.
@@ -415,6 +513,25 @@ void hold(ModelFile& file, const std::vector<std::string>& parameters) {
 
 }  // namespace
 
+std::string rivals_text(const ImproveStep& step) {
+  if (step.rivals.empty()) return "";
+  std::vector<std::string> each;
+  for (const RungRival& rival : step.rivals) {
+    each.push_back(fmt::format("{} (probability {:.2f}, changes it by {:.3f} hPa)", rival.effect,
+                               rival.probability, rival.static_change));
+  }
+  const std::string share =
+      step.share >= 1.0 ? "their average is applied"
+      : step.share < 0.01
+          ? "none of them is applied, since one of them calls any change a harm"
+          : fmt::format("{:.0f} % of their average is applied, since one of them calls more a harm",
+                        100.0 * step.share);
+  return fmt::format(
+      "which of its rivals is there matters for the corrected static pressure: {}; {}, and how they differ, "
+      "{:.3f} hPa, is part of its stated error",
+      fmt::join(each, ", "), share, step.spread);
+}
+
 Improvement ImproveLoop::run(const ModelFile& model) const { return Climb(*this, model).run(); }
 
 Improvement improve(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
@@ -438,30 +555,34 @@ Improvement improve(const std::vector<std::filesystem::path>& flights, const Mod
   diagnose_with.training_share = options.refit.training_share;
   diagnose_with.progress = options.refit.progress;
 
-  std::map<std::string, Finding> found;  // of all rungs, by effect
+  std::map<std::string, double> found;  // chi2 of the findings of all rungs, by effect
   ImproveLoop loop;
-  loop.refit = [&](const ModelFile& file) {
-    tell("fitting with " + last_of(file));
-    return refit(flights, file, references, options.refit);
+  loop.refit = [&](const TrialModel& trial) {
+    tell("fitting with " + last_of(trial.file));
+    return refit(flights, trial.file, with_alike(references, trial.alike, variables), options.refit);
   };
-  loop.diagnose = [&](const ModelFile& file) {
-    tell("looking for what is missing beside " + last_of(file));
+  loop.diagnose = [&](const TrialModel& trial) {
+    tell("looking for what is missing beside " + last_of(trial.file));
     diagnose_with.explained = 0.0;
-    for (const ModelEffect& effect : file.model.effects) {
+    for (const ModelEffect& effect : trial.file.model.effects) {
       const auto before = found.find(effect.id);
-      if (before != found.end()) diagnose_with.explained += before->second.chi2;
+      if (before != found.end()) diagnose_with.explained += before->second;
     }
-    Diagnosis diagnosis = diagnose(flights, file, references, diagnose_with);
+    Diagnosis diagnosis =
+        diagnose(flights, trial.file, with_alike(references, trial.alike, variables), diagnose_with);
     for (const Finding& finding : diagnosis.findings) {
-      if (!finding.of_reference) found.insert_or_assign(finding.effect.id, finding);
+      if (!finding.of_reference) found.insert_or_assign(finding.effect.id, finding.chi2);
     }
     return diagnosis;
   };
-  loop.add = [&](const ModelFile& file, const ModelEffect& effect) {
-    ModelFile extended = with_effects(file, {effect}, variables);
-    const auto finding = found.find(effect.id);
-    if (finding != found.end()) hold(extended, finding->second.held);
+  loop.add = [&](const TrialModel& trial, const AddedEffect& added) {
+    TrialModel extended{with_effects(trial.file, {added.effect}, variables), trial.alike};
+    hold(extended.file, added.held);
+    if (added.is_alike) extended.alike.push_back(added.effect);
     return extended;
+  };
+  loop.try_models = [&](const std::vector<TrialModel>& models) {
+    return try_models(flights, models, references, options.refit, variables);
   };
   loop.has_holdout = !options.refit.holdout.empty() || options.refit.training_share < 1.0;
   loop.trace_variables = options.trace_variables;

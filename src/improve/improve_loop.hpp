@@ -3,14 +3,23 @@
 #include <functional>
 
 #include <pcor/improve/improve.hpp>
+#include "improve/model_trials.hpp"
 
 namespace pcor::internal {
 
+/// An effect that is to be added to a model.
+struct AddedEffect {
+  ModelEffect effect;               ///< with the coefficients to start from
+  std::vector<std::string> held{};  ///< parameters that the flights do not tell
+  bool is_alike = false;            ///< the systems that the model is held against have it too
+};
+
 /// What the loop of `improve` is made of, so that it can be tried without flights.
 struct ImproveLoop {
-  std::function<RefitResult(const ModelFile& model)> refit;
-  std::function<Diagnosis(const ModelFile& model)> diagnose;
-  std::function<ModelFile(const ModelFile& model, const ModelEffect& effect)> add;
+  std::function<RefitResult(const TrialModel& model)> refit;
+  std::function<Diagnosis(const TrialModel& model)> diagnose;
+  std::function<TrialModel(const TrialModel& model, const AddedEffect& added)> add;
+  std::function<std::vector<TrialFlight>(const std::vector<TrialModel>& models)> try_models;
   bool has_holdout = false;     ///< the refit tells of samples that are held out
   bool trace_variables = true;  ///< as in `ImproveOptions`
   std::size_t most_steps = 8;   ///< effects that are added at most

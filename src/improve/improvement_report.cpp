@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -23,8 +24,55 @@ namespace {
 
 using namespace internal::report;
 
-std::string rung_name(const ImproveStep& step) {
-  return step.added.empty() ? "as it was" : "+ " + step.added;
+std::string rung_name(const ImproveStep& step) { return step.added.empty() ? "refitted" : "+ " + step.added; }
+
+bool is_averaged(const Improvement& improvement) {
+  return std::any_of(improvement.steps.begin(), improvement.steps.end(),
+                     [](const ImproveStep& step) { return !step.rivals.empty(); });
+}
+
+/// The flights with one of their residuals, as the panels take it.
+Flights with_residual(const Improvement& improvement, std::vector<double> ImprovedFlight::*residual) {
+  Flights flights;
+  for (const ImprovedFlight& flight : improvement.flights) {
+    flights.emplace_back();
+    flights.back().samples = flight.samples;
+    flights.back().before = flight.*residual;
+  }
+  return flights;
+}
+
+/// The flights of the diagnoses, and behind them those that are held out as a whole.
+Flights shown_flights(const Improvement& improvement) {
+  Flights flights = improvement.steps.front().diagnosis.flights;
+  const Flights all = with_residual(improvement, &ImprovedFlight::best);
+  for (std::size_t f = flights.size(); f < all.size(); ++f) flights.push_back(all[f]);
+  return flights;
+}
+
+/// Residuals of the model as it came, refitted, and as it is delivered, over time.
+void add_ladder_in_time(DiagnosisPanels& panels, const Improvement& improvement) {
+  const auto before = [](const FlightDiagnosis& flight) { return flight.before; };
+  std::vector<std::string> columns;
+  const auto add = [&](const char* name, const std::string& title, auto residual) {
+    if (panels.add_column(name, title, "hPa", with_residual(improvement, residual), before))
+      columns.emplace_back(name);
+  };
+  add("ladder-given", "residual, as it came", &ImprovedFlight::given);
+  add("ladder-refitted", "residual, refitted", &ImprovedFlight::refitted);
+  add("ladder-best", "residual, as delivered", &ImprovedFlight::best);
+  if (columns.empty()) return;
+  std::string held_out = "No flight was held out as a whole.";
+  std::vector<std::string> names;
+  for (const ImprovedFlight& flight : improvement.flights) {
+    if (flight.held_out) names.push_back(flight.samples->name);
+  }
+  if (!names.empty()) {
+    held_out = fmt::format("Held out{}: {}.",
+                           improvement.flights.size() == names.size() ? ", the last part of each" : "",
+                           list_text(names));
+  }
+  panels.add_time("The ladder in time", held_out, columns, "residual");
 }
 
 BarPanel ladder_bars(const Improvement& improvement) {
@@ -37,7 +85,11 @@ BarPanel ladder_bars(const Improvement& improvement) {
             "effect that was added.";
   bars.axis = "rms";
   bars.unit = "hPa";
+  if (std::isfinite(improvement.given_rms_holdout))
+    bars.bars.push_back({"as it came", improvement.given_rms_holdout});
   for (const ImproveStep& step : improvement.steps) bars.bars.push_back({rung_name(step), step.rms_holdout});
+  if (is_averaged(improvement) && std::isfinite(improvement.rms_holdout))
+    bars.bars.push_back({"averaged over rivals", improvement.rms_holdout});
   bars.bars.push_back({"noise", improvement.steps.back().noise_rms});
   return bars;
 }
@@ -74,6 +126,8 @@ void summarise(Report& report, const Improvement& improvement) {
     if (!step.aliases.empty())
       text += fmt::format(" These flights cannot tell it from {}.", list_text(step.aliases));
     report.summary.push_back(std::move(text));
+    if (const std::string rivals = rivals_text(step); !rivals.empty())
+      report.summary.push_back(sentence("Of " + step.added + ": " + rivals));
   }
   if (const std::string text = flaps_out_text(improvement.fit.flaps_out, "the fit"); !text.empty())
     report.summary.push_back(sentence(text));
@@ -123,7 +177,9 @@ void add_rung(DiagnosisPanels& panels, const Improvement& improvement, std::size
                       [number](const F& f) { return one_of(f.added, number); });
   }
   if (const std::vector<Estimate> fitted = fitted_of(improvement.fit, step.added); !fitted.empty())
-    page.paragraphs.push_back(fmt::format("In the best model {}.", estimates_text(fitted)));
+    page.paragraphs.push_back(
+        fmt::format("{} {}.", step.rivals.empty() ? "In the best model" : "Fitted as if it alone were there",
+                    estimates_text(fitted)));
   panels.add(std::move(page));
   panels.add_binned("Residual without and with " + step.added + ", against what it depends on",
                     effect_caption, {numbered("rung", rung - 1), numbered("rung", rung)}, inputs);
@@ -137,7 +193,7 @@ Report improvement_report(const Improvement& improvement, const ModelFile& start
   if (improvement.steps.empty()) throw Error("report: the ladder has no rung; improve a model first");
   const std::vector<ImproveStep>& steps = improvement.steps;
   const Diagnosis& top = steps.back().diagnosis;
-  DiagnosisPanels panels(steps.front().diagnosis.flights);
+  DiagnosisPanels panels(shown_flights(improvement));
   Report& report = panels.report();
   const std::size_t added = steps.size() - 1;
   report.title = added == 0   ? "No effect makes the model better"
@@ -162,6 +218,7 @@ Report improvement_report(const Improvement& improvement, const ModelFile& start
                      "Residual at the top of the ladder: one colour over a region is a bias there.",
                      rungs.back());
   panels.add_table(ladder_table(improvement));
+  add_ladder_in_time(panels, improvement);
   add_residual_panels(panels, rungs.size() < 2 ? rungs : std::vector{rungs.front(), rungs.back()});
   for (std::size_t i = 1; i < steps.size(); ++i) add_rung(panels, improvement, i);
   if (!rungs.empty()) add_unexplained(panels, top, rungs.back());

@@ -77,6 +77,26 @@ ResidualSums flaps_out(const Residuals& residuals, const double* parameters) {
   return sums_of_flight(residuals.samples(), only_where(residuals.values(parameters), masks, Mask::flaps));
 }
 
+Gain gain_between(const FlightSamples& samples, const std::vector<double>& before,
+                  const std::vector<double>& after, const NoiseFloor& noise) {
+  constexpr double minute = 60.0;  // s
+  Gain sum;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < after.size();) {
+    const double end = samples.time[i] + minute;
+    double gain = 0.0;
+    for (; i < after.size() && samples.time[i] < end; ++i) {
+      const double deviation = noise.local_rms[i];
+      if (!std::isnan(after[i]) && !std::isnan(before[i]) && deviation > 0.0)
+        gain += (before[i] * before[i] - after[i] * after[i]) / (deviation * deviation);
+    }
+    sum.value += gain;
+    squares += gain * gain;
+  }
+  sum.error = std::sqrt(squares);
+  return sum;
+}
+
 std::vector<double> means_of_blocks(const FlightSamples& samples, const std::vector<double>& residual) {
   std::vector<double> means;
   const double enough = 0.5 * block_length / samples.step;

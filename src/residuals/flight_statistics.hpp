@@ -39,6 +39,17 @@ ResidualSums sums_of_flight(const FlightSamples& samples, const std::vector<doub
 /// The sums over the samples that are left out for nothing but their flaps.
 ResidualSums flaps_out(const Residuals& residuals, const double* parameters);
 
+/// By how much squared residuals fall, in units of the noise, and its error from how that differs between
+/// minutes.
+struct Gain {
+  double value = 0.0;
+  double error = 0.0;
+};
+
+/// From residuals `before` to residuals `after`, both of all samples; NaN where they do not count.
+Gain gain_between(const FlightSamples& samples, const std::vector<double>& before,
+                  const std::vector<double>& after, const NoiseFloor& noise);
+
 /// The means of a residual over every five minutes, of which at least half count.
 std::vector<double> means_of_blocks(const FlightSamples& samples, const std::vector<double>& residual);
 

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -42,6 +44,14 @@ nlohmann::ordered_json as_json(const ImproveStep& step) {
   json["noise_rms_hpa"] = step.noise_rms;
   json["terms"] = step.terms;
   json["learnt"] = step.learnt;
+  json["share"] = step.share;
+  json["spread_hpa"] = step.spread;
+  json["rivals"] = nlohmann::ordered_json::array();
+  for (const RungRival& rival : step.rivals) {
+    json["rivals"].push_back({{"effect", rival.effect},
+                              {"probability", rival.probability},
+                              {"static_change_hpa", rival.static_change}});
+  }
   json["diagnosis"] = as_json(step.diagnosis);
   return json;
 }
@@ -49,6 +59,10 @@ nlohmann::ordered_json as_json(const ImproveStep& step) {
 nlohmann::ordered_json as_json(const Improvement& improvement, const Options& options) {
   nlohmann::ordered_json json{{"steps", nlohmann::ordered_json::array()}};
   for (const ImproveStep& step : improvement.steps) json["steps"].push_back(as_json(step));
+  json["as_it_came"] = {{"rms_train_hpa", improvement.given_rms_train},
+                        {"rms_holdout_hpa", improvement.given_rms_holdout}};
+  json["delivered"] = {{"rms_train_hpa", improvement.rms_train},
+                       {"rms_holdout_hpa", improvement.rms_holdout}};
   json["unexplained"] = as_json(improvement.steps.back().diagnosis.unexplained);
   json["why_stopped"] = improvement.why_stopped;
   json["holdout_is_flights"] = improvement.holdout_is_flights;
@@ -65,19 +79,39 @@ void print(const Improvement& improvement, const Options& options) {
              mask_text(improvement.fit.masks));
   print_flaps_out(improvement.fit.flaps_out, "the fit");
   fmt::print("\n");
+  const auto figure = [](double rms) { return std::isnan(rms) ? std::string() : fmt::format("{:.4f}", rms); };
   fmt::print("{:<24} {:>10} {:>10} {:>10} {:>13}\n", "rms, hPa", "training", "held out", "noise",
              "coefficients");
+  fmt::print("{:<24} {:>10} {:>10}\n", "as it came", figure(improvement.given_rms_train),
+             figure(improvement.given_rms_holdout));
+  bool is_averaged = false;
   for (const ImproveStep& step : improvement.steps) {
     fmt::print("{:<24} {:>10.4f} {:>10.4f} {:>10.4f} {:>13}\n",
-               step.added.empty() ? "the model as it is" : "+ " + step.added, step.rms_train,
-               step.rms_holdout, step.noise_rms, step.terms);
+               step.added.empty() ? "refitted" : "+ " + step.added, step.rms_train, step.rms_holdout,
+               step.noise_rms, step.terms);
+    is_averaged = is_averaged || !step.rivals.empty();
   }
-  if (!improvement.holdout_is_flights)
+  if (is_averaged) {
+    fmt::print("{:<24} {:>10} {:>10}\n", "averaged over rivals", figure(improvement.rms_train),
+               figure(improvement.rms_holdout));
+  }
+  if (!options.holdout.empty()) {
+    std::vector<std::string> names;
+    for (const std::string& path : options.holdout)
+      names.push_back(std::filesystem::path(path).filename().string());
+    fmt::print("held out: {}\n", fmt::join(names, ", "));
+  } else if (improvement.holdout_is_flights) {
+    fmt::print("held out: of every flight the last {:.0f} %\n", 100.0 * (1.0 - options.training_share));
+  } else {
     fmt::print(
         "held out are five parts of the flights in turn, without outliers; name whole flights with "
         "--holdout\n");
+  }
   fmt::print("\n");
-  for (const ImproveStep& step : improvement.steps) fmt::print("{}\n", step.learnt);
+  for (const ImproveStep& step : improvement.steps) {
+    fmt::print("{}\n", step.learnt);
+    if (const std::string text = rivals_text(step); !text.empty()) fmt::print("  {}\n", text);
+  }
   fmt::print("stopped: {}\n", improvement.why_stopped);
   print_unexplained(improvement.steps.back().diagnosis.unexplained);
   for (const std::string& note : improvement.fit.notes) fmt::print("\nNote: {}.\n", note);

@@ -73,7 +73,10 @@ struct Alias {
   std::vector<Estimate> estimates{};
   /// As `chi2_less` of the logarithm of the marginal likelihood, which knows how large either is met.
   double log_likelihood_less = 0.0;
-  double probability = 0.0;  ///< of being the one that is there, among the one named and its aliases
+  double probability = 0.0;         ///< of being the one that is there, among the one named and its aliases
+  ModelEffect correction{};         ///< with the estimated coefficients, ready for a model
+  std::vector<std::string> held{};  ///< as `Finding::held`
+  bool is_alike = false;            ///< as `Finding::is_alike`
 };
 
 /// A manoeuvre that would tell rivals apart.
@@ -89,6 +92,7 @@ struct Advice {
 struct Finding {
   ModelEffect effect;         ///< with the estimated coefficients, ready for a model
   bool of_reference = false;  ///< it acts on the system that the model is held against
+  bool is_alike = false;      ///< the systems that the model is held against have it too
   std::string title;
   std::vector<Estimate> estimates{};
   /// Parameters that the model's own coefficients imitate: neutral in `effect`, to be held in a fit.
@@ -102,6 +106,10 @@ struct Finding {
   /// Of residuals on stretches that took no part in the fit of model and effect (five parts in turn), hPa.
   double rms_before = 0.0;
   double rms_after = 0.0;
+  /// On these stretches, with all references: fall of the squared innovations by the effect, in units of the
+  /// noise, and its error from how it differs between minutes.
+  double gain = 0.0;
+  double gain_error = 0.0;
   double events = 0.0;                  ///< on how many separate events the evidence rests
   std::vector<Evidence> evidence{};     ///< the strongest first, at most six
   std::vector<Alias> aliases{};         ///< the most likely first

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,13 @@ struct ImproveOptions {
   std::function<void(const std::string& what)> progress{};
 };
 
+/// What the added effect of a rung may be, and what the correction makes of it.
+struct RungRival {
+  std::string effect{};
+  double probability = 0.0;    ///< among the rivals of the rung
+  double static_change = 0.0;  ///< by how much it alone changes the corrected static pressure, rms hPa
+};
+
 /// A rung of the ladder of errors.
 struct ImproveStep {
   std::string added{};                 ///< id of the effect; empty for the model as it was, refitted
@@ -34,20 +42,45 @@ struct ImproveStep {
   std::size_t terms = 0;   ///< free coefficients
   std::string learnt{};    ///< a sentence: what the step taught
   Diagnosis diagnosis{};   ///< of the model at this rung: what is still missing
+  /// Where it matters which of them is there: the model that is delivered has the average of what they
+  /// correct, weighed by their probabilities. The added effect is the first.
+  std::vector<RungRival> rivals{};
+  /// Of that average so much is applied: all, or as much as none of the rivals would call a harm.
+  double share = 1.0;
+  double spread = 0.0;  ///< of the corrected static pressure between the rivals, rms hPa
+};
+
+/// The residuals of a flight with the first reference, of all samples, hPa; NaN where they do not count.
+struct ImprovedFlight {
+  std::shared_ptr<const FlightSamples> samples{};
+  bool held_out = false;        ///< as a whole, or its last part
+  std::vector<double> given{};  ///< with the model as it came
+  std::vector<double> refitted{};
+  std::vector<double> best{};  ///< with the model that is delivered
 };
 
 struct Improvement {
-  ModelFile model;  ///< the best one, refitted
+  ModelFile model;  ///< the best one, refitted, its correction averaged over the rivals that remain
+  double given_rms_train = 0.0;    ///< of the model as it came, hPa, on the samples of the fit
+  double given_rms_holdout = 0.0;  ///< on what was held out; NaN without held-out flights or parts
+  double rms_train = 0.0;          ///< of the model that is delivered
+  double rms_holdout = 0.0;
   std::vector<ImproveStep> steps{};
-  std::string why_stopped{};        ///< a sentence
-  RefitResult fit;                  ///< of the best model
+  std::string why_stopped{};  ///< a sentence
+  RefitResult fit;            ///< of the best model, before it was averaged
+  std::vector<ImprovedFlight> flights{};
   bool holdout_is_flights = false;  ///< rms_holdout is of held-out flights or parts, not of parts in turn
   /// Why the best model is worse than the one to begin with, as it was given; empty where it is not.
   std::string worse{};
 };
 
+/// What a rung says of rivals that it matters to choose between; empty where there are none.
+std::string rivals_text(const ImproveStep& step);
+
 /// Refits the model, learns what is missing, adds it, and begins again, until nothing is missing, what is
-/// left cannot be explained, or held-out flights say that another effect does not help.
+/// left cannot be explained, or held-out flights say that another effect does not help. Where flights cannot
+/// tell several effects apart and it matters for the static pressure which of them is there, the correction
+/// is their average, with their spread in its stated error.
 ///
 /// @throws Error as `refit` and `diagnose`.
 Improvement improve(const std::vector<std::filesystem::path>& flights, const ModelFile& model,

@@ -1,0 +1,178 @@
+#include "improve/model_trials.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/roles/with_effects.hpp>
+#include "numerics/missing.hpp"
+#include "residuals/flight_statistics.hpp"
+#include "residuals/masks.hpp"
+
+namespace pcor::internal {
+namespace {
+
+constexpr double surely = 2.0;  // standard deviations
+
+/// Where an effect stands in a model; the number of its effects where it has none of that name.
+std::size_t place_of(const ModelFile& model, const std::string& effect) {
+  const std::vector<ModelEffect>& effects = model.model.effects;
+  const auto found = std::find_if(effects.begin(), effects.end(),
+                                  [&effect](const ModelEffect& each) { return each.id == effect; });
+  return static_cast<std::size_t>(found - effects.begin());
+}
+
+/// The coefficients with which an effect does nothing, in its shape.
+std::vector<double> neutral_of(const ModelEffect& effect) {
+  if (effect.is_formula()) return std::vector<double>(effect.parameters.size(), 0.0);
+  std::vector<double> parameters = neutral_effect(effect.id).parameters;
+  const EffectFacts& facts = effect_facts[effect_named(effect.id)];
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (facts.parameters[i].shape) parameters[i] = effect.parameters[i];
+  }
+  return parameters;
+}
+
+/// A reference that has the effects of all trials, and of each trial all coefficients that the residual has.
+struct TrialReference {
+  std::shared_ptr<const Reference> reference;
+  std::vector<std::vector<double>> coefficients;
+};
+
+TrialFlight tried_on(const std::filesystem::path& path, const ModelFile& whole, const TrialReference& trial,
+                     const RefitOptions& options, bool held_out) {
+  const Flight file(path, options.time_stamp);
+  TrialFlight flight;
+  flight.samples =
+      std::make_shared<const FlightSamples>(read_samples(file, whole, *trial.reference, options.mask));
+  const Residuals residuals(flight.samples, whole, *trial.reference, options.mask);
+  flight.held_out = used_samples(residuals.mask());
+  if (!held_out) {
+    flight.fitted = used_samples(residuals.mask(), options.training_share);
+    flight.held_out.erase(flight.held_out.begin(),
+                          flight.held_out.begin() + static_cast<std::ptrdiff_t>(flight.fitted.size()));
+  }
+  for (const std::vector<double>& coefficients : trial.coefficients) {
+    flight.residuals.push_back(residuals.values(coefficients.data()));
+    flight.static_pressures.push_back(
+        residuals.quantity(Quantity::corrected_static_pressure, coefficients.data()));
+  }
+  return flight;
+}
+
+}  // namespace
+
+ModelFile union_of(const std::vector<ModelFile>& models) {
+  ModelFile whole = models.front();
+  whole.fits.resize(whole.model.effects.size());
+  for (const ModelFile& model : models) {
+    for (std::size_t e = 0; e < model.model.effects.size(); ++e) {
+      const ModelEffect& effect = model.model.effects[e];
+      if (place_of(whole, effect.id) < whole.model.effects.size()) continue;
+      whole.model.effects.push_back(effect);
+      whole.fits.push_back(e < model.fits.size() ? model.fits[e] : EffectFit{});
+    }
+    whole.variables.insert(model.variables.begin(), model.variables.end());
+    whole.units.insert(model.units.begin(), model.units.end());
+  }
+  return whole;
+}
+
+std::vector<double> coefficients_in(const ModelFile& model, const ModelFile& whole) {
+  std::vector<double> coefficients;
+  for (const ModelEffect& effect : whole.model.effects) {
+    const std::size_t place = place_of(model, effect.id);
+    const std::vector<double> own =
+        place < model.model.effects.size() ? model.model.effects[place].parameters : neutral_of(effect);
+    coefficients.insert(coefficients.end(), own.begin(), own.end());
+  }
+  return coefficients;
+}
+
+References with_alike(const References& references, const std::vector<ModelEffect>& alike,
+                      const std::vector<std::string>& variables) {
+  if (alike.empty()) return references;
+  References result;
+  for (const std::shared_ptr<const Reference>& reference : references) {
+    const ModelFile* const model = reference->model();
+    result.push_back(model == nullptr ? reference
+                                      : reference->with_model(with_effects(*model, alike, variables)));
+  }
+  return result;
+}
+
+std::vector<TrialFlight> try_models(const std::vector<std::filesystem::path>& flights,
+                                    const std::vector<TrialModel>& models, const References& references,
+                                    const RefitOptions& options, const std::vector<std::string>& variables) {
+  std::vector<ModelFile> files;
+  for (const TrialModel& model : models) files.push_back(model.file);
+  const ModelFile whole = union_of(files);
+  std::vector<TrialFlight> tried;
+  for (const std::shared_ptr<const Reference>& reference : references) {
+    TrialReference trial{reference, {}};
+    for (const ModelFile& file : files) trial.coefficients.push_back(coefficients_in(file, whole));
+    if (reference->model() != nullptr) {
+      std::vector<ModelFile> others;
+      for (const TrialModel& model : models)
+        others.push_back(with_effects(*reference->model(), model.alike, variables));
+      const ModelFile whole_other = union_of(others);
+      trial.reference = reference->with_model(whole_other);
+      for (std::size_t m = 0; m < models.size(); ++m) {
+        const std::vector<double> own = coefficients_in(others[m], whole_other);
+        trial.coefficients[m].insert(trial.coefficients[m].end(), own.begin(), own.end());
+      }
+    }
+    const auto add = [&](const std::vector<std::filesystem::path>& paths, bool held_out) {
+      for (const std::filesystem::path& path : paths) {
+        tried.push_back(tried_on(path, whole, trial, options, held_out));
+        tried.back().first_reference = reference == references.front();
+      }
+    };
+    add(flights, false);
+    add(options.holdout, true);
+  }
+  return tried;
+}
+
+bool Comparison::is_better() const { return gain > surely * gain_error; }
+bool Comparison::is_worse() const { return gain < -surely * gain_error; }
+
+Comparison comparison_of(const std::vector<TrialFlight>& flights, std::size_t before, std::size_t after,
+                         bool held_out) {
+  Comparison result;
+  double squares_before = 0.0;
+  double squares_after = 0.0;
+  double samples = 0.0;
+  double variance = 0.0;
+  for (const TrialFlight& flight : flights) {
+    const std::vector<std::size_t>& part = held_out ? flight.held_out : flight.fitted;
+    if (part.empty()) continue;
+    const std::vector<double> was = only_at(flight.residuals[before], part);
+    const std::vector<double> is = only_at(flight.residuals[after], part);
+    const Gain gain = gain_between(*flight.samples, was, is, noise_of_flight(*flight.samples, is));
+    result.gain += gain.value;
+    variance += gain.error * gain.error;
+    if (!flight.first_reference) continue;
+    for (const std::size_t i : part) {
+      if (std::isnan(was[i]) || std::isnan(is[i])) continue;
+      squares_before += was[i] * was[i];
+      squares_after += is[i] * is[i];
+      samples += 1.0;
+    }
+  }
+  result.gain_error = std::sqrt(variance);
+  result.rms_before = samples > 0.0 ? std::sqrt(squares_before / samples) : nan;
+  result.rms_after = samples > 0.0 ? std::sqrt(squares_after / samples) : nan;
+  return result;
+}
+
+std::vector<double> static_pressures_of(const std::vector<TrialFlight>& flights, std::size_t model) {
+  std::vector<double> pressures;
+  for (const TrialFlight& flight : flights) {
+    if (!flight.first_reference) continue;
+    for (const std::size_t i : flight.fitted) pressures.push_back(flight.static_pressures[model][i]);
+  }
+  return pressures;
+}
+
+}  // namespace pcor::internal

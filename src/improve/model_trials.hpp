@@ -1,0 +1,69 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <pcor/fit/refit.hpp>
+
+namespace pcor::internal {
+
+/// A model, and the effects that the systems which it is held against have alike: an angle of the flow at
+/// which all pitot tubes lose pressure is no difference between them.
+struct TrialModel {
+  ModelFile file;
+  std::vector<ModelEffect> alike{};  ///< with their coefficients
+};
+
+/// The references, those with a model of their own with these effects besides. @param variables of the
+/// flights
+References with_alike(const References& references, const std::vector<ModelEffect>& alike,
+                      const std::vector<std::string>& variables);
+
+/// What several models leave on one flight with one reference.
+struct TrialFlight {
+  std::shared_ptr<const FlightSamples> samples{};
+  bool first_reference = true;
+  std::vector<std::size_t> fitted{};    ///< places of the samples that a fit uses
+  std::vector<std::size_t> held_out{};  ///< those that it would use were they not held out
+  /// Of each model, of all samples, hPa; NaN where a value is missing.
+  std::vector<std::vector<double>> residuals{};
+  std::vector<std::vector<double>> static_pressures{};  ///< corrected
+};
+
+/// Holds models against the same samples: those of the flights, and of the flights that are held out, that a
+/// model with the effects of all of them would use. Of an effect the models may only differ in coefficients.
+/// @throws Error as `refit`.
+std::vector<TrialFlight> try_models(const std::vector<std::filesystem::path>& flights,
+                                    const std::vector<TrialModel>& models, const References& references,
+                                    const RefitOptions& options, const std::vector<std::string>& variables);
+
+/// A model that has the effects of all models, with the coefficients of the first that has them.
+ModelFile union_of(const std::vector<ModelFile>& models);
+
+/// The coefficients of a model in the order of those of a union that it is part of: of an effect that it does
+/// not have those with which the effect does nothing, in the shape that it has in the union.
+std::vector<double> coefficients_in(const ModelFile& model, const ModelFile& whole);
+
+/// What two models leave on the same samples.
+struct Comparison {
+  double rms_before = 0.0;  ///< with the first reference, hPa; NaN where there are no samples
+  double rms_after = 0.0;
+  /// Fall of the squared residuals with all references, in units of the noise, and its error from how it
+  /// differs between minutes.
+  double gain = 0.0;
+  double gain_error = 0.0;
+
+  bool is_better() const;  ///< by more than chance
+  bool is_worse() const;   ///< by more than chance
+};
+
+/// Model number `after` beside model number `before`, on samples that were held out or that were fitted.
+Comparison comparison_of(const std::vector<TrialFlight>& flights, std::size_t before, std::size_t after,
+                         bool held_out);
+
+/// The corrected static pressures of a model at the samples of the fit, hPa, flight after flight.
+std::vector<double> static_pressures_of(const std::vector<TrialFlight>& flights, std::size_t model);
+
+}  // namespace pcor::internal
