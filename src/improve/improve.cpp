@@ -265,14 +265,15 @@ class Climb {
 
   /// What the whole ladder came to.
   void compare_with_the_given() {
-    std::vector<TrialFlight> tried = loop_.try_models({given_, {refitted_}, {result_.model, alike_}});
+    std::vector<TrialFlight> tried = loop_.try_models({given_, {refitted_}, {result_.model, alike_}, top()});
     const Comparison train = comparison_of(tried, 0, 2, false);
     const Comparison holdout = comparison_of(tried, 0, 2, true);
     result_.given_rms_train = train.rms_before;
     result_.rms_train = train.rms_after;
     result_.given_rms_holdout = holdout.rms_before;
     result_.rms_holdout = holdout.rms_after;
-    result_.worse = why_worse(loop_.has_holdout ? holdout : train);
+    // An average hedges, so it leaves more than its best rival; whether the loop did harm the best tells.
+    result_.worse = why_worse(comparison_of(tried, 0, 3, loop_.has_holdout));
     for (TrialFlight& flight : tried) {
       if (!flight.first_reference) continue;
       std::vector<std::size_t> used = flight.fitted;

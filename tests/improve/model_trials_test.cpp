@@ -1,0 +1,137 @@
+#include "improve/model_trials.hpp"
+
+#include <gtest/gtest.h>
+#include <pcor/roles/with_effects.hpp>
+#include <pcor/simulate/simulate.hpp>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "support/temporary_directory.hpp"
+
+using pcor::ModelFile;
+using pcor::internal::coefficients_in;
+using pcor::internal::Comparison;
+using pcor::internal::comparison_of;
+using pcor::internal::static_pressures_of;
+using pcor::internal::TrialFlight;
+using pcor::internal::TrialModel;
+using pcor::internal::try_models;
+using pcor::internal::union_of;
+
+namespace {
+
+const std::filesystem::path data = std::filesystem::path(PCOR_SOURCE_DIR) / "data";
+const pcor::test::TemporaryDirectory directory;
+
+/// A quarter of an hour of a C-130 with equation 18.
+std::filesystem::path flight() {
+  static const std::filesystem::path path = [] {
+    std::filesystem::path made = directory / "flight.nc";
+    pcor::simulate_flight(pcor::read_scenario(data / "scenarios" / "c130-short.toml"), made);
+    return made;
+  }();
+  return path;
+}
+
+/// The law of the flight, with the laser.
+ModelFile law() {
+  ModelFile file = pcor::read_model(data / "models" / "c130-psfd-eq18.toml");
+  file.variables.emplace(pcor::Quantity::attack, "ATTACK");
+  file.variables.emplace(pcor::Quantity::sideslip, "SSLIP");
+  file.variables.emplace(pcor::Quantity::lams_airspeed, "VLAMS");
+  return file;
+}
+
+ModelFile with(const std::string& effect, double value) {
+  ModelFile file = pcor::with_effects(law(), {{effect}});
+  file.model.effects.back().parameters[0] = value;
+  return file;
+}
+
+std::vector<TrialFlight> tried(const std::vector<TrialModel>& models, const pcor::References& references,
+                               const pcor::RefitOptions& options = {}) {
+  return try_models({flight()}, models, references, options, {});
+}
+
+double rms_between(const std::vector<double>& a, const std::vector<double>& b,
+                   const std::vector<std::size_t>& places) {
+  double squares = 0.0;
+  for (const std::size_t i : places) squares += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(squares / static_cast<double>(places.size()));
+}
+
+}  // namespace
+
+TEST(Union, HasTheEffectsOfAllOnce) {
+  const ModelFile whole = union_of({with("static-mach", 0.01), with("static-beta-odd", 0.02)});
+  EXPECT_EQ(whole.model.effects.size(), law().model.effects.size() + 2);
+  EXPECT_EQ(coefficients_in(whole, whole).size(), coefficients_in(law(), whole).size());
+  EXPECT_EQ(coefficients_in(with("static-mach", 0.01), whole).back(), 0.0) << "an absent effect does nothing";
+  EXPECT_EQ(coefficients_in(with("static-beta-odd", 0.02), whole).back(), 0.02);
+}
+
+TEST(Union, KeepsTheShapeOfAnAbsentEffect) {
+  ModelFile shaped = pcor::with_effects(law(), {{"pitot-angle", {0.0002, 4.0}}});
+  EXPECT_EQ(coefficients_in(law(), union_of({law(), shaped})).back(), 4.0);
+}
+
+TEST(Trials, AModelIsNeitherBetterNorWorseThanItself) {
+  const std::vector<TrialFlight> flights = tried({{law()}, {law()}}, {pcor::lams_reference()});
+  const Comparison same = comparison_of(flights, 0, 1, false);
+  EXPECT_EQ(same.gain, 0.0);
+  EXPECT_EQ(same.rms_before, same.rms_after);
+  EXPECT_FALSE(same.is_better() || same.is_worse());
+  EXPECT_TRUE(std::isnan(comparison_of(flights, 0, 1, true).rms_before)) << "nothing is held out";
+}
+
+TEST(Trials, TheTruthIsBetterAndTheRestWorseByTheSame) {
+  const std::vector<TrialFlight> flights =
+      tried({{law()}, {with("static-mach", 0.02)}}, {pcor::lams_reference()});
+  const Comparison there = comparison_of(flights, 1, 0, false);
+  EXPECT_TRUE(there.is_better());
+  EXPECT_GT(there.rms_before, there.rms_after);
+  EXPECT_TRUE(comparison_of(flights, 0, 1, false).is_worse());
+}
+
+TEST(Trials, PartsAreFittedOrHeldOut) {
+  pcor::RefitOptions options;
+  options.training_share = 0.6;
+  options.holdout = {flight()};
+  const std::vector<TrialFlight> flights = tried({{law()}}, {pcor::lams_reference()}, options);
+  ASSERT_EQ(flights.size(), 2U);
+  const std::size_t all = flights[0].fitted.size() + flights[0].held_out.size();
+  EXPECT_NEAR(static_cast<double>(flights[0].fitted.size()), 0.6 * static_cast<double>(all), 1.0);
+  EXPECT_TRUE(flights[1].fitted.empty());
+  EXPECT_EQ(flights[1].held_out.size(), all);
+}
+
+TEST(Trials, StaticPressuresDifferByWhatAnEffectAdds) {
+  // static-constant adds a0 * p to delta-p: 0.001 of it is 0.9 hPa at 900 hPa.
+  ModelFile more = law();
+  more.model.effects[0].parameters[0] += 0.001;
+  const std::vector<TrialFlight> flights = tried({{law()}, {more}}, {pcor::lams_reference()});
+  const std::vector<double> one = static_pressures_of(flights, 0);
+  const std::vector<double> other = static_pressures_of(flights, 1);
+  ASSERT_EQ(one.size(), flights[0].fitted.size());
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    ASSERT_GT(other[i] - one[i], 0.0008 * one[i]);
+    ASSERT_LT(other[i] - one[i], 0.0012 * one[i]);
+  }
+}
+
+TEST(Trials, WhatBothSystemsHaveAlikeIsNoDifferenceOfTheirTotalPressures) {
+  const pcor::ModelEffect loss{"pitot-angle", {0.0004, 2.0}};
+  const pcor::References total{
+      pcor::total_pressure_reference(pcor::read_model(data / "models" / "c130-psfrd-eq18.toml"))};
+  const ModelFile own = pcor::with_effects(law(), {loss});
+  const std::vector<TrialFlight> flights = tried({{law()}, {own}, {own, {loss}}}, total);
+  const TrialFlight& only = flights.front();
+  const double alone = rms_between(only.residuals[0], only.residuals[1], only.fitted);
+  const double alike = rms_between(only.residuals[0], only.residuals[2], only.fitted);
+  EXPECT_GT(alone, 0.1);
+  // It is a part of q, and the q of the systems differ by a few percent.
+  EXPECT_LT(alike, 0.1 * alone);
+}
