@@ -17,9 +17,9 @@
 namespace pcor::internal {
 namespace {
 
-constexpr double absorbed_below = 1e-6;       // of a variance: what rounding of single precision leaves of it
-constexpr double like_the_base_below = 0.02;  // the same for an effect that the base has by other sensors
-constexpr double redundant_below = 1e-3;      // of what the base leaves, given others
+constexpr double absorbed_below = 1e-6;  // of a variance: what rounding of single precision leaves of it
+constexpr double like_the_base_below = 0.005;  // the same for an effect that the base has by other sensors
+constexpr double redundant_below = 1e-3;       // of what the base leaves, given others
 constexpr double errors_beyond_bounds = 2.0;
 constexpr double least_share = 0.08;  // of the rms that is explained already, for one more effect
 constexpr double enough_blocks = 12.0;
