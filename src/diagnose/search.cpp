@@ -25,13 +25,14 @@ constexpr double least_share = 0.08;  // of the rms that is explained already, f
 constexpr double enough_blocks = 12.0;
 constexpr double few_blocks_penalty = 6.0;
 
-// Sizes of effects: three times the usual one is a standard deviation; a part of all effects is larger.
+// Sizes of effects: three times the usual one is a standard deviation. A part of all effects is larger, and a
+// part much smaller, as what is left of an effect that a law has but not quite.
 constexpr double spread_of_sizes = 3.0;
 struct Tail {
   double times;
   double share;
 };
-constexpr std::array<Tail, 3> tails{{{1.0, 0.75}, {3.0, 0.2}, {10.0, 0.05}}};
+constexpr std::array<Tail, 4> tails{{{1.0, 0.5}, {0.1, 0.25}, {3.0, 0.2}, {10.0, 0.05}}};
 
 /// `one_degree_equivalent` from a table: draws ask for it thousands of times.
 class EquivalentTable {

@@ -31,7 +31,7 @@ constexpr double surely = 2.0;  // standard deviations
 // Less likely rivals have no say in the correction.
 constexpr double least_probability = 0.05;
 // Of the noise: differences of the static pressure below this do not matter.
-constexpr double negligible = 0.1;
+constexpr double negligible = 0.05;
 
 /// An effect that may be the cause of what is left.
 struct Choice {
