@@ -589,6 +589,23 @@ class Refit(ComparisonTest):
         self.assertEqual(other["variables"]["static_pressure"], "PSFRD")
         self.assertIn("provenance", other)
 
+    def test_every_form_of_the_fitted_reference_is_in_the_command_to_copy(self):
+        self.link(ONE, "one.nc")
+        self.model()
+        zero = replace(r"(?s)^\[\[effect\]\].*", '[[effect]]\nid = "qcf-zero"\nparameters = { offset = 0.0 }\n')
+        self.write("its law.toml", OTHER_SYSTEM.read_text())
+        self.write("zero.toml", zero(OTHER_SYSTEM.read_text()))
+        held = [word for effect in LAW for word in ("--fix", effect)]
+        for references, more in ((("static:its law.toml", "pressure:PS_A", "total:its law.toml"), ()),
+                                 (("total:zero.toml",), held)):
+            with self.subTest(references):
+                given = [word for reference in references for word in ("--reference", reference)]
+                text = self.done("refit", "one.nc", "-m", "model.toml", "-o", "fitted.toml", *given, *more,
+                                 "--refit-reference", "both's.toml", "--force", cwd=self.path).stdout
+                told = shlex.split(self.run_as_printed(text))
+                after = [re.sub(r":(its law|zero)\.toml", ":both's.toml", reference) for reference in references]
+                self.assertEqual([told[i + 1] for i, word in enumerate(told) if word == "--reference"], after)
+
     def test_report_is_one_file(self):
         report = self.path / "out.html"
         self.refit("--report", report)

@@ -183,7 +183,7 @@ void print(const Comparison& comparison, const ChosenReferences& references, con
     return;
   }
   fmt::print("To refit its coefficients: pcor refit {} -m {} -o fitted.toml\n", flights, quoted(model));
-  if (comparison.total_pressure) {
+  if (comparison.total_pressure && comparison.is_static_pressure) {
     fmt::print(
         "To refit both systems together: pcor refit {} -m {} -o fitted.toml --refit-reference "
         "fitted-reference.toml\n",
