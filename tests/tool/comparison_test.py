@@ -344,6 +344,10 @@ class References(ComparisonTest):
                          ["lams", "total:PSFRD+QCFR", "height", "wind"])
         self.assertEqual(silent["models"][:1], stated["models"])
 
+    def test_help_says_which_references_are_taken_without_a_name(self):
+        for command in ("compare", "refit"):
+            self.assertIn("not given, compare takes lams and", self.done(command, "--help").stdout)
+
     def test_each_reference_has_its_own_table(self):
         text = self.done("compare", ONE, "-m", self.model(), "--reference", "pressure:TRUE_PS", "--reference", "height",
                          "--reference", "total:PSFRD+QCFR").stdout
