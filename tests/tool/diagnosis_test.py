@@ -173,6 +173,8 @@ class Diagnose(DiagnosisTest):
         text = self.done("diagnose", "flight 1.nc", "-m", "my model.toml", cwd=self.path).stdout
         self.assertTrue(text.startswith("Nothing is missing"), text)
         self.assertIn("pcor process", self.run_as_printed(text))
+        for reference in ("height", "wind"):
+            self.assertIn(f"\nnot used as a reference: {reference}: compare shows it", text)
 
     def test_a_missing_effect_is_found(self):
         result = self.diagnose(flights=(LAGGING, LAGGING_TOO))
@@ -243,6 +245,7 @@ class Improve(DiagnosisTest):
         self.link(ONE, "flight 1.nc")
         text = self.done("improve", "flight 1.nc", "-m", "my model.toml", "-o", "it's best.toml", cwd=self.path).stdout
         self.assertIn("stopped: nothing is missing", text)
+        self.assertIn("\nnot used as a reference: wind: compare shows it", text)
         self.assertIn("pcor process", self.run_as_printed(text))
 
     def test_report_is_one_file_that_fetches_nothing(self):
