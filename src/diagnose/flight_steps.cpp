@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
-#include "diagnose/same_time.hpp"
 #include "diagnose/scores.hpp"
 #include "numerics/chi_squared.hpp"
 #include "numerics/decompositions.hpp"
@@ -95,20 +93,13 @@ std::vector<MeanStep> find_mean_steps(const std::vector<Binning>& bins,
                                       const std::vector<Eigen::VectorXd>& residuals,
                                       const NoiseModel& noise) {
   std::vector<MeanStep> steps(bins.size());
-  std::map<std::ptrdiff_t, std::vector<std::size_t>> groups;  // by how many of the same time came before
+  std::vector<std::size_t> flights;
   for (std::size_t f = 0; f < bins.size(); ++f) {
-    if (bins[f].size() == 0) continue;
-    const auto before = std::count_if(bins.begin(), bins.begin() + static_cast<std::ptrdiff_t>(f),
-                                      [&](const Binning& other) { return is_of_same_time(other, bins[f]); });
-    groups[before].push_back(f);
+    if (bins[f].size() > 0) flights.push_back(f);
   }
+  if (flights.size() < 2) return steps;
   const Means means = find_means(bins, columns, residuals, noise);
-  for (const auto& group : groups) {
-    const std::vector<std::size_t>& flights = group.second;
-    for (const std::size_t flight : flights) {
-      if (flights.size() > 1) steps[flight] = step_of(flight, flights, means);
-    }
-  }
+  for (const std::size_t flight : flights) steps[flight] = step_of(flight, flights, means);
   return steps;
 }
 

@@ -17,9 +17,8 @@ struct MeanStep {
 
 /// Compares the mean of each flight, beside what a model explains and what drifts, with those of the others.
 /// The scatter of the others' means counts as far as it is larger than drift makes it, with as few degrees of
-/// freedom as there are flights (Satterthwaite 1946, Biometrics Bulletin 2, 110). Flights of the same time,
-/// which other references of one flight are, are compared in the order in which they come, the first with the
-/// first.
+/// freedom as there are flights (Satterthwaite 1946, Biometrics Bulletin 2, 110). The flights are those
+/// against one reference.
 ///
 /// @param columns of the model, in bins, of each flight; @param residuals likewise, hPa
 /// @return one for each flight; of chance 1 where there is nothing to compare it with

@@ -28,7 +28,7 @@ struct Structure {
 };
 
 /// Tests whether residuals hold structure that a model does not explain: functions of variables, one variable
-/// at a time.
+/// at a time. The flights are those against one reference.
 ///
 /// What goes slowly with a variable passes for drift where drift is looked for first. So a variable competes
 /// with drift on equal terms: the likelihood of its functions beside as much of the drift as is likeliest

@@ -84,15 +84,4 @@ TEST(MeanSteps, OfFlightsThatScatterAreChance) {
   EXPECT_LE(claims, 7);
 }
 
-// Two references of the same flights: each flight is compared with the other flights by the same reference.
-TEST(MeanSteps, AreThoseOfOneReference) {
-  Flights flights({0.0, 0.0, 0.0}, 6);
-  const Flights others({1.0, 1.0, 1.0}, 7);
-  flights.bins.insert(flights.bins.end(), others.bins.begin(), others.bins.end());
-  flights.columns.insert(flights.columns.end(), others.columns.begin(), others.columns.end());
-  flights.residuals.insert(flights.residuals.end(), others.residuals.begin(), others.residuals.end());
-  flights.noise.level.insert(flights.noise.level.end(), others.noise.level.begin(), others.noise.level.end());
-  for (const MeanStep& each : flights.steps()) EXPECT_GT(each.chance, 0.01);
-}
-
 }  // namespace
