@@ -5,7 +5,6 @@
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/realtime/chain.hpp>
 #include <pcor/residuals/residuals.hpp>
-#include <pcor/simulate/simulate.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "support/temporary_directory.hpp"
+#include "support/short_flight.hpp"
 
 using namespace pcor::internal;
 
@@ -29,14 +28,12 @@ using pcor::Residuals;
 using pcor::internal::Candidate;
 using pcor::internal::CandidateSet;
 using pcor::internal::FlightColumns;
+using pcor::test::laser_model;
+using pcor::test::short_flight;
 using testing::HasSubstr;
 using testing::StrEq;
 
 namespace {
-
-const std::filesystem::path scenarios = std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
-
-ModelFile laser_model() { return pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
 
 /// Where a made series lies, and how far it swings.
 struct Swing {
@@ -172,18 +169,8 @@ bool has_candidate(const CandidateSet& set, const std::string& effect) {
                      [&](const Candidate& candidate) { return candidate.effect.id == effect; });
 }
 
-/// A simulated flight with a few minutes of everything.
-const std::filesystem::path& flight_file() {
-  static const pcor::test::TemporaryDirectory directory;
-  static const std::filesystem::path path = [] {
-    pcor::simulate_flight(pcor::read_scenario(scenarios / "c130-short.toml"), directory / "short.nc");
-    return directory / "short.nc";
-  }();
-  return path;
-}
-
 CandidateSet candidates_of_file(const ModelFile& model, const std::vector<ModelEffect>& formulas = {}) {
-  const pcor::Flight flight(flight_file());
+  const pcor::Flight flight(short_flight());
   return pcor::internal::find_candidates(model, formulas, {&flight}, {pcor::lams_reference()});
 }
 
