@@ -111,14 +111,6 @@ std::vector<Candidate> variants_of(const Candidate& candidate, const std::vector
     variant.effect.scaling = facts.scalings[i];
     variant.is_variant = true;
   }
-  if (goes_with_a_rate(facts)) {
-    constexpr std::array<double, 5> memories{1.0, 2.0, 4.0, 8.0, 16.0};  // s
-    for (const double memory : memories) {
-      Candidate& variant = variants.emplace_back(candidate);
-      variant.memory = memory;
-      variant.is_variant = true;
-    }
-  }
   return variants;
 }
 
@@ -175,17 +167,22 @@ bool is_built_alike(Where where) {
   return where == Where::static_line || where == Where::total_line || where == Where::pitot;
 }
 
-/// Puts behind each candidate in tubes and lines the same on both systems.
-void add_shared_ones(CandidateSet& set) {
+/// Puts behind each candidate those whose columns are its own, changed: in tubes and lines the same on both
+/// systems, and a rate of change with a memory. No chain computes them.
+void add_derived_ones(CandidateSet& set, bool two_systems) {
+  constexpr std::array<double, 5> memories{1.0, 2.0, 4.0, 8.0, 16.0};  // s
   std::vector<Candidate> all;
-  for (Candidate& candidate : set.candidates) {
-    const bool shared = !candidate.effect.is_formula() && !candidate.is_derived() &&
-                        is_built_alike(where_of(candidate.effect));
-    all.push_back(std::move(candidate));
-    if (!shared) continue;
-    all.push_back(all.back());
-    all.back().is_variant = true;
-    all.back().is_shared = true;
+  for (const Candidate& candidate : set.candidates) {
+    const auto derive = [&all, &candidate]() -> Candidate& {
+      Candidate& derived = all.emplace_back(candidate);
+      derived.is_variant = true;
+      return derived;
+    };
+    all.push_back(candidate);
+    if (candidate.effect.is_formula()) continue;
+    if (two_systems && is_built_alike(where_of(candidate.effect))) derive().is_shared = true;
+    if (candidate.is_variant || !goes_with_a_rate(effect_facts[effect_named(candidate.effect.id)])) continue;
+    for (const double memory : memories) derive().memory = memory;
   }
   set.candidates = std::move(all);
 }
@@ -341,7 +338,7 @@ CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffe
   for (const std::size_t parameter : free_parameters(model)) set.base.push_back(names[parameter]);
   const bool two_systems = std::any_of(references.begin(), references.end(),
                                        [](const auto& each) { return each->model() != nullptr; });
-  if (two_systems) add_shared_ones(set);
+  add_derived_ones(set, two_systems);
   add_those_of_the_references(set, references, flights);
   return set;
 }

@@ -37,7 +37,7 @@ struct Candidate {
   std::vector<CandidateParameter> tested{};
   bool is_variant = false;  ///< the same effect as a candidate before it, in another shape
 
-  /// Whether its columns are those of the candidate before it, changed.
+  /// Whether its columns are those of the last candidate before it that is not derived itself, changed.
   bool is_derived() const { return memory > 0.0 || is_shared; }
   bool is_of_reference() const { return !numbers_in_others.empty(); }
 };
