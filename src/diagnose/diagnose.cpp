@@ -22,6 +22,7 @@
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "residuals/flight_statistics.hpp"
+#include "residuals/frozen.hpp"
 #include "residuals/masks.hpp"
 
 namespace pcor {
@@ -327,6 +328,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
       if (r > 0) {
         samples->notes.clear();
         samples->reference = set.references[r]->read(*flights[f], samples->time, samples->notes);
+        mark_frozen(*samples, &FlightSamples::reference, options.mask.least_airspeed);
       }
       diagnosis.notes.insert(diagnosis.notes.end(), samples->notes.begin(), samples->notes.end());
       columns.push_back(

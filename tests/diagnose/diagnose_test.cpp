@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <netcdf>
 #include <string>
 #include <vector>
 
@@ -341,6 +342,24 @@ TEST(Diagnose, AgainstAStaticSystemFindsWhatOneOfThemHas) {
   const Diagnosis diagnosis =
       pcor::diagnose({flight("c130-eq18", 361, "on = \"PSFD\"\n" + beta_odd)}, model(), {reference});
   EXPECT_THAT(names_of(diagnosis), testing::Contains("static-beta-odd"));
+}
+
+// The second pair stands still for five minutes of a climb.
+TEST(Diagnose, DoesNotBelieveAFrozenSensorOfAFurtherReference) {
+  const pcor::test::TemporaryDirectory directory;
+  const std::filesystem::path path = directory / "frozen.nc";
+  std::filesystem::copy_file(flight("c130-eq18", 362), path);
+  {
+    netCDF::NcFile file(path.string(), netCDF::NcFile::write);
+    const netCDF::NcVar variable = file.getVar("PSFRD");
+    double value = 0.0;
+    variable.getVar({1000}, {1}, &value);
+    variable.putVar({1000}, {300}, std::vector<double>(300, value).data());
+  }
+  const Diagnosis diagnosis = pcor::diagnose(
+      {path}, model(), {pcor::lams_reference(), pcor::read_reference("total:PSFRD+QCFR", model())});
+  EXPECT_THAT(diagnosis.notes, testing::Contains(HasSubstr("PSFRD is frozen")));
+  EXPECT_EQ(diagnosis.verdict, Verdict::silent);
 }
 
 TEST(Diagnose, NeedsFlightsAndSamples) {
