@@ -198,6 +198,19 @@ bool is_same(const ModelFile& a, const ModelFile& b) {
          free_parameters(a) == free_parameters(b);
 }
 
+/// The system that a model corrects, by its pressures: "PSFRD+QCFR". Two laws of one pair are of one system.
+std::string system_of(const ModelFile& model) {
+  return model.variables.at(Quantity::static_pressure) + "+" + model.variables.at(Quantity::dynamic_pressure);
+}
+
+/// How ids name the system of a reference: not at all where there is only one other system.
+std::string name_of_system(const ModelFile& model, const References& references) {
+  const bool several = std::any_of(references.begin(), references.end(), [&model](const auto& each) {
+    return each->model() != nullptr && system_of(*each->model()) != system_of(model);
+  });
+  return several ? system_of(model) : "";
+}
+
 /// Everything that the own system may have, a system that it is held against may have too. One residual of
 /// both knows their difference alone.
 void add_those_of_the_references(CandidateSet& set, const References& references,
@@ -209,6 +222,7 @@ void add_those_of_the_references(CandidateSet& set, const References& references
     set.base_of_others.push_back(set.base.size());
     set.effects_of_others.push_back(model == nullptr ? 0 : model->model.effects.size());
     if (model == nullptr) continue;
+    const std::string system = name_of_system(*model, references);
     const auto same = std::find_if(references.begin(), references.begin() + static_cast<std::ptrdiff_t>(r),
                                    [model](const auto& before) {
                                      return before->model() != nullptr && is_same(*before->model(), *model);
@@ -218,7 +232,7 @@ void add_those_of_the_references(CandidateSet& set, const References& references
     } else {
       const std::vector<std::string> names = residual_parameter_names(*model, *lams_reference());
       for (const std::size_t parameter : free_parameters(*model))
-        set.base.push_back("reference:" + names[parameter]);
+        set.base.push_back(id_on_other_system(system, names[parameter]));
     }
     other = *model;
     name_usual_variables(*other, flights);
@@ -231,8 +245,9 @@ void add_those_of_the_references(CandidateSet& set, const References& references
         if (begins.empty()) continue;
         twin.effect.parameters[1] = begins.front();
       }
-      twin.id = "reference:" + twin.id;
-      twin.title += ", of the other system";
+      twin.system = system;
+      twin.id = id_on_other_system(system, twin.effect.id);
+      twin.title += system.empty() ? ", of the other system" : ", of the system " + system;
       BindingError error;
       std::optional<Chain> with = chain.with_effect(twin.effect, &error);
       if (!with) continue;

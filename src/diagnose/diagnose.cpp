@@ -290,6 +290,12 @@ std::string_view name_of(Verdict verdict) {
   return "";
 }
 
+std::string id_on_other_system(const std::string& system, const std::string& name) {
+  return "reference:" + (system.empty() ? "" : system + ":") + name;
+}
+
+std::string Finding::id() const { return of_reference ? id_on_other_system(system, effect.id) : effect.id; }
+
 void judge_held_out(Diagnosis& diagnosis) {
   for (const HeldOutPart& part : diagnosis.held_out) {
     if (!part.is_off()) continue;

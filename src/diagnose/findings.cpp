@@ -217,14 +217,14 @@ double static_risk(const Analysis& analysis, const std::vector<Candidate>& candi
   return risk;
 }
 
-/// Its rms and its extreme over all records used: against the first reference, or, of an effect on the other
-/// system, against those that see it.
+/// Its rms and its extreme over all records used: against the first reference, or, of an effect on another
+/// system, against those that have it.
 void measure(const Analysis& analysis, const std::vector<std::size_t>& chosen, std::size_t which,
-             const Eigen::VectorXd& estimate, Finding& finding) {
+             const Eigen::VectorXd& estimate, const Candidate& candidate, Finding& finding) {
   double squares = 0.0;
   double count = 0.0;
   for (std::size_t f = 0; f < analysis.flight_count(); ++f) {
-    if ((analysis.flight(f).reference != 0) != finding.of_reference) continue;
+    if (!candidate.is_measured_by(analysis.flight(f).reference)) continue;
     const std::vector<double> added = analysis.added_by(f, chosen, which, estimate);
     const FlightSamples& samples = *analysis.flight(f).samples;
     for (const std::size_t record : analysis.bins(f).records()) {
@@ -320,6 +320,7 @@ std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Can
     Finding finding;
     finding.effect = candidate.effect;
     finding.of_reference = candidate.is_of_reference();
+    finding.system = candidate.system;
     finding.title = candidate.title;
     const std::vector<Eigen::Index>& told = analysis.search().told(group);
     finding.estimates = estimates_of(candidate, told, estimate.segment(place, count),
@@ -330,7 +331,7 @@ std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Can
       if (std::find(told.begin(), told.end(), k) == told.end()) finding.held.push_back(parameter.name);
     }
     place += count;
-    measure(analysis, chosen, i, estimate, finding);
+    measure(analysis, chosen, i, estimate, candidate, finding);
     finding.chi2 = analysis.search().score(group, chosen).chi2;
     finding.p_value = analysis.result().p_values[i];
     std::vector<std::size_t> without = chosen;
@@ -432,7 +433,9 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
     double count = 0.0;
     const Eigen::Index first = analysis.groups()[g].first;
     const double kept = std::sqrt(search.remaining(g));
-    for (const FlightColumns& flight : analysis.flights()) {
+    for (std::size_t f = 0; f < analysis.flight_count(); ++f) {
+      const FlightColumns& flight = analysis.flight(f);
+      if (!candidates[g].is_measured_by(flight.reference)) continue;
       for (std::size_t i = 0; i < flight.given.size(); ++i) {
         if (std::isnan(flight.given[i])) continue;
         double sum = 0.0;

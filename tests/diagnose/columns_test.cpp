@@ -388,6 +388,36 @@ TEST(Candidates, OfHumidityFollowTheGasConstants) {
   EXPECT_TRUE(has_candidate(dry, "humidity-neglected"));
 }
 
+TEST(Candidates, OnOtherSystemsAreOneForEachSystem) {
+  const pcor::Flight flight(short_flight());
+  const auto number_of = [&flight](const std::vector<std::string>& others, const std::string& id) {
+    pcor::References references{pcor::lams_reference()};
+    for (const std::string& other : others) references.push_back(pcor::read_reference(other, laser_model()));
+    for (const Candidate& candidate : find_candidates(laser_model(), {}, {&flight}, references).candidates) {
+      if (candidate.id == id) return candidate.numbers_in_others;
+    }
+    return std::vector<std::optional<std::size_t>>();
+  };
+  const std::string pair = "total:PSFRD+QCFR";
+  const std::string avionics = "total:PS_A+QC_A";
+  EXPECT_TRUE(number_of({pair}, "reference:psfd-bias")[1]);
+  EXPECT_THAT(number_of({pair, avionics}, "reference:psfd-bias"), testing::IsEmpty());
+  const auto of_pair = number_of({pair, avionics}, "reference:PSFRD+QCFR:psfd-bias");
+  ASSERT_THAT(of_pair, testing::SizeIs(3));
+  EXPECT_TRUE(of_pair[1]);
+  EXPECT_FALSE(of_pair[2]);
+  const auto of_avionics = number_of({pair, avionics}, "reference:PS_A+QC_A:psfd-bias");
+  ASSERT_THAT(of_avionics, testing::SizeIs(3));
+  EXPECT_FALSE(of_avionics[1]);
+  EXPECT_TRUE(of_avionics[2]);
+  // Two references of one system have its effects in common, whatever its law is in either.
+  const std::string law = std::string("static:") + PCOR_SOURCE_DIR + "/data/models/c130-psfrd-eq18.toml";
+  const auto of_both = number_of({law, pair}, "reference:psfd-bias");
+  ASSERT_THAT(of_both, testing::SizeIs(3));
+  EXPECT_TRUE(of_both[1]);
+  EXPECT_TRUE(of_both[2]);
+}
+
 TEST(Candidates, OfFormulasNeedTheirVariables) {
   ModelEffect good = formula();
   ModelEffect bad = formula();

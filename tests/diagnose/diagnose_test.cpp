@@ -344,6 +344,20 @@ TEST(Diagnose, AgainstAStaticSystemFindsWhatOneOfThemHas) {
   EXPECT_THAT(names_of(diagnosis), testing::Contains("static-beta-odd"));
 }
 
+// The simulated avionics low-pass their pressures; the second pair does not.
+TEST(Diagnose, TellsWhichOfTwoOtherSystemsAnEffectIsOf) {
+  const Diagnosis diagnosis =
+      pcor::diagnose({flight("c130-eq18", 363)}, model(),
+                     {pcor::lams_reference(), pcor::read_reference("total:PSFRD+QCFR", model()),
+                      pcor::read_reference("total:PS_A+QC_A", model())});
+  ASSERT_THAT(diagnosis.findings, SizeIs(1));
+  const Finding& finding = diagnosis.findings[0];
+  EXPECT_EQ(finding.id(), "reference:PS_A+QC_A:total-lag");
+  EXPECT_THAT(finding.title, HasSubstr("of the system PS_A+QC_A"));
+  EXPECT_GT(finding.rms, 0.1) << "in the reference that has it";
+  for (const pcor::UpperLimit& limit : diagnosis.limits) EXPECT_GT(limit.rms, 0.0) << limit.effect;
+}
+
 // The second pair stands still for five minutes of a climb.
 TEST(Diagnose, DoesNotBelieveAFrozenSensorOfAFurtherReference) {
   const pcor::test::TemporaryDirectory directory;
