@@ -239,11 +239,16 @@ void measure(const Analysis& analysis, const std::vector<std::size_t>& chosen, s
   finding.rms = count > 0.0 ? std::sqrt(squares / count) : 0.0;
 }
 
+/// What no model file can hold of the shape that a candidate is tried in; empty where it can hold all.
+std::string shape_beyond_model(const Candidate& candidate) {
+  if (candidate.is_shared) return "alike on the other system";
+  return candidate.memory > 0.0 ? fmt::format("with a memory of {:g} s", candidate.memory) : "";
+}
+
 /// What shape a candidate is tried in, in words; empty in that of the catalogue.
 std::string shape_of(const Candidate& candidate) {
   if (!candidate.is_variant) return "";
-  if (candidate.is_shared) return "alike on the other system";
-  if (candidate.memory > 0.0) return fmt::format("with a memory of {:g} s", candidate.memory);
+  if (std::string beyond = shape_beyond_model(candidate); !beyond.empty()) return beyond;
   const Scaling& scaling = candidate.effect.scaling;
   if (!scaling.is_none())
     return fmt::format("times p^{} q^{}", scaling.static_pressure, scaling.dynamic_pressure);
@@ -272,6 +277,7 @@ void describe(const std::vector<Candidate>& candidates, std::size_t winner, cons
   const std::size_t known = effect_named(own.effect.id);
   if (known < catalogue_size) finding.family = std::string(effect_facts[known].family);
   finding.shape = shape_of(own);
+  finding.shape_beyond_model = shape_beyond_model(own);
   finding.places = {place_of(own)};
   std::map<std::string, double> weights{{own.id, 1.0}};
   for (const Rival& rival : rivals) {

@@ -193,6 +193,16 @@ class Diagnose(DiagnosisTest):
         self.assertRegex(command, "pcor add .* && pcor refit")
         self.assertTrue((self.path / "fitted.toml").exists())
 
+    def test_a_shape_that_no_model_file_holds_is_told_with_the_command(self):
+        """Both total lines lag behind."""
+        scenario = self.write("scenario.toml", with_effect('id = "total-lag"\ntau = 3.0\n')(SCENARIO))
+        self.done("simulate", scenario, "-o", self.path / "flight.nc", "--quiet")
+        self.model()
+        text = self.done("diagnose", "flight.nc", "-m", "model.toml", "--no-file-variables", cwd=self.path).stdout
+        self.assertIn("\ntotal-lag was found alike on the other system, which no model file can hold: it is added "
+                      "without that.\nTo add it and fit: pcor add total-lag ", text)
+        self.run_as_printed(text)
+
     def test_a_formula_is_a_candidate(self):
         """The sign is that of the correction: what the engines take off the pressure is added."""
         result = self.diagnose("--try", "k * (ENGTRQ - 50) / 100", flights=(THRUSTING,))

@@ -129,9 +129,16 @@ std::string next_command(const Diagnosis& diagnosis, const Options& options) {
   }
   const bool sure = diagnosis.verdict == Verdict::identified || diagnosis.verdict == Verdict::ambiguous;
   if (sure && std::all_of(findings.begin(), findings.end(), of_catalogue)) {
+    std::string without;
     std::string add = "pcor add";
-    for (const Finding& finding : findings) add += " " + argument_of(finding.effect);
-    return fmt::format("To add {} and fit: {}{}", findings.size() == 1 ? "it" : "them", add, and_fit);
+    for (const Finding& finding : findings) {
+      add += " " + argument_of(finding.effect);
+      if (finding.shape_beyond_model.empty()) continue;
+      without += fmt::format("{} was found {}, which no model file can hold: it is added without that.\n",
+                             finding.id(), finding.shape_beyond_model);
+    }
+    return fmt::format("{}To add {} and fit: {}{}", without, findings.size() == 1 ? "it" : "them", add,
+                       and_fit);
   }
   if (sure && findings.size() == 1 && findings[0].effect.parameter_names == std::vector<std::string>{"k"}) {
     const ModelEffect& effect = findings[0].effect;

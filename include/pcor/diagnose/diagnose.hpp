@@ -112,6 +112,9 @@ struct Finding {
   std::vector<Alias> aliases{};      ///< the most likely first
   std::string family{};              ///< what it shares with its other shapes and places, e.g. "lag"
   std::string shape{};               ///< in which it was found; empty: that of the catalogue
+  /// Of the shape what no model file can hold: "with a memory of 4 s", "alike on the other system"; empty
+  /// where it can hold all of it.
+  std::string shape_beyond_model{};
   std::vector<std::string> variants{};  ///< shapes of it that do as well, empty text for the catalogue's
   std::vector<std::string> places{};    ///< where it may act, e.g. "port", "other-system"; its own first
   double probability = 1.0;             ///< of being the one that is there, among itself and its aliases
