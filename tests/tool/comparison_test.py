@@ -355,6 +355,20 @@ class References(ComparisonTest):
         self.assertIn("residual = hydrostatic height against that of GPS", text)
         self.assertIn("residual = total pressure of 'PSFRD+QCFR'", text)
 
+    def test_a_reference_of_one_model_is_shown_for_that_alone(self):
+        """Of two pairs each is the second one of the other."""
+        laser = replace(r"^attack_differential_pressure.*$", r"\g<0>\n" + LASER)
+        other = self.write("other.toml", laser(OTHER_SYSTEM.read_text()))
+        given = ("-m", self.model(), "-m", other)
+        told = [(model["name"].split()[1][:-1], model["reference"])
+                for model in self.json_of("compare", ONE, *given)["models"]]
+        self.assertEqual(told, [("PSFD/QCF", "lams"), ("PSFRD/QCFR", "lams"), ("PSFD/QCF", "total:PSFRD+QCFR"),
+                                ("PSFD/QCF", "height"), ("PSFRD/QCFR", "height"), ("PSFD/QCF", "wind"),
+                                ("PSFRD/QCFR", "wind"), ("PSFRD/QCFR", "total:PSFD+QCF")])
+        text = self.done("compare", ONE, *given).stdout
+        self.assertIn("references: lams, total:PSFRD+QCFR, height, wind, total:PSFD+QCF\n", text)
+        self.assertRegex(text, r"total pressure of 'PSFD\+QCF', .*\n.*\n.*\nC-130 PSFRD/QCFR, equation 18 +\d")
+
     def test_the_total_pressure_of_true_systems_is_one(self):
         """Two pairs of transducers, of about 0.01 hPa each; static defects cancel, so no law is needed."""
         result = self.compare("--reference", "total:PSFRD+QCFR")
