@@ -241,7 +241,6 @@ bool StructureTest::add(const std::string& name, const std::vector<const double*
         std::max(1.0, static_cast<double>(rows()) - static_cast<double>(flights.scale.size()));
     const double variance = flights.squares / freedom;
     structure.freedom = std::max(structure.freedom, static_cast<double>(taken.freedom));
-    if (smooth.has_line() && &flights == &whitened_.front()) structure.line_chi2 = taken.line / variance;
     if (const double value = minus_likelihood(flights, taken.all); value < with_all) {
       with_all = value;
       structure.share =

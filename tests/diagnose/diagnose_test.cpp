@@ -344,6 +344,16 @@ TEST(Diagnose, AgainstAStaticSystemFindsWhatOneOfThemHas) {
   EXPECT_THAT(names_of(diagnosis), testing::Contains("static-beta-odd"));
 }
 
+// Level legs alone: four effects together describe the engines nearly, and not at all in the total pressure.
+TEST(Diagnose, HoldsALineAgainstEffectsByAllReferences) {
+  std::string torque = engine_torque;
+  torque.replace(torque.find("3.0"), 3, "6.0");
+  const Diagnosis diagnosis =
+      pcor::diagnose({flight("c130-no-manoeuvres", 702, torque)}, model(),
+                     {pcor::lams_reference(), pcor::read_reference("total:PSFRD+QCFR", model())});
+  EXPECT_THAT(diagnosis.notes, testing::Contains(HasSubstr("a line in ENGTRQ explains more")));
+}
+
 // The simulated avionics low-pass their pressures; the second pair does not.
 TEST(Diagnose, TellsWhichOfTwoOtherSystemsAnEffectIsOf) {
   const Diagnosis diagnosis =
