@@ -198,13 +198,43 @@ NoiseFloor lowest_noise(const FlightResiduals& flight) {
   return lowest;
 }
 
-/// The residuals of all models to their references of that number on one flight, where all of them have one.
-FlightResiduals residuals_on(const Flight& flight, const std::vector<Contender>& contenders,
-                             std::size_t number, const MaskOptions& options,
-                             std::vector<std::string>& notes) {
+/// A contender and one of its references.
+struct Pairing {
+  const Contender& contender;
+  const Reference& reference;
+};
+
+/// All contenders that have one reference.
+struct Field {
+  std::string name;        // of the reference
+  std::size_t number = 0;  // among those of that name that a contender has
+  std::vector<Pairing> pairings{};
+};
+
+/// The contenders by reference, those with the first reference of the first contender in front.
+std::vector<Field> fields_of(const std::vector<Contender>& contenders) {
+  std::vector<Field> fields;
+  for (const Contender& contender : contenders) {
+    std::map<std::string, std::size_t> met;
+    for (const std::shared_ptr<const Reference>& reference : contender.references) {
+      const std::string name = reference->name();
+      const std::size_t number = met[name]++;
+      auto field = std::find_if(fields.begin(), fields.end(), [&](const Field& each) {
+        return each.name == name && each.number == number;
+      });
+      if (field == fields.end()) field = fields.insert(field, {name, number});
+      field->pairings.push_back({contender, *reference});
+    }
+  }
+  return fields;
+}
+
+/// The residuals of models to one reference on one flight, where all of them have one.
+FlightResiduals residuals_on(const Flight& flight, const std::vector<Pairing>& pairings,
+                             const MaskOptions& options, std::vector<std::string>& notes) {
   FlightResiduals result;
-  for (const auto& [name, model, references] : contenders) {
-    const Reference& reference = *references[number];
+  for (const auto& [contender, reference] : pairings) {
+    const ModelFile& model = contender.model;
     const auto samples =
         std::make_shared<const FlightSamples>(read_samples(flight, model, reference, options));
     const Residuals residuals(samples, model, reference, options);
@@ -237,27 +267,25 @@ FlightResiduals residuals_on(const Flight& flight, const std::vector<Contender>&
   return result;
 }
 
-/// Holds every contender against its reference of that number. Without samples there are no models in the
-/// result.
-Comparison compare_with(std::size_t number, const std::vector<std::filesystem::path>& flights,
-                        const std::vector<Contender>& contenders, const CompareOptions& options,
+/// Holds contenders against a reference. Without samples there are no models in the result.
+Comparison compare_with(const std::vector<Pairing>& pairings,
+                        const std::vector<std::filesystem::path>& flights, const CompareOptions& options,
                         const std::function<void()>& tell) {
-  const Reference& first = *contenders.front().references[number];
+  const Reference& first = pairings.front().reference;
   Comparison result;
   result.reference = first.description();
   result.is_static_pressure = first.is_static_pressure();
   std::vector<Gathering> gatherings;
-  for (const Contender& contender : contenders)
-    gatherings.emplace_back(contender.name, *contender.references[number]);
+  for (const auto& [contender, reference] : pairings) gatherings.emplace_back(contender.name, reference);
   std::vector<std::pair<std::string, std::string>> aircraft;
   for (const std::filesystem::path& path : flights) {
     const Flight flight(path, options.time_stamp);
     aircraft.emplace_back(path.filename().string(), flight.aircraft());
     require_one_aircraft(aircraft);
-    FlightResiduals residuals = residuals_on(flight, contenders, number, options.mask, result.notes);
+    FlightResiduals residuals = residuals_on(flight, pairings, options.mask, result.notes);
     for (const Mask mask : residuals.mask) ++result.masks[static_cast<std::size_t>(mask)];
     const NoiseFloor noise = lowest_noise(residuals);
-    for (std::size_t m = 0; m < contenders.size(); ++m) gatherings[m].add(residuals, m, noise);
+    for (std::size_t m = 0; m < pairings.size(); ++m) gatherings[m].add(residuals, m, noise);
     result.flights.push_back(std::move(residuals));
     tell();
   }
@@ -273,25 +301,22 @@ Comparison compare(const std::vector<std::filesystem::path>& flights,
                    const std::vector<Contender>& contenders, const CompareOptions& options) {
   if (flights.empty() || contenders.empty())
     throw Error("nothing to compare; give at least one flight and one model");
-  std::size_t references = contenders.front().references.size();
-  for (const Contender& contender : contenders) {
-    first_of(contender.references);
-    references = std::min(references, contender.references.size());
-  }
+  for (const Contender& contender : contenders) first_of(contender.references);
+  const std::vector<Field> fields = fields_of(contenders);
   const auto tell = [&, done = std::size_t{0}]() mutable {
     ++done;
-    if (options.progress) options.progress(done, references * flights.size());
+    if (options.progress) options.progress(done, fields.size() * flights.size());
   };
   const std::function<void()> progress = tell;
-  Comparison result = compare_with(0, flights, contenders, options, progress);
+  Comparison result = compare_with(fields.front().pairings, flights, options, progress);
   if (result.masks[0] == 0) {
     throw Error(
         fmt::format("{}: no sample is left to compare: {}; see the variables of the model and "
                     "--min-airspeed, --max-flaps, --exclude",
                     flights.size() == 1 ? flights.front().string() : "the flights", mask_text(result.masks)));
   }
-  for (std::size_t number = 1; number < references; ++number) {
-    Comparison further = compare_with(number, flights, contenders, options, progress);
+  for (auto field = fields.begin() + 1; field != fields.end(); ++field) {
+    Comparison further = compare_with(field->pairings, flights, options, progress);
     if (further.masks[0] == 0) {
       result.notes.push_back(fmt::format("no sample is left to compare with the {}: {}", further.reference,
                                          mask_text(further.masks)));

@@ -207,16 +207,33 @@ void Analysis::keep_coefficients(const std::vector<std::size_t>& groups, const E
 
 void Analysis::find_search() {
   scores_ = std::make_unique<Scores>(find_scores(bins_, columns_, residuals_, noise_));
-  std::vector<Eigen::VectorXd> left;
-  for (std::size_t f = 0; f < bins_.size(); ++f) left.push_back(scores_->left(f, coefficients_));
+  white_noise_.clear();
+  for (std::size_t f = 0; f < bins_.size(); ++f) white_noise_.push_back(scores_->left(f, coefficients_));
+  take_out_common_noise(*scores_);
+  search_ = std::make_unique<Search>(*scores_, base_, groups_);
+}
+
+void Analysis::take_out_common_noise(Scores& scores) const {
+  if (further_.empty()) return;
+  std::vector<Eigen::VectorXd> left = white_noise_;
   for (std::size_t later = flights_.size(); later < bins_.size(); ++later) {
     for (std::size_t earlier = 0; earlier < later; ++earlier) {
       if (flight(earlier).samples->name == flight(later).samples->name)
-        take_out_common_noise(bins_, earlier, later, left, *scores_);
+        internal::take_out_common_noise(bins_, earlier, later, left, scores);
     }
   }
-  if (!further_.empty()) sum_up(*scores_);
-  search_ = std::make_unique<Search>(*scores_, base_, groups_);
+  sum_up(scores);
+}
+
+Scores Analysis::scores_with(const std::vector<Eigen::MatrixXd>& more) const {
+  std::vector<Eigen::MatrixXd> columns;
+  for (std::size_t f = 0; f < more.size(); ++f) {
+    Eigen::MatrixXd& both = columns.emplace_back(more[f].rows(), base_ + more[f].cols());
+    both << columns_[f].leftCols(base_), more[f];
+  }
+  Scores scores = find_scores(bins_, columns, residuals_, noise_);
+  take_out_common_noise(scores);
+  return scores;
 }
 
 HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {

@@ -45,6 +45,9 @@ class Analysis {
   double drift_gain() const { return drift_gain_; }
   const Search& search() const { return *search_; }
   const Scores& scores() const { return *scores_; }
+  /// The scores of the base with other columns behind it, instead of the candidates'. @param more in bins, of
+  /// each flight against each reference
+  Scores scores_with(const std::vector<Eigen::MatrixXd>& more) const;
   const std::vector<ColumnGroup>& groups() const { return groups_; }
   const SearchResult& result() const { return result_; }
   Eigen::Index base() const { return base_; }
@@ -81,6 +84,8 @@ class Analysis {
   void for_each_reference(const Find& find);
   void keep_coefficients(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate);
   void find_search();
+  /// Out of the rows against further references.
+  void take_out_common_noise(Scores& scores) const;
   std::vector<Eigen::VectorXd> left_by(const std::vector<std::size_t>& groups,
                                        const Eigen::VectorXd& estimate) const;
 
@@ -103,7 +108,8 @@ class Analysis {
   NoiseModel first_noise_{};
   double drift_gain_ = 0.0;
   double likelihood_ = 0.0;
-  Eigen::VectorXd coefficients_{};  // of all columns, as the last noise was found with
+  Eigen::VectorXd coefficients_{};              // of all columns, as the last noise was found with
+  std::vector<Eigen::VectorXd> white_noise_{};  // what all that was found leaves of the whitened residuals
   std::unique_ptr<Scores> scores_{};
   std::unique_ptr<Search> search_{};
   SearchResult result_{};

@@ -111,14 +111,6 @@ std::vector<Candidate> variants_of(const Candidate& candidate, const std::vector
     variant.effect.scaling = facts.scalings[i];
     variant.is_variant = true;
   }
-  if (goes_with_a_rate(facts)) {
-    constexpr std::array<double, 5> memories{1.0, 2.0, 4.0, 8.0, 16.0};  // s
-    for (const double memory : memories) {
-      Candidate& variant = variants.emplace_back(candidate);
-      variant.memory = memory;
-      variant.is_variant = true;
-    }
-  }
   return variants;
 }
 
@@ -175,17 +167,22 @@ bool is_built_alike(Where where) {
   return where == Where::static_line || where == Where::total_line || where == Where::pitot;
 }
 
-/// Puts behind each candidate in tubes and lines the same on both systems.
-void add_shared_ones(CandidateSet& set) {
+/// Puts behind each candidate those whose columns are its own, changed: in tubes and lines the same on both
+/// systems, and a rate of change with a memory. No chain computes them.
+void add_derived_ones(CandidateSet& set, bool two_systems) {
+  constexpr std::array<double, 5> memories{1.0, 2.0, 4.0, 8.0, 16.0};  // s
   std::vector<Candidate> all;
-  for (Candidate& candidate : set.candidates) {
-    const bool shared = !candidate.effect.is_formula() && !candidate.is_derived() &&
-                        is_built_alike(where_of(candidate.effect));
-    all.push_back(std::move(candidate));
-    if (!shared) continue;
-    all.push_back(all.back());
-    all.back().is_variant = true;
-    all.back().is_shared = true;
+  for (const Candidate& candidate : set.candidates) {
+    const auto derive = [&all, &candidate]() -> Candidate& {
+      Candidate& derived = all.emplace_back(candidate);
+      derived.is_variant = true;
+      return derived;
+    };
+    all.push_back(candidate);
+    if (candidate.effect.is_formula()) continue;
+    if (two_systems && is_built_alike(where_of(candidate.effect))) derive().is_shared = true;
+    if (candidate.is_variant || !goes_with_a_rate(effect_facts[effect_named(candidate.effect.id)])) continue;
+    for (const double memory : memories) derive().memory = memory;
   }
   set.candidates = std::move(all);
 }
@@ -201,6 +198,19 @@ bool is_same(const ModelFile& a, const ModelFile& b) {
          free_parameters(a) == free_parameters(b);
 }
 
+/// The system that a model corrects, by its pressures: "PSFRD+QCFR". Two laws of one pair are of one system.
+std::string system_of(const ModelFile& model) {
+  return model.variables.at(Quantity::static_pressure) + "+" + model.variables.at(Quantity::dynamic_pressure);
+}
+
+/// How ids name the system of a reference: not at all where there is only one other system.
+std::string name_of_system(const ModelFile& model, const References& references) {
+  const bool several = std::any_of(references.begin(), references.end(), [&model](const auto& each) {
+    return each->model() != nullptr && system_of(*each->model()) != system_of(model);
+  });
+  return several ? system_of(model) : "";
+}
+
 /// Everything that the own system may have, a system that it is held against may have too. One residual of
 /// both knows their difference alone.
 void add_those_of_the_references(CandidateSet& set, const References& references,
@@ -212,6 +222,7 @@ void add_those_of_the_references(CandidateSet& set, const References& references
     set.base_of_others.push_back(set.base.size());
     set.effects_of_others.push_back(model == nullptr ? 0 : model->model.effects.size());
     if (model == nullptr) continue;
+    const std::string system = name_of_system(*model, references);
     const auto same = std::find_if(references.begin(), references.begin() + static_cast<std::ptrdiff_t>(r),
                                    [model](const auto& before) {
                                      return before->model() != nullptr && is_same(*before->model(), *model);
@@ -221,7 +232,7 @@ void add_those_of_the_references(CandidateSet& set, const References& references
     } else {
       const std::vector<std::string> names = residual_parameter_names(*model, *lams_reference());
       for (const std::size_t parameter : free_parameters(*model))
-        set.base.push_back("reference:" + names[parameter]);
+        set.base.push_back(id_on_other_system(system, names[parameter]));
     }
     other = *model;
     name_usual_variables(*other, flights);
@@ -234,8 +245,9 @@ void add_those_of_the_references(CandidateSet& set, const References& references
         if (begins.empty()) continue;
         twin.effect.parameters[1] = begins.front();
       }
-      twin.id = "reference:" + twin.id;
-      twin.title += ", of the other system";
+      twin.system = system;
+      twin.id = id_on_other_system(system, twin.effect.id);
+      twin.title += system.empty() ? ", of the other system" : ", of the system " + system;
       BindingError error;
       std::optional<Chain> with = chain.with_effect(twin.effect, &error);
       if (!with) continue;
@@ -341,7 +353,7 @@ CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffe
   for (const std::size_t parameter : free_parameters(model)) set.base.push_back(names[parameter]);
   const bool two_systems = std::any_of(references.begin(), references.end(),
                                        [](const auto& each) { return each->model() != nullptr; });
-  if (two_systems) add_shared_ones(set);
+  add_derived_ones(set, two_systems);
   add_those_of_the_references(set, references, flights);
   return set;
 }

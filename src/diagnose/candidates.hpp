@@ -23,11 +23,12 @@ struct CandidateParameter {
 /// An effect that the model may lack, or that of the system which it is held against.
 struct Candidate {
   ModelEffect effect;      ///< with its neutral parameters, and shapes as they are tried
-  std::string id;          ///< that of the effect, or "reference:ID" on the other system
+  std::string id;          ///< as that of a finding
   std::size_t number = 0;  ///< of the effect in the extended model
   /// On the system of each reference: the number of the effect in its extended model, nothing where it has
   /// none. Empty for an effect on the own system.
   std::vector<std::optional<std::size_t>> numbers_in_others{};
+  std::string system{};  ///< which other system, where the references have several: "PSFRD+QCFR"; else empty
   /// How long the effect remembers what it goes with, s: a lag is the rate of change as the last seconds had
   /// it, tau dx/dt low-passed with tau.
   double memory = 0.0;
@@ -37,9 +38,14 @@ struct Candidate {
   std::vector<CandidateParameter> tested{};
   bool is_variant = false;  ///< the same effect as a candidate before it, in another shape
 
-  /// Whether its columns are those of the candidate before it, changed.
+  /// Whether its columns are those of the last candidate before it that is not derived itself, changed.
   bool is_derived() const { return memory > 0.0 || is_shared; }
   bool is_of_reference() const { return !numbers_in_others.empty(); }
+  /// Whether it acts on what a reference is made of: an effect on the own system in the first of them, which
+  /// tells all figures; one on another system in those that have that system.
+  bool is_measured_by(std::size_t reference) const {
+    return is_of_reference() ? numbers_in_others[reference].has_value() : reference == 0;
+  }
 };
 
 /// What can be tested on some flights.

@@ -22,6 +22,7 @@
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "residuals/flight_statistics.hpp"
+#include "residuals/frozen.hpp"
 #include "residuals/masks.hpp"
 
 namespace pcor {
@@ -289,6 +290,12 @@ std::string_view name_of(Verdict verdict) {
   return "";
 }
 
+std::string id_on_other_system(const std::string& system, const std::string& name) {
+  return "reference:" + (system.empty() ? "" : system + ":") + name;
+}
+
+std::string Finding::id() const { return of_reference ? id_on_other_system(system, effect.id) : effect.id; }
+
 void judge_held_out(Diagnosis& diagnosis) {
   for (const HeldOutPart& part : diagnosis.held_out) {
     if (!part.is_off()) continue;
@@ -327,6 +334,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
       if (r > 0) {
         samples->notes.clear();
         samples->reference = set.references[r]->read(*flights[f], samples->time, samples->notes);
+        mark_frozen(*samples, &FlightSamples::reference, options.mask.least_airspeed);
       }
       diagnosis.notes.insert(diagnosis.notes.end(), samples->notes.begin(), samples->notes.end());
       columns.push_back(

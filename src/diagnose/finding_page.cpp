@@ -229,7 +229,7 @@ std::vector<std::string> unexplained_text(const Unexplained& unexplained) {
   }
   for (const FlightStep& step : unexplained.steps) {
     all.push_back(fmt::format(
-        "The mean of {} lies {} hPa {} that of the other flights; chance would do as much with a probability "
+        "The mean of {} lies {} hPa {} that of the rest of the flights; chance would do as much with a probability "
         "of {}. Ask what was changed on the aircraft between them.",
         step.flight, with_error(std::abs(step.size), step.standard_error),
         step.size < 0.0 ? "below" : "above", probability(step.p_value)));

@@ -238,14 +238,14 @@ double static_risk(const Analysis& analysis, const std::vector<Candidate>& candi
   return risk;
 }
 
-/// Its rms and its extreme over all records used: against the first reference, or, of an effect on the other
-/// system, against those that see it.
+/// Its rms and its extreme over all records used: against the first reference, or, of an effect on another
+/// system, against those that have it.
 void measure(const Analysis& analysis, const std::vector<std::size_t>& chosen, std::size_t which,
-             const Eigen::VectorXd& estimate, Finding& finding) {
+             const Eigen::VectorXd& estimate, const Candidate& candidate, Finding& finding) {
   double squares = 0.0;
   double count = 0.0;
   for (std::size_t f = 0; f < analysis.flight_count(); ++f) {
-    if ((analysis.flight(f).reference != 0) != finding.of_reference) continue;
+    if (!candidate.is_measured_by(analysis.flight(f).reference)) continue;
     const std::vector<double> added = analysis.added_by(f, chosen, which, estimate);
     const FlightSamples& samples = *analysis.flight(f).samples;
     for (const std::size_t record : analysis.bins(f).records()) {
@@ -260,11 +260,16 @@ void measure(const Analysis& analysis, const std::vector<std::size_t>& chosen, s
   finding.rms = count > 0.0 ? std::sqrt(squares / count) : 0.0;
 }
 
+/// What no model file can hold of the shape that a candidate is tried in; empty where it can hold all.
+std::string shape_beyond_model(const Candidate& candidate) {
+  if (candidate.is_shared) return "alike on the other system";
+  return candidate.memory > 0.0 ? fmt::format("with a memory of {:g} s", candidate.memory) : "";
+}
+
 /// What shape a candidate is tried in, in words; empty in that of the catalogue.
 std::string shape_of(const Candidate& candidate) {
   if (!candidate.is_variant) return "";
-  if (candidate.is_shared) return "alike on the other system";
-  if (candidate.memory > 0.0) return fmt::format("with a memory of {:g} s", candidate.memory);
+  if (std::string beyond = shape_beyond_model(candidate); !beyond.empty()) return beyond;
   const Scaling& scaling = candidate.effect.scaling;
   if (!scaling.is_none())
     return fmt::format("times p^{} q^{}", scaling.static_pressure, scaling.dynamic_pressure);
@@ -293,6 +298,7 @@ void describe(const std::vector<Candidate>& candidates, std::size_t winner, cons
   const std::size_t known = effect_named(own.effect.id);
   if (known < catalogue_size) finding.family = std::string(effect_facts[known].family);
   finding.shape = shape_of(own);
+  finding.shape_beyond_model = shape_beyond_model(own);
   finding.places = {place_of(own)};
   std::map<std::string, double> weights{{own.id, 1.0}};
   for (const Rival& rival : rivals) {
@@ -342,13 +348,14 @@ std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Can
     finding.effect = with_estimate(candidate, estimate.segment(place, count));
     finding.of_reference = candidate.is_of_reference();
     finding.is_alike = candidate.is_shared;
+    finding.system = candidate.system;
     finding.title = candidate.title;
     const std::vector<Eigen::Index>& told = analysis.search().told(group);
     finding.estimates = estimates_of(candidate, told, estimate.segment(place, count),
                                      covariance.block(place, place, count, count));
     finding.held = held_of(candidate, told);
     place += count;
-    measure(analysis, chosen, i, estimate, finding);
+    measure(analysis, chosen, i, estimate, candidate, finding);
     finding.chi2 = analysis.search().score(group, chosen).chi2;
     finding.p_value = analysis.result().p_values[i];
     std::vector<std::size_t> without = chosen;
@@ -453,7 +460,9 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
     double count = 0.0;
     const Eigen::Index first = analysis.groups()[g].first;
     const double kept = std::sqrt(search.remaining(g));
-    for (const FlightColumns& flight : analysis.flights()) {
+    for (std::size_t f = 0; f < analysis.flight_count(); ++f) {
+      const FlightColumns& flight = analysis.flight(f);
+      if (!candidates[g].is_measured_by(flight.reference)) continue;
       for (std::size_t i = 0; i < flight.given.size(); ++i) {
         if (std::isnan(flight.given[i])) continue;
         double sum = 0.0;

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
-#include "diagnose/same_time.hpp"
 #include "diagnose/scores.hpp"
 #include "numerics/chi_squared.hpp"
 #include "numerics/decompositions.hpp"
@@ -13,7 +11,10 @@
 namespace pcor::internal {
 namespace {
 
-/// Means of the flights beside a model, and their covariance. What all have in common is left to the model.
+constexpr double least_eigenvalue = 1e-9;
+
+/// Means of the flights beside a model, and their covariance. Of what the model explains, be it common to all
+/// or a step between them, the means have nothing.
 struct Means {
   Eigen::VectorXd value;
   Eigen::MatrixXd covariance;
@@ -33,16 +34,21 @@ Means find_means(const std::vector<Binning>& bins, const std::vector<Eigen::Matr
   const Scores scores = find_scores(bins, with_means, residuals, noise);
   const Eigen::VectorXd scale =
       scores.information.diagonal().head(width).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd inverse =
-      scale.asDiagonal() *
-      pseudo_inverse(scale.asDiagonal() * scores.information.topLeftCorner(width, width) * scale.asDiagonal(),
-                     1e-9) *
-      scale.asDiagonal();
-  const Eigen::VectorXd right = scores.information.col(width).head(width);
-  const double squares = scores.information(width, width) - right.dot(inverse * right);
+  const Eigen::MatrixXd scaled =
+      scale.asDiagonal() * scores.information.topLeftCorner(width, width) * scale.asDiagonal();
+  const Eigen::VectorXd right = scale.asDiagonal() * scores.information.col(width).head(width);
+  const Eigen::MatrixXd of_model = pseudo_inverse(scaled.topLeftCorner(model, model), least_eigenvalue);
+  const Eigen::MatrixXd by_model = of_model * scaled.topRightCorner(model, flights);
+  const Eigen::VectorXd left = right.tail(flights) - by_model.transpose() * right.head(model);
+  const Eigen::MatrixXd inverse = pseudo_inverse(
+      scaled.bottomRightCorner(flights, flights) - scaled.bottomLeftCorner(flights, model) * by_model,
+      least_eigenvalue);
+  const double squares = scores.information(width, width) -
+                         right.head(model).dot(of_model * right.head(model)) - left.dot(inverse * left);
   const double variance =
       squares / std::max(1.0, static_cast<double>(scores.row_count()) - static_cast<double>(width));
-  return {(inverse * right).tail(flights), variance * inverse.bottomRightCorner(flights, flights)};
+  const Eigen::VectorXd unit = scale.tail(flights);
+  return {unit.cwiseProduct(inverse * left), variance * (unit.asDiagonal() * inverse * unit.asDiagonal())};
 }
 
 /// The weights with which means make the difference of one of some flights to the others.
@@ -63,6 +69,7 @@ double normal_square(double student_square, double freedom) {
 MeanStep step_of(std::size_t one, const std::vector<std::size_t>& flights, const Means& means) {
   const Eigen::VectorXd weights = difference(one, flights, means.value.size());
   const double known = weights.dot(means.covariance * weights);
+  if (!(known > 0.0)) return {};
   std::vector<std::size_t> others;
   for (const std::size_t flight : flights) {
     if (flight != one) others.push_back(flight);
@@ -95,19 +102,15 @@ std::vector<MeanStep> find_mean_steps(const std::vector<Binning>& bins,
                                       const std::vector<Eigen::VectorXd>& residuals,
                                       const NoiseModel& noise) {
   std::vector<MeanStep> steps(bins.size());
-  std::map<std::ptrdiff_t, std::vector<std::size_t>> groups;  // by how many of the same time came before
+  std::vector<std::size_t> flights;
   for (std::size_t f = 0; f < bins.size(); ++f) {
-    if (bins[f].size() == 0) continue;
-    const auto before = std::count_if(bins.begin(), bins.begin() + static_cast<std::ptrdiff_t>(f),
-                                      [&](const Binning& other) { return is_of_same_time(other, bins[f]); });
-    groups[before].push_back(f);
+    if (bins[f].size() > 0) flights.push_back(f);
   }
+  if (flights.size() < 2) return steps;
   const Means means = find_means(bins, columns, residuals, noise);
-  for (const auto& group : groups) {
-    const std::vector<std::size_t>& flights = group.second;
-    for (const std::size_t flight : flights) {
-      if (flights.size() > 1) steps[flight] = step_of(flight, flights, means);
-    }
+  for (const std::size_t flight : flights) {
+    const bool told_of_the_other = flights.size() == 2 && flight == flights.front();
+    if (!told_of_the_other) steps[flight] = step_of(flight, flights, means);
   }
   return steps;
 }

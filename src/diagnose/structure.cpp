@@ -6,7 +6,6 @@
 #include <limits>
 #include <random>
 
-#include "diagnose/same_time.hpp"
 #include "diagnose/scores.hpp"
 #include "numerics/chi_squared.hpp"
 #include "numerics/decompositions.hpp"
@@ -36,23 +35,21 @@ Eigen::VectorXd rotated(const Eigen::VectorXd& series, double part) {
 }
 
 /// Residuals of a flight that go with nothing, by columns: first shifted in time, then with signs that each
-/// minute has at random. What was measured at the same time is drawn alike, since it may have noise in
-/// common.
-Eigen::MatrixXd drawn(const Eigen::VectorXd& left, const std::vector<Binning>& bins, std::size_t flight,
-                      std::uint64_t seed) {
+/// minute has at random.
+/// @param shift_seed of the shifts; @param sign_seed of the signs, which also go by the minute
+Eigen::MatrixXd drawn(const Eigen::VectorXd& left, const Binning& bins, std::uint64_t shift_seed,
+                      std::uint64_t sign_seed) {
   constexpr double minute = 60.0;  // s
   Eigen::MatrixXd result(left.size(), 2 * draws);
-  std::size_t first = 0;
-  while (first < flight && !is_of_same_time(bins[first], bins[flight])) ++first;
-  std::mt19937_64 shifts(seed + first);
+  std::mt19937_64 shifts(shift_seed);
   std::uniform_real_distribution<double> part(0.1, 0.9);
   for (Eigen::Index k = 0; k < draws; ++k) result.col(k) = rotated(left, part(shifts));
   double now = -1.0;
   Eigen::RowVectorXd signs(draws);
   for (Eigen::Index i = 0; i < left.size(); ++i) {
-    const double begin = std::floor(bins[flight].time()[static_cast<std::size_t>(i)] / minute);
+    const double begin = std::floor(bins.time()[static_cast<std::size_t>(i)] / minute);
     if (begin != now) {
-      std::mt19937_64 engine(seed + static_cast<std::uint64_t>(begin));
+      std::mt19937_64 engine(sign_seed + static_cast<std::uint64_t>(begin));
       for (Eigen::Index k = 0; k < draws; ++k) signs[k] = (engine() & 1U) != 0 ? 1.0 : -1.0;
       now = begin;
     }
@@ -105,7 +102,7 @@ StructureTest::StructureTest(const std::vector<Binning>& bins, const std::vector
     const std::vector<Eigen::VectorXd> noise_alone = left_by(aside, flights);
     flights.model_with_drawn = Eigen::MatrixXd::Zero(width, 2 * draws);
     for (std::size_t f = 0; f < bins.size(); ++f) {
-      flights.drawn.push_back(drawn(noise_alone[f], bins, f, seed));
+      flights.drawn.push_back(drawn(noise_alone[f], bins[f], seed + f, seed));
       flights.model_with_drawn += flights.model[f].transpose() * flights.drawn[f];
     }
     alone_ = std::min(alone_, minus_likelihood(flights, 0.0));
@@ -244,7 +241,6 @@ bool StructureTest::add(const std::string& name, const std::vector<const double*
         std::max(1.0, static_cast<double>(rows()) - static_cast<double>(flights.scale.size()));
     const double variance = flights.squares / freedom;
     structure.freedom = std::max(structure.freedom, static_cast<double>(taken.freedom));
-    if (smooth.has_line() && &flights == &whitened_.front()) structure.line_chi2 = taken.line / variance;
     if (const double value = minus_likelihood(flights, taken.all); value < with_all) {
       with_all = value;
       structure.share =

@@ -20,7 +20,6 @@ struct Structure {
   double equivalent = 0.0;  ///< the gain as a chi-squared of one degree, in units of what chance gains
   double share = 0.0;       ///< of the residual's squares that the noise does not account for, 0 to 1
   double line_gain = 0.0;   ///< as `gain`, of the straight line alone
-  double line_chi2 = 0.0;   ///< of the straight line alone, the drift as it is given
   double line_share = 0.0;  ///< as `share`, of the straight line alone
   double slope = 0.0;       ///< of the straight line, hPa per unit of the variable
   double slope_error = 0.0;
@@ -28,7 +27,7 @@ struct Structure {
 };
 
 /// Tests whether residuals hold structure that a model does not explain: functions of variables, one variable
-/// at a time.
+/// at a time. The flights are those against one reference.
 ///
 /// What goes slowly with a variable passes for drift where drift is looked for first. So a variable competes
 /// with drift on equal terms: the likelihood of its functions beside as much of the drift as is likeliest

@@ -14,6 +14,7 @@
 #include "diagnose/structure.hpp"
 #include "diagnose/tested_variables.hpp"
 #include "numerics/chi_squared.hpp"
+#include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -177,9 +178,73 @@ struct Tested {
   }
 };
 
+/// A variable less its middle at every record; what is missing has the value before it.
+Eigen::VectorXd line_in(const std::vector<double>& values, double middle) {
+  Eigen::VectorXd line = Eigen::VectorXd::Zero(as_index(values.size()));
+  double last = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isfinite(values[i])) last = values[i] - middle;
+    line[as_index(i)] = last;
+  }
+  return line;
+}
+
+/// The lines in variables, in bins, of each flight against each reference: of each variable one column for
+/// each reference. @param variables their numbers
+std::vector<Eigen::MatrixXd> lines_in(const Analysis& analysis, const Tested& tested,
+                                      const std::vector<std::size_t>& variables, Eigen::Index references) {
+  const std::vector<FlightColumns>& flights = analysis.flights();
+  std::vector<Eigen::MatrixXd> lines;
+  for (std::size_t f = 0; f < analysis.flight_count(); ++f) {
+    const FlightColumns& flight = analysis.flight(f);
+    const Binning& bins = analysis.bins(f);
+    Eigen::MatrixXd& columns = lines.emplace_back(
+        Eigen::MatrixXd::Zero(as_index(bins.size()), references * as_index(variables.size())));
+    const auto known = std::find_if(flights.begin(), flights.end(), [&flight](const FlightColumns& other) {
+      return other.samples->name == flight.samples->name;
+    });
+    if (known == flights.end()) continue;
+    const auto place = static_cast<std::size_t>(known - flights.begin());
+    for (std::size_t k = 0; k < variables.size(); ++k) {
+      columns.col(references * as_index(k) + as_index(flight.reference)) = bins.means(line_in(
+          *tested.variables[variables[k]]->values[place], tested.test.structures()[variables[k]].centre));
+    }
+  }
+  return lines;
+}
+
+/// The line in a variable that explains most beside the base, of those that may be a cause and are no input
+/// of an effect. It has a slope of its own against each reference, since where the cause acts is not known.
+GroupScore best_line(const Analysis& analysis, const Tested& tested, const std::set<std::string>& inputs) {
+  std::vector<std::size_t> causes;
+  for (std::size_t i = 0; i < tested.variables.size(); ++i) {
+    const TestedVariable& variable = *tested.variables[i];
+    if (variable.may_be_cause && variable.turn == 0.0 && inputs.count(variable.name) == 0)
+      causes.push_back(i);
+  }
+  std::size_t references = 0;
+  for (std::size_t f = 0; f < analysis.flight_count(); ++f)
+    references = std::max(references, analysis.flight(f).reference + 1);
+  std::vector<ColumnGroup> groups(causes.size());
+  for (std::size_t k = 0; k < groups.size(); ++k) {
+    groups[k].first = as_index(references * k);
+    groups[k].count = as_index(references);
+    groups[k].bounds.resize(references);
+  }
+  const Scores scores = analysis.scores_with(lines_in(analysis, tested, causes, as_index(references)));
+  const Search search(scores, analysis.base(), groups);
+  GroupScore best;
+  for (std::size_t k = 0; k < groups.size(); ++k) {
+    GroupScore line = search.score(k, {});
+    if (line.chi2 - line.freedom > best.chi2 - best.freedom) best = std::move(line);
+  }
+  return best;
+}
+
 /// Whether a line in one variable is likelier than all chosen effects: one that explains a tenth more than an
 /// effect does, or, since causes rarely come together, one that does the work of several. A line that any of
-/// many variables may win with has to be that much better. What an effect reads is no rival of it.
+/// many variables may win with has to be that much better. What an effect reads is no rival of it. Both are
+/// measured by all references.
 bool line_overrules(const Analysis& analysis, const std::vector<std::size_t>& chosen, const Tested& tested,
                     const std::set<std::string>& inputs) {
   if (tested.variables.empty()) return false;
@@ -189,14 +254,11 @@ bool line_overrules(const Analysis& analysis, const std::vector<std::size_t>& ch
   double by_effects = 0.0;
   for (const std::size_t group : chosen) by_effects += search.score(group, {}).freedom;
   const double together = (search.variance({}) / search.variance(chosen) - 1.0) * rows;
-  double line = 0.0;
-  for (std::size_t i = 0; i < tested.variables.size(); ++i) {
-    const TestedVariable& variable = *tested.variables[i];
-    if (variable.may_be_cause && inputs.count(variable.name) == 0)
-      line = std::max(line, tested.test.structures()[i].line_chi2);
-  }
+  const GroupScore best = best_line(analysis, tested, inputs);
+  double line = best.chi2;
   if (chosen.size() > 1) {
-    const double likelihood = -0.5 * rows * std::log1p(-std::min(line / rows, 0.999)) - 0.5 * std::log(rows);
+    const double likelihood =
+        -0.5 * rows * std::log1p(-std::min(line / rows, 0.999)) - 0.5 * best.freedom * std::log(rows);
     const double price = std::log(static_cast<double>(analysis.groups().size()));
     if (likelihood - choices > search.evidence(chosen) - price * static_cast<double>(chosen.size()))
       return true;
@@ -204,7 +266,7 @@ bool line_overrules(const Analysis& analysis, const std::vector<std::size_t>& ch
   // Both in units of the noise that all effects leave.
   line *= search.variance({}) / search.variance(chosen);
   const double margin = 9.0 + 2.0 * choices;
-  return line - 1.0 > least_gain * (together - by_effects) + margin;
+  return line - best.freedom > least_gain * (together - by_effects) + margin;
 }
 
 /// The variables whose structure is beyond chance, each once.

@@ -45,7 +45,7 @@ std::string why_no_height(const Flight& flight, const ModelFile& model) {
 std::string why_no_wind(const Flight& flight, const ModelFile& model) {
   if (!names_temperature(model)) return "the model names no temperature";
   if (read_role(flight, model, Quantity::heading).values.empty()) return "there is no true heading";
-  if (read_ground_velocity(flight, model).east.empty()) return "there is no velocity over the ground";
+  if (read_ground_velocity(flight, model).speed.values.empty()) return "there is no velocity over the ground";
   return "";
 }
 

@@ -117,9 +117,12 @@ FlightAir read_flight_air(const Flight& flight, const ModelFile& model, const Ma
   run_chain(*samples, model.model, air);
   air.samples = std::move(samples);
   find_heights(flight, model, air);
-  GroundVelocity ground = read_ground_velocity(flight, model);
-  air.east_speed = std::move(ground.east);
-  air.north_speed = std::move(ground.north);
+  const GroundVelocity ground = read_ground_velocity(flight, model);
+  for (std::size_t i = 0; i < ground.speed.values.size(); ++i) {
+    const double track = ground.track.values[i] * constants::radians_per_degree;
+    air.east_speed.push_back(ground.speed.values[i] * std::sin(track));
+    air.north_speed.push_back(ground.speed.values[i] * std::cos(track));
+  }
   find_tail_wind(air);
   return air;
 }

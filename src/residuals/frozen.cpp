@@ -153,16 +153,15 @@ std::vector<Stretch> find_frozen(const std::vector<double>& values, const std::v
   return frozen;
 }
 
-void mark_frozen(FlightSamples& samples, double least_airspeed) {
+void mark_frozen(FlightSamples& samples, ModelSamples FlightSamples::*part, double least_airspeed) {
   std::vector<bool> flying;
   for (const double airspeed : samples.motion.airspeed) flying.push_back(airspeed >= least_airspeed);
-  for (ModelSamples* const part : {&samples.model, &samples.reference}) {
-    for (const auto& [quantity, variable] : part->variables) {
-      const std::vector<double>& values = *part->find(quantity);
-      const std::vector<Stretch> frozen = find_frozen(values, flying, always_varies(quantity));
-      for (const Stretch& span : frozen) part->frozen.push_back({quantity, span.first, span.count});
-      if (!frozen.empty()) samples.notes.push_back(told_of(variable, quantity, values, samples.time, frozen));
-    }
+  ModelSamples& read = samples.*part;
+  for (const auto& [quantity, variable] : read.variables) {
+    const std::vector<double>& values = *read.find(quantity);
+    const std::vector<Stretch> frozen = find_frozen(values, flying, always_varies(quantity));
+    for (const Stretch& span : frozen) read.frozen.push_back({quantity, span.first, span.count});
+    if (!frozen.empty()) samples.notes.push_back(told_of(variable, quantity, values, samples.time, frozen));
   }
 }
 

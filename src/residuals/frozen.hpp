@@ -22,8 +22,8 @@ namespace pcor::internal {
 std::vector<Stretch> find_frozen(const std::vector<double>& values, const std::vector<bool>& looked_at,
                                  bool always_varies = false);
 
-/// Finds the sensors that freeze in the air among those that model and reference read, and notes them.
-/// @param least_airspeed m/s; slower samples do not count
-void mark_frozen(FlightSamples& samples, double least_airspeed);
+/// Finds the sensors that freeze in the air among those that a part of the samples, model or reference,
+/// reads, and notes them. @param least_airspeed m/s; slower samples do not count
+void mark_frozen(FlightSamples& samples, ModelSamples FlightSamples::*part, double least_airspeed);
 
 }  // namespace pcor::internal

@@ -3,24 +3,22 @@
 #include <cmath>
 
 #include <pcor/physics/constants.hpp>
-#include "roles/recorded_series.hpp"
 
 namespace pcor::internal {
 
 GroundVelocity read_ground_velocity(const Flight& flight, const ModelFile& model) {
-  const std::vector<double> speed = read_role(flight, model, Quantity::ground_speed).values;
-  const std::vector<double> track = read_role(flight, model, Quantity::ground_track).values;
-  GroundVelocity velocity;
-  if (speed.empty() || track.empty()) {
-    velocity.east = read_usual(flight, usual_series("ground_speed_east")).values;
-    velocity.north = read_usual(flight, usual_series("ground_speed_north")).values;
-    if (velocity.east.empty() || velocity.north.empty()) return {};
-    return velocity;
-  }
-  for (std::size_t i = 0; i < speed.size(); ++i) {
-    const double angle = track[i] * constants::radians_per_degree;
-    velocity.east.push_back(speed[i] * std::sin(angle));
-    velocity.north.push_back(speed[i] * std::cos(angle));
+  GroundVelocity velocity{read_role(flight, model, Quantity::ground_speed),
+                          read_role(flight, model, Quantity::ground_track)};
+  if (!velocity.speed.values.empty() && !velocity.track.values.empty()) return velocity;
+  const RecordedSeries east = read_usual(flight, usual_series("ground_speed_east"));
+  const RecordedSeries north = read_usual(flight, usual_series("ground_speed_north"));
+  if (east.values.empty() || north.values.empty()) return {};
+  const std::string both = east.variable + " and " + north.variable;
+  velocity = {{both}, {both}};
+  for (std::size_t i = 0; i < east.values.size(); ++i) {
+    velocity.speed.values.push_back(std::hypot(east.values[i], north.values[i]));
+    velocity.track.values.push_back(std::atan2(east.values[i], north.values[i]) /
+                                    constants::radians_per_degree);
   }
   return velocity;
 }

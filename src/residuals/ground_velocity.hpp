@@ -1,16 +1,16 @@
 #pragma once
 
-#include <vector>
-
 #include <pcor/flight/flight.hpp>
 #include <pcor/laws/model_file.hpp>
+#include "roles/recorded_series.hpp"
 
 namespace pcor::internal {
 
-/// The velocity over the ground, m/s, one value for each record; empty where the flight does not record it.
+/// The velocity over the ground, one value for each record; without values where the flight does not record
+/// it.
 struct GroundVelocity {
-  std::vector<double> east{};
-  std::vector<double> north{};
+  RecordedSeries speed{};  ///< m/s
+  RecordedSeries track{};  ///< deg from true north
 };
 
 /// From ground speed and track, by the roles of the model or the usual names; else from the usual components.

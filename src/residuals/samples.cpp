@@ -176,7 +176,8 @@ FlightSamples read_samples(const Flight& flight, const ModelFile& model, const R
   samples.reference = reference.read(flight, samples.time, samples.notes);
   samples.motion = read_motion(flight, model, samples);
   read_flaps(flight, model, options.least_airspeed, samples);
-  mark_frozen(samples, options.least_airspeed);
+  for (const auto part : {&FlightSamples::model, &FlightSamples::reference})
+    mark_frozen(samples, part, options.least_airspeed);
   const std::optional<RegimeCriteria> criteria = RegimeCriteria::of(samples.aircraft);
   if (!criteria) {
     samples.notes.push_back(

@@ -124,6 +124,27 @@ TEST(Compare, GivesEveryModelItsOwnReference) {
   EXPECT_EQ(both.models[0].all.noise_rms, both.models[1].all.noise_rms) << "a flight has one noise";
 }
 
+TEST(Compare, PairsReferencesByName) {
+  const auto reference = [](const char* text) { return pcor::read_reference(text, laser_contender().model); };
+  Contender first = laser_contender();
+  first.references = {pcor::lams_reference(), reference("total:PSFRD+QCFR"), reference("pressure:PS_A")};
+  Contender second = laser_contender(1e-3);
+  second.references = {reference("pressure:PS_A"), pcor::lams_reference(), reference("pressure:TRUE_PS")};
+  const Comparison result = pcor::compare({flight_file()}, {first, second});
+  const auto told = [](const Comparison& comparison) {
+    std::vector<std::string> names;
+    for (const pcor::ModelComparison& model : comparison.models)
+      names.push_back(model.name + " against " + model.reference);
+    return names;
+  };
+  EXPECT_THAT(told(result), testing::ElementsAre("true law against lams", "shifted law against lams"));
+  ASSERT_EQ(result.further.size(), 3U);
+  EXPECT_THAT(told(result.further[0]), testing::ElementsAre("true law against total:PSFRD+QCFR"));
+  EXPECT_THAT(told(result.further[1]),
+              testing::ElementsAre("true law against pressure:PS_A", "shifted law against pressure:PS_A"));
+  EXPECT_THAT(told(result.further[2]), testing::ElementsAre("shifted law against pressure:TRUE_PS"));
+}
+
 TEST(Compare, SumsOfBandsAndFlightsAreThatOfTheWhole) {
   const Comparison result = pcor::compare({flight_file(), flight_file()}, {laser_contender()});
   const pcor::ModelComparison& model = result.models.front();

@@ -5,7 +5,6 @@
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/realtime/chain.hpp>
 #include <pcor/residuals/residuals.hpp>
-#include <pcor/simulate/simulate.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "support/temporary_directory.hpp"
+#include "support/short_flight.hpp"
 
 using namespace pcor::internal;
 
@@ -29,14 +28,12 @@ using pcor::Residuals;
 using pcor::internal::Candidate;
 using pcor::internal::CandidateSet;
 using pcor::internal::FlightColumns;
+using pcor::test::laser_model;
+using pcor::test::short_flight;
 using testing::HasSubstr;
 using testing::StrEq;
 
 namespace {
-
-const std::filesystem::path scenarios = std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
-
-ModelFile laser_model() { return pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
 
 /// Where a made series lies, and how far it swings.
 struct Swing {
@@ -172,18 +169,8 @@ bool has_candidate(const CandidateSet& set, const std::string& effect) {
                      [&](const Candidate& candidate) { return candidate.effect.id == effect; });
 }
 
-/// A simulated flight with a few minutes of everything.
-const std::filesystem::path& flight_file() {
-  static const pcor::test::TemporaryDirectory directory;
-  static const std::filesystem::path path = [] {
-    pcor::simulate_flight(pcor::read_scenario(scenarios / "c130-short.toml"), directory / "short.nc");
-    return directory / "short.nc";
-  }();
-  return path;
-}
-
 CandidateSet candidates_of_file(const ModelFile& model, const std::vector<ModelEffect>& formulas = {}) {
-  const pcor::Flight flight(flight_file());
+  const pcor::Flight flight(short_flight());
   return pcor::internal::find_candidates(model, formulas, {&flight}, {pcor::lams_reference()});
 }
 
@@ -399,6 +386,36 @@ TEST(Candidates, OfHumidityFollowTheGasConstants) {
   ASSERT_NE(reason_for(dry, "humidity-error"), nullptr);
   EXPECT_THAT(reason_for(dry, "humidity-error")->reason, HasSubstr("dry"));
   EXPECT_TRUE(has_candidate(dry, "humidity-neglected"));
+}
+
+TEST(Candidates, OnOtherSystemsAreOneForEachSystem) {
+  const pcor::Flight flight(short_flight());
+  const auto number_of = [&flight](const std::vector<std::string>& others, const std::string& id) {
+    pcor::References references{pcor::lams_reference()};
+    for (const std::string& other : others) references.push_back(pcor::read_reference(other, laser_model()));
+    for (const Candidate& candidate : find_candidates(laser_model(), {}, {&flight}, references).candidates) {
+      if (candidate.id == id) return candidate.numbers_in_others;
+    }
+    return std::vector<std::optional<std::size_t>>();
+  };
+  const std::string pair = "total:PSFRD+QCFR";
+  const std::string avionics = "total:PS_A+QC_A";
+  EXPECT_TRUE(number_of({pair}, "reference:psfd-bias")[1]);
+  EXPECT_THAT(number_of({pair, avionics}, "reference:psfd-bias"), testing::IsEmpty());
+  const auto of_pair = number_of({pair, avionics}, "reference:PSFRD+QCFR:psfd-bias");
+  ASSERT_THAT(of_pair, testing::SizeIs(3));
+  EXPECT_TRUE(of_pair[1]);
+  EXPECT_FALSE(of_pair[2]);
+  const auto of_avionics = number_of({pair, avionics}, "reference:PS_A+QC_A:psfd-bias");
+  ASSERT_THAT(of_avionics, testing::SizeIs(3));
+  EXPECT_FALSE(of_avionics[1]);
+  EXPECT_TRUE(of_avionics[2]);
+  // Two references of one system have its effects in common, whatever its law is in either.
+  const std::string law = std::string("static:") + PCOR_SOURCE_DIR + "/data/models/c130-psfrd-eq18.toml";
+  const auto of_both = number_of({law, pair}, "reference:psfd-bias");
+  ASSERT_THAT(of_both, testing::SizeIs(3));
+  EXPECT_TRUE(of_both[1]);
+  EXPECT_TRUE(of_both[2]);
 }
 
 TEST(Candidates, OfFormulasNeedTheirVariables) {

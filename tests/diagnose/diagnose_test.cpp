@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <netcdf>
 #include <string>
 #include <vector>
 
@@ -341,6 +342,48 @@ TEST(Diagnose, AgainstAStaticSystemFindsWhatOneOfThemHas) {
   const Diagnosis diagnosis =
       pcor::diagnose({flight("c130-eq18", 361, "on = \"PSFD\"\n" + beta_odd)}, model(), {reference});
   EXPECT_THAT(names_of(diagnosis), testing::Contains("static-beta-odd"));
+}
+
+// Level legs alone: four effects together describe the engines nearly, and not at all in the total pressure.
+TEST(Diagnose, HoldsALineAgainstEffectsByAllReferences) {
+  std::string torque = engine_torque;
+  torque.replace(torque.find("3.0"), 3, "6.0");
+  const Diagnosis diagnosis =
+      pcor::diagnose({flight("c130-no-manoeuvres", 702, torque)}, model(),
+                     {pcor::lams_reference(), pcor::read_reference("total:PSFRD+QCFR", model())});
+  EXPECT_THAT(diagnosis.notes, testing::Contains(HasSubstr("a line in ENGTRQ explains more")));
+}
+
+// The simulated avionics low-pass their pressures; the second pair does not.
+TEST(Diagnose, TellsWhichOfTwoOtherSystemsAnEffectIsOf) {
+  const Diagnosis diagnosis =
+      pcor::diagnose({flight("c130-eq18", 363)}, model(),
+                     {pcor::lams_reference(), pcor::read_reference("total:PSFRD+QCFR", model()),
+                      pcor::read_reference("total:PS_A+QC_A", model())});
+  ASSERT_THAT(diagnosis.findings, SizeIs(1));
+  const Finding& finding = diagnosis.findings[0];
+  EXPECT_EQ(finding.id(), "reference:PS_A+QC_A:total-lag");
+  EXPECT_THAT(finding.title, HasSubstr("of the system PS_A+QC_A"));
+  EXPECT_GT(finding.rms, 0.1) << "in the reference that has it";
+  for (const pcor::UpperLimit& limit : diagnosis.limits) EXPECT_GT(limit.rms, 0.0) << limit.effect;
+}
+
+// The second pair stands still for five minutes of a climb.
+TEST(Diagnose, DoesNotBelieveAFrozenSensorOfAFurtherReference) {
+  const pcor::test::TemporaryDirectory directory;
+  const std::filesystem::path path = directory / "frozen.nc";
+  std::filesystem::copy_file(flight("c130-eq18", 362), path);
+  {
+    netCDF::NcFile file(path.string(), netCDF::NcFile::write);
+    const netCDF::NcVar variable = file.getVar("PSFRD");
+    double value = 0.0;
+    variable.getVar({1000}, {1}, &value);
+    variable.putVar({1000}, {300}, std::vector<double>(300, value).data());
+  }
+  const Diagnosis diagnosis = pcor::diagnose(
+      {path}, model(), {pcor::lams_reference(), pcor::read_reference("total:PSFRD+QCFR", model())});
+  EXPECT_THAT(diagnosis.notes, testing::Contains(HasSubstr("PSFRD is frozen")));
+  EXPECT_EQ(diagnosis.verdict, Verdict::silent);
 }
 
 TEST(Diagnose, NeedsFlightsAndSamples) {

@@ -22,7 +22,7 @@
 #include <pcor/simulate/simulate.hpp>
 #include "simulate/aircraft.hpp"
 #include "support/made_samples.hpp"
-#include "support/temporary_directory.hpp"
+#include "support/short_flight.hpp"
 
 using namespace pcor::internal;
 
@@ -570,12 +570,9 @@ TEST(Manoeuvres, AreNoneWhereNothingWasFlown) {
 
 // The scenario flies 95 to 135 m/s at 1500 m, with a pitch manoeuvre and the usual noise.
 TEST(Manoeuvres, OfASimulatedFlightHaveTheAttackOfItsAircraft) {
-  const std::filesystem::path scenarios = std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
-  const pcor::test::TemporaryDirectory directory;
-  pcor::simulate_flight(pcor::read_scenario(scenarios / "c130-short.toml"), directory / "flight.nc");
-  const pcor::ModelFile model = pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml");
+  const pcor::ModelFile model = pcor::test::laser_model();
   const auto flown = std::make_shared<const FlightSamples>(
-      pcor::read_samples(pcor::Flight(directory / "flight.nc"), model, *pcor::lams_reference()));
+      pcor::read_samples(pcor::Flight(pcor::test::short_flight()), model, *pcor::lams_reference()));
   const std::vector<Manoeuvre> all = pcor::internal::standard_manoeuvres({flown});
   expect_complete(all, *flown);
   for (const Manoeuvre& each : all) {

@@ -4,7 +4,6 @@
 #include <pcor/diagnose/diagnose.hpp>
 #include <pcor/fit/refit.hpp>
 #include <pcor/improve/improve.hpp>
-#include <pcor/simulate/simulate.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -13,10 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "support/temporary_directory.hpp"
+#include "support/short_flight.hpp"
 
 using pcor::ModelFile;
 using pcor::Quantity;
+using pcor::test::short_flight;
 using testing::Gt;
 using testing::IsEmpty;
 using testing::Not;
@@ -25,17 +25,6 @@ using testing::SizeIs;
 namespace {
 
 const std::filesystem::path data = std::filesystem::path(PCOR_SOURCE_DIR) / "data";
-const pcor::test::TemporaryDirectory directory;
-
-/// A quarter of an hour of a C-130, with pressures, radome, flow angles, laser and all else.
-std::vector<std::filesystem::path> flight() {
-  static const std::filesystem::path path = [] {
-    std::filesystem::path made = directory / "flight.nc";
-    pcor::simulate_flight(pcor::read_scenario(data / "scenarios" / "c130-short.toml"), made);
-    return made;
-  }();
-  return {path};
-}
 
 /// The law on the variables of the flight: those that only other aircraft have get their like, and the laser
 /// and its angle of attack join.
@@ -77,14 +66,14 @@ TEST_P(PublishedLaw, GoesThroughEveryCommandOnAFlightThatHasAllVariables) {
   for (const std::string text : {"lams", "pressure:PS_A"}) {
     SCOPED_TRACE(text);
     const std::shared_ptr<const pcor::Reference> reference = pcor::read_reference(text, file);
-    const pcor::Comparison comparison = pcor::compare(flight(), {{"law", file, {reference}}});
+    const pcor::Comparison comparison = pcor::compare({short_flight()}, {{"law", file, {reference}}});
     EXPECT_THAT(comparison.models.front().all.samples, Gt(500U));
-    EXPECT_THAT(pcor::refit(flight(), file, {reference}).samples, Gt(500U));
-    const pcor::Diagnosis diagnosis = pcor::diagnose(flight(), file, {reference});
+    EXPECT_THAT(pcor::refit({short_flight()}, file, {reference}).samples, Gt(500U));
+    const pcor::Diagnosis diagnosis = pcor::diagnose({short_flight()}, file, {reference});
     EXPECT_THAT(diagnosis.candidates, Gt(10U));
     pcor::ImproveOptions once;
     once.most_steps = 1;
-    EXPECT_THAT(pcor::improve(flight(), file, {reference}, once).steps, Not(IsEmpty()));
+    EXPECT_THAT(pcor::improve({short_flight()}, file, {reference}, once).steps, Not(IsEmpty()));
   }
 }
 
@@ -94,7 +83,7 @@ TEST(Laws, NeedNoThermometerAgainstAPressure) {
                               Quantity::vapor_pressure, Quantity::dew_point, Quantity::lams_airspeed})
     file.variables.erase(role);
   const std::shared_ptr<const pcor::Reference> reference = pcor::read_reference("pressure:PS_A", file);
-  EXPECT_THAT(pcor::diagnose(flight(), file, {reference}).candidates, Gt(10U));
+  EXPECT_THAT(pcor::diagnose({short_flight()}, file, {reference}).candidates, Gt(10U));
 }
 
 INSTANTIATE_TEST_SUITE_P(Data, PublishedLaw, testing::ValuesIn(laws()), name_of);

@@ -1,6 +1,5 @@
 #include <gmock/gmock.h>
 #include <pcor/residuals/residuals.hpp>
-#include <pcor/simulate/simulate.hpp>
 #include <pcor/words/error.hpp>
 
 #include <algorithm>
@@ -9,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "support/temporary_directory.hpp"
+#include "support/short_flight.hpp"
 
 using pcor::Mask;
 using pcor::MaskOptions;
@@ -17,28 +16,17 @@ using pcor::ModelFile;
 using pcor::Quantity;
 using pcor::Reference;
 using pcor::Residuals;
+using pcor::test::laser_model;
+using pcor::test::short_flight;
 using testing::HasSubstr;
 
 namespace {
 
 const std::filesystem::path data = std::filesystem::path(PCOR_SOURCE_DIR) / "data";
 
-/// A short simulated flight of the C-130 with the laser, the same for all tests.
-const std::filesystem::path& flight_file() {
-  static const pcor::test::TemporaryDirectory directory;
-  static const std::filesystem::path path = [] {
-    pcor::simulate_flight(pcor::read_scenario(data / "scenarios" / "c130-short.toml"),
-                          directory / "short.nc");
-    return directory / "short.nc";
-  }();
-  return path;
-}
-
-ModelFile laser_model() { return pcor::read_model(data / "scenarios" / "models" / "c130-psfd-eq18.toml"); }
-
 Residuals residuals(const ModelFile& model, const Reference& reference, const MaskOptions& options = {}) {
   const auto samples = std::make_shared<const pcor::FlightSamples>(
-      pcor::read_samples(pcor::Flight(flight_file()), model, reference, options));
+      pcor::read_samples(pcor::Flight(short_flight()), model, reference, options));
   return Residuals(samples, model, reference, options);
 }
 
@@ -154,7 +142,7 @@ TEST(Residuals, AtTheSensorAreThoseOfThePressureToFirstOrder) {
     }
     // The laser 1 cm/s from where the model says that the air is.
     pcor::FlightSamples samples =
-        pcor::read_samples(pcor::Flight(flight_file()), model, *pcor::lams_reference());
+        pcor::read_samples(pcor::Flight(short_flight()), model, *pcor::lams_reference());
     const Residuals recorded(std::make_shared<const pcor::FlightSamples>(samples), model,
                              *pcor::lams_reference());
     const auto [sensor, predicted] = *recorded.predicted_sensor(recorded.parameters().data());
@@ -198,7 +186,7 @@ TEST(Masks, SayWhyEverySampleIsNotUsed) {
 TEST(Masks, KnowALaserThatIsOffOrAstray) {
   const ModelFile model = laser_model();
   pcor::FlightSamples samples =
-      pcor::read_samples(pcor::Flight(flight_file()), model, *pcor::lams_reference());
+      pcor::read_samples(pcor::Flight(short_flight()), model, *pcor::lams_reference());
   const std::vector<std::size_t> places = used(residuals(model, *pcor::lams_reference()));
   for (auto& [quantity, values] : samples.model.columns) {
     if (quantity != Quantity::lams_airspeed) continue;
@@ -215,7 +203,7 @@ TEST(Masks, KnowALaserThatIsOffOrAstray) {
 TEST(Masks, CountAMissingInputAsMissing) {
   const ModelFile model = laser_model();
   pcor::FlightSamples samples =
-      pcor::read_samples(pcor::Flight(flight_file()), model, *pcor::lams_reference());
+      pcor::read_samples(pcor::Flight(short_flight()), model, *pcor::lams_reference());
   const std::vector<std::size_t> places = used(residuals(model, *pcor::lams_reference()));
   for (auto& [quantity, values] : samples.model.columns) {
     if (quantity == Quantity::static_pressure) values[places[200]] = std::nan("");

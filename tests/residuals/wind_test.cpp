@@ -3,9 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <netcdf>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "support/isothermal_air.hpp"
+#include "support/short_flight.hpp"
 
 using pcor::Quantity;
 
@@ -21,13 +26,18 @@ pcor::FlightSamples flight(const Heading& heading_at) {
   pcor::FlightSamples flight =
       made::air_flight(std::vector<double>(1800, 3000.0), std::vector<double>(1800, airspeed));
   std::vector<double> heading;
-  std::vector<double> along;
+  std::vector<double> ground_speed;
+  std::vector<double> track;
   for (int i = 0; i < 1800; ++i) {
     heading.push_back(heading_at(i));
     const double angle = heading.back() * pcor::constants::radians_per_degree;
-    along.push_back(airspeed + east_wind * std::sin(angle) + north_wind * std::cos(angle));
+    const double east = airspeed * std::sin(angle) + east_wind;
+    const double north = airspeed * std::cos(angle) + north_wind;
+    ground_speed.push_back(std::hypot(east, north));
+    track.push_back(std::atan2(east, north) / pcor::constants::radians_per_degree);
   }
-  flight.reference.columns = {{Quantity::heading, heading}, {Quantity::ground_speed, along}};
+  flight.reference.columns = {
+      {Quantity::heading, heading}, {Quantity::ground_speed, ground_speed}, {Quantity::ground_track, track}};
   return flight;
 }
 
@@ -75,4 +85,47 @@ TEST(Wind, LooksAtTheAirAlone) {
   const std::vector<double> left = residuals(parked, made::air_model());
   EXPECT_TRUE(std::isnan(left[299]));
   EXPECT_NEAR(left[300], 0.0, 0.03) << "and what was recorded there does not matter afterwards";
+}
+
+TEST(Wind, DoesNotBelieveASensorThatIsFrozen) {
+  for (const Quantity frozen : {Quantity::heading, Quantity::ground_speed, Quantity::ground_track}) {
+    pcor::FlightSamples samples = flight(circles);
+    for (auto& [quantity, values] : samples.reference.columns) {
+      if (quantity == frozen) std::fill_n(values.begin() + 800, 60, values[800]);
+    }
+    samples.reference.frozen = {{frozen, 800, 60}};
+    const pcor::ModelFile model = made::air_model();
+    const pcor::Residuals residuals(std::make_shared<const pcor::FlightSamples>(samples), model,
+                                    *pcor::wind_reference(model));
+    EXPECT_EQ(residuals.mask()[799], pcor::Mask::none);
+    EXPECT_EQ(residuals.mask()[800], pcor::Mask::frozen);
+    EXPECT_EQ(residuals.mask()[859], pcor::Mask::frozen);
+    const std::vector<double> left = residuals.values(residuals.parameters().data());
+    EXPECT_NEAR(left[790], 0.0, 0.03) << "nor do its neighbours in the quarter of an hour";
+  }
+}
+
+TEST(Wind, SeesWhichSensorsOfAFlightAreFrozen) {
+  const pcor::test::TemporaryDirectory directory;
+  const pcor::ModelFile model = pcor::test::laser_model();
+  const auto reference = pcor::wind_reference(model);
+  for (const auto& [name, quantity] :
+       {std::pair("THDG", Quantity::heading), std::pair("GGSPD", Quantity::ground_speed),
+        std::pair("GGTRK", Quantity::ground_track)}) {
+    const std::filesystem::path path = directory / "frozen.nc";
+    std::filesystem::copy_file(pcor::test::short_flight(), path,
+                               std::filesystem::copy_options::overwrite_existing);
+    {
+      netCDF::NcFile file(path.string(), netCDF::NcFile::write);
+      const netCDF::NcVar variable = file.getVar(name);
+      double value = 0.0;
+      variable.getVar({400}, {1}, &value);
+      variable.putVar({400}, {120}, std::vector<double>(120, value).data());
+    }
+    const pcor::FlightSamples samples = pcor::read_samples(pcor::Flight(path), model, *reference);
+    ASSERT_EQ(samples.reference.frozen.size(), 1U) << name;
+    EXPECT_EQ(samples.reference.frozen[0].quantity, quantity);
+    EXPECT_NEAR(static_cast<double>(samples.reference.frozen[0].count), 120.0, 2.0);
+    EXPECT_THAT(samples.notes, testing::Contains(testing::HasSubstr(std::string(name) + " is frozen")));
+  }
 }

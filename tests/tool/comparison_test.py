@@ -344,12 +344,30 @@ class References(ComparisonTest):
                          ["lams", "total:PSFRD+QCFR", "height", "wind"])
         self.assertEqual(silent["models"][:1], stated["models"])
 
+    def test_help_says_which_references_are_taken_without_a_name(self):
+        for command in ("compare", "refit"):
+            self.assertIn("not given, compare takes lams and", self.done(command, "--help").stdout)
+
     def test_each_reference_has_its_own_table(self):
         text = self.done("compare", ONE, "-m", self.model(), "--reference", "pressure:TRUE_PS", "--reference", "height",
                          "--reference", "total:PSFRD+QCFR").stdout
         self.assertIn("references: pressure:TRUE_PS, height, total:PSFRD+QCFR", text)
         self.assertIn("residual = hydrostatic height against that of GPS", text)
         self.assertIn("residual = total pressure of 'PSFRD+QCFR'", text)
+
+    def test_a_reference_of_one_model_is_shown_for_that_alone(self):
+        """Of two pairs each is the second one of the other."""
+        laser = replace(r"^attack_differential_pressure.*$", r"\g<0>\n" + LASER)
+        other = self.write("other.toml", laser(OTHER_SYSTEM.read_text()))
+        given = ("-m", self.model(), "-m", other)
+        told = [(model["name"].split()[1][:-1], model["reference"])
+                for model in self.json_of("compare", ONE, *given)["models"]]
+        self.assertEqual(told, [("PSFD/QCF", "lams"), ("PSFRD/QCFR", "lams"), ("PSFD/QCF", "total:PSFRD+QCFR"),
+                                ("PSFD/QCF", "height"), ("PSFRD/QCFR", "height"), ("PSFD/QCF", "wind"),
+                                ("PSFRD/QCFR", "wind"), ("PSFRD/QCFR", "total:PSFD+QCF")])
+        text = self.done("compare", ONE, *given).stdout
+        self.assertIn("references: lams, total:PSFRD+QCFR, height, wind, total:PSFD+QCF\n", text)
+        self.assertRegex(text, r"total pressure of 'PSFD\+QCF', .*\n.*\n.*\nC-130 PSFRD/QCFR, equation 18 +\d")
 
     def test_the_total_pressure_of_true_systems_is_one(self):
         """Two pairs of transducers, of about 0.01 hPa each; static defects cancel, so no law is needed."""
@@ -588,6 +606,23 @@ class Refit(ComparisonTest):
         other = tomllib.loads((self.path / "other.toml").read_text())
         self.assertEqual(other["variables"]["static_pressure"], "PSFRD")
         self.assertIn("provenance", other)
+
+    def test_every_form_of_the_fitted_reference_is_in_the_command_to_copy(self):
+        self.link(ONE, "one.nc")
+        self.model()
+        zero = replace(r"(?s)^\[\[effect\]\].*", '[[effect]]\nid = "qcf-zero"\nparameters = { offset = 0.0 }\n')
+        self.write("its law.toml", OTHER_SYSTEM.read_text())
+        self.write("zero.toml", zero(OTHER_SYSTEM.read_text()))
+        held = [word for effect in LAW for word in ("--fix", effect)]
+        for references, more in ((("static:its law.toml", "pressure:PS_A", "total:its law.toml"), ()),
+                                 (("total:zero.toml",), held)):
+            with self.subTest(references):
+                given = [word for reference in references for word in ("--reference", reference)]
+                text = self.done("refit", "one.nc", "-m", "model.toml", "-o", "fitted.toml", *given, *more,
+                                 "--refit-reference", "both's.toml", "--force", cwd=self.path).stdout
+                told = shlex.split(self.run_as_printed(text))
+                after = [re.sub(r":(its law|zero)\.toml", ":both's.toml", reference) for reference in references]
+                self.assertEqual([told[i + 1] for i, word in enumerate(told) if word == "--reference"], after)
 
     def test_report_is_one_file(self):
         report = self.path / "out.html"

@@ -173,6 +173,8 @@ class Diagnose(DiagnosisTest):
         text = self.done("diagnose", "flight 1.nc", "-m", "my model.toml", cwd=self.path).stdout
         self.assertTrue(text.startswith("Nothing is missing"), text)
         self.assertIn("pcor process", self.run_as_printed(text))
+        for reference in ("height", "wind"):
+            self.assertIn(f"\nnot used as a reference: {reference}: compare shows it", text)
 
     def test_a_missing_effect_is_found(self):
         result = self.diagnose(flights=(LAGGING, LAGGING_TOO))
@@ -190,6 +192,16 @@ class Diagnose(DiagnosisTest):
         command = self.run_as_printed(text)
         self.assertRegex(command, "pcor add .* && pcor refit")
         self.assertTrue((self.path / "fitted.toml").exists())
+
+    def test_a_shape_that_no_model_file_holds_is_told_with_the_command(self):
+        """Both total lines lag behind."""
+        scenario = self.write("scenario.toml", with_effect('id = "total-lag"\ntau = 3.0\n')(SCENARIO))
+        self.done("simulate", scenario, "-o", self.path / "flight.nc", "--quiet")
+        self.model()
+        text = self.done("diagnose", "flight.nc", "-m", "model.toml", "--no-file-variables", cwd=self.path).stdout
+        self.assertIn("\ntotal-lag was found alike on the other system, which no model file can hold: it is added "
+                      "without that.\nTo add it and fit: pcor add total-lag ", text)
+        self.run_as_printed(text)
 
     def test_a_formula_is_a_candidate(self):
         """The sign is that of the correction: what the engines take off the pressure is added."""
@@ -243,6 +255,7 @@ class Improve(DiagnosisTest):
         self.link(ONE, "flight 1.nc")
         text = self.done("improve", "flight 1.nc", "-m", "my model.toml", "-o", "it's best.toml", cwd=self.path).stdout
         self.assertIn("stopped: nothing is missing", text)
+        self.assertIn("\nnot used as a reference: wind: compare shows it", text)
         self.assertIn("pcor process", self.run_as_printed(text))
 
     def test_report_is_one_file_that_fetches_nothing(self):

@@ -128,13 +128,13 @@ void print_model(const ModelComparison& model, bool with_name) {
 }
 
 /// Of a further reference: all samples and each regime.
-void print_further(const Comparison& comparison) {
+void print_further(const Comparison& comparison, bool with_names) {
   fmt::print("\nresidual = {}, reference less model\n", comparison.reference);
   fmt::print("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));
   fmt::print("{:<32} {:>8} {:>9} {:>9} {:>9} {:>9} {:>7}\n", "residual, hPa", "samples", "bias", "scatter",
              "rms", "noise", "ratio");
   for (const ModelComparison& model : comparison.models) {
-    print_row(comparison.models.size() > 1 ? model.name : "all", model.all);
+    print_row(with_names ? model.name : "all", model.all);
     for (const PartStatistics& part : model.regimes) print_row("  " + part.name, part.statistics);
   }
 }
@@ -167,7 +167,7 @@ void print(const Comparison& comparison, const ChosenReferences& references, con
         "{:.3f} hPa\n",
         total.slope, total.offset, total.rms);
   }
-  for (const Comparison& further : comparison.further) print_further(further);
+  for (const Comparison& further : comparison.further) print_further(further, options.models.size() > 1);
   for (const std::string& note : comparison.notes) fmt::print("\nNote: {}.\n", note);
   const auto best = std::min_element(
       comparison.models.begin(), comparison.models.end(),
@@ -183,11 +183,23 @@ void print(const Comparison& comparison, const ChosenReferences& references, con
     return;
   }
   fmt::print("To refit its coefficients: pcor refit {} -m {} -o fitted.toml\n", flights, quoted(model));
-  if (comparison.total_pressure) {
+  if (comparison.total_pressure && comparison.is_static_pressure) {
     fmt::print(
         "To refit both systems together: pcor refit {} -m {} -o fitted.toml --refit-reference "
         "fitted-reference.toml\n",
         flights, quoted(model));
+  }
+}
+
+/// Adds the references of a model to those of models before it, each once.
+void add_references(ChosenReferences& told, const ChosenReferences& own) {
+  for (const auto& reference : own.used) {
+    const auto same = [&reference](const auto& other) { return other->name() == reference->name(); };
+    if (std::none_of(told.used.begin(), told.used.end(), same)) told.used.push_back(reference);
+  }
+  for (const std::string& why_not : own.not_used) {
+    if (std::find(told.not_used.begin(), told.not_used.end(), why_not) == told.not_used.end())
+      told.not_used.push_back(why_not);
   }
 }
 
@@ -209,13 +221,13 @@ void run(const Options& options) {
   for (const std::filesystem::path& output : outputs) require_writable(output);
   JsonResult json(options.common);
   std::vector<Contender> contenders;
-  ChosenReferences references;  // of the first model, as the text tells them
+  ChosenReferences references;  // of all models, as the text tells them
   for (const std::string& path : options.models) {
     const ModelFile model = read_model(path);
-    ChosenReferences own =
+    const ChosenReferences own =
         read_references(options.comparison.references, model, flight_paths(options.comparison));
+    add_references(references, own);
     contenders.push_back({model.model.name, model, own.used});
-    if (contenders.size() == 1) references = std::move(own);
   }
   CompareOptions compare_options;
   compare_options.mask = mask_options(options.comparison);

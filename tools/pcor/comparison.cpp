@@ -30,7 +30,9 @@ void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
   command
       .add_option(
           "--reference", options.references,
-          "a measurement that the model is held against, several times for several: " + reference_forms())
+          "a measurement that the model is held against, several times for several: " + reference_forms() +
+              "; not given, compare takes lams and what the flights allow of total, height and wind, and "
+              "refit, diagnose and improve take lams and, where the flights allow it, total")
       ->type_name("REFERENCE")
       ->expected(1)
       ->take_all();

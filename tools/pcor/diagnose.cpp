@@ -129,9 +129,16 @@ std::string next_command(const Diagnosis& diagnosis, const Options& options) {
   }
   const bool sure = diagnosis.verdict == Verdict::identified || diagnosis.verdict == Verdict::ambiguous;
   if (sure && std::all_of(findings.begin(), findings.end(), of_catalogue)) {
+    std::string without;
     std::string add = "pcor add";
-    for (const Finding& finding : findings) add += " " + argument_of(finding.effect);
-    return fmt::format("To add {} and fit: {}{}", findings.size() == 1 ? "it" : "them", add, and_fit);
+    for (const Finding& finding : findings) {
+      add += " " + argument_of(finding.effect);
+      if (finding.shape_beyond_model.empty()) continue;
+      without += fmt::format("{} was found {}, which no model file can hold: it is added without that.\n",
+                             finding.id(), finding.shape_beyond_model);
+    }
+    return fmt::format("{}To add {} and fit: {}{}", without, findings.size() == 1 ? "it" : "them", add,
+                       and_fit);
   }
   if (sure && findings.size() == 1 && findings[0].effect.parameter_names == std::vector<std::string>{"k"}) {
     const ModelEffect& effect = findings[0].effect;
@@ -152,8 +159,9 @@ std::string next_command(const Diagnosis& diagnosis, const Options& options) {
   return fmt::format("To see where it lies: pcor compare {} -m {}", flights, model);
 }
 
-void print(const Diagnosis& diagnosis, const Options& options) {
+void print(const Diagnosis& diagnosis, const ChosenReferences& references, const Options& options) {
   fmt::print("{}.\n\n", verdict_text(diagnosis));
+  print_references(references);
   fmt::print("reference: {}\n", diagnosis.reference);
   fmt::print("used {} samples; not used: {}\n", diagnosis.samples, mask_text(diagnosis.masks));
   fmt::print(
@@ -177,7 +185,7 @@ void run(const Options& options) {
   require_writable(options.common.report);
   JsonResult json(options.common);
   const ModelFile model = read_model(options.model);
-  const References references = references_to_fit(options.comparison, model).used;
+  const ChosenReferences references = references_to_fit(options.comparison, model);
   DiagnoseOptions diagnose_with;
   diagnose_with.mask = mask_options(options.comparison);
   diagnose_with.time_stamp = time_stamp(options.comparison);
@@ -189,11 +197,11 @@ void run(const Options& options) {
   {
     Progress bar("diagnosing", !options.common.quiet);
     diagnose_with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
-    diagnosis = diagnose(flight_paths(options.comparison), model, references, diagnose_with);
+    diagnosis = diagnose(flight_paths(options.comparison), model, references.used, diagnose_with);
   }
   if (!options.common.report.empty()) write_report(diagnosis_report(diagnosis, model), options.common.report);
   json.write(as_json(diagnosis));
-  if (wants_text(options.common)) print(diagnosis, options);
+  if (wants_text(options.common)) print(diagnosis, references, options);
 }
 
 }  // namespace

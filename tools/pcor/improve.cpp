@@ -73,7 +73,8 @@ nlohmann::ordered_json as_json(const Improvement& improvement, const Options& op
   return json;
 }
 
-void print(const Improvement& improvement, const Options& options) {
+void print(const Improvement& improvement, const ChosenReferences& references, const Options& options) {
+  print_references(references);
   fmt::print("reference: {}\n", improvement.fit.reference_text);
   fmt::print("fitted to {} samples; not used: {}\n", improvement.fit.samples,
              mask_text(improvement.fit.masks));
@@ -140,21 +141,21 @@ void run(const Options& options) {
   for (const std::string& output : {options.output, options.common.report}) require_writable(output);
   JsonResult json(options.common);
   const ModelFile model = read_model(options.model);
-  const References references = references_to_fit(options.comparison, model, options.holdout).used;
+  const ChosenReferences references = references_to_fit(options.comparison, model, options.holdout);
   ImproveOptions improve_with = improve_options(options, model);
   Improvement improvement;
   {
     std::optional<Progress> bar;
     improve_with.progress = [&](const std::string& what) { bar.emplace(what, !options.common.quiet); };
     improve_with.refit.progress = [&bar](std::size_t done, std::size_t total) { bar->show(done, total); };
-    improvement = improve(flight_paths(options.comparison), model, references, improve_with);
+    improvement = improve(flight_paths(options.comparison), model, references.used, improve_with);
   }
   refuse_worse(improvement.worse, options.force, improvement.model);
   save_model(improvement.model, options.output, inputs);
   if (!options.common.report.empty())
     write_report(improvement_report(improvement, model), options.common.report);
   json.write(as_json(improvement, options));
-  if (wants_text(options.common)) print(improvement, options);
+  if (wants_text(options.common)) print(improvement, references, options);
 }
 
 }  // namespace

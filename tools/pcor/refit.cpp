@@ -228,7 +228,13 @@ void print_next_step(const Options& options) {
     return;
   }
   ComparisonOptions fitted = options.comparison;
-  fitted.references.front() = "static:" + options.reference_output;
+  const std::string first = fitted.references.front();
+  const std::string before = first.substr(first.find(':'));
+  for (std::string& reference : fitted.references) {
+    const std::size_t colon = reference.find(':');
+    if (colon != std::string::npos && reference.substr(colon) == before)
+      reference = reference.substr(0, colon) + ":" + options.reference_output;
+  }
   fmt::print("\nwrote {} and {}\nTo see where they still fail: pcor compare {} -m {}\n", options.output,
              options.reference_output, command_line(fitted), quoted(options.output));
 }

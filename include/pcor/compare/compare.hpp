@@ -76,7 +76,7 @@ struct Comparison {
   LineFit static_pressure;
   std::array<std::size_t, mask_count> masks{};  ///< samples with each reason, over all flights
   std::vector<std::string> notes;               ///< what a user should know, a sentence each
-  std::vector<Comparison> further{};            ///< with each of the further references
+  std::vector<Comparison> further{};  ///< with each of the further references, of the models that have it
 };
 
 struct CompareOptions {
@@ -93,9 +93,10 @@ struct Contender {
   References references;
 };
 
-/// Holds every contender against the first of its references over the flights, then against each of the
-/// further ones. A sample counts where all models have a residual, so the figures of models can be compared.
-/// A further reference that leaves no sample is only noted.
+/// Holds the contenders against the first reference of the first of them over the flights, then against each
+/// of the further ones that any has. References are the same where they have one name; a contender without a
+/// reference of that name takes no part there. A sample counts where all models that do have a residual, so
+/// the figures of models can be compared. A further reference that leaves no sample is only noted.
 ///
 /// @throws Error if a flight cannot be read, a variable is absent, the flights are of different aircraft, or
 /// no sample is left: the message says which mask took how many.

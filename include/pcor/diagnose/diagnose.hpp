@@ -88,11 +88,16 @@ struct Advice {
   double power = 0.0;       ///< probability that it tells the effect from all rivals with 95 % confidence
 };
 
+/// The name of an effect, or of a coefficient, of a system that the model is held against: "reference:NAME".
+/// @param system which one, where there are several: "reference:PSFRD+QCFR:NAME"; else empty
+std::string id_on_other_system(const std::string& system, const std::string& name);
+
 /// A missing effect.
 struct Finding {
   ModelEffect effect;         ///< with the estimated coefficients, ready for a model
-  bool of_reference = false;  ///< it acts on the system that the model is held against
   bool is_alike = false;      ///< the systems that the model is held against have it too
+  bool of_reference = false;  ///< it acts on a system that the model is held against
+  std::string system{};       ///< which one, where there are several: "PSFRD+QCFR"; else empty
   std::string title;
   std::vector<Estimate> estimates{};
   /// Parameters that the model's own coefficients imitate: neutral in `effect`, to be held in a fit.
@@ -110,11 +115,14 @@ struct Finding {
   /// noise, and its error from how it differs between minutes.
   double gain = 0.0;
   double gain_error = 0.0;
-  double events = 0.0;                  ///< on how many separate events the evidence rests
-  std::vector<Evidence> evidence{};     ///< the strongest first, at most six
-  std::vector<Alias> aliases{};         ///< the most likely first
-  std::string family{};                 ///< what it shares with its other shapes and places, e.g. "lag"
-  std::string shape{};                  ///< in which it was found; empty: that of the catalogue
+  double events = 0.0;               ///< on how many separate events the evidence rests
+  std::vector<Evidence> evidence{};  ///< the strongest first, at most six
+  std::vector<Alias> aliases{};      ///< the most likely first
+  std::string family{};              ///< what it shares with its other shapes and places, e.g. "lag"
+  std::string shape{};               ///< in which it was found; empty: that of the catalogue
+  /// Of the shape what no model file can hold: "with a memory of 4 s", "alike on the other system"; empty
+  /// where it can hold all of it.
+  std::string shape_beyond_model{};
   std::vector<std::string> variants{};  ///< shapes of it that do as well, empty text for the catalogue's
   std::vector<std::string> places{};    ///< where it may act, e.g. "port", "other-system"; its own first
   double probability = 1.0;             ///< of being the one that is there, among itself and its aliases
@@ -127,8 +135,9 @@ struct Finding {
   double static_change = 0.0;
   Advice advice{};
 
-  /// That of the effect, or "reference:ID".
-  std::string id() const { return (of_reference ? "reference:" : "") + effect.id; }
+  /// That of the effect; on another system "reference:ID", or "reference:PSFRD+QCFR:ID" where there are
+  /// several.
+  std::string id() const;
 };
 
 /// An effect that the model's own coefficients imitate.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -32,19 +33,27 @@ inline constexpr double wind_window = 900.0;
 ///
 ///     s = V/2 (2/7) (1 + q/p)^(-5/7) (p + q)/p^2 / ((1 + q/p)^(2/7) - 1)
 ///
-/// Source: memo eq. 5-7, differentiated with the total pressure kept.
+/// Source: memo eq. 5-7, differentiated with the total pressure kept. Samples at which heading or ground
+/// velocity are frozen tell nothing of the wind.
 class WindOnSamples final : public OfNeighbours<WindOnSamples> {
  public:
   WindOnSamples(const FlightSamples& samples, const ModelOnSamples& model)
       : OfNeighbours(model, samples.time.size()),
-        along_(*samples.reference.find(Quantity::ground_speed)),
-        heading_(*samples.reference.find(Quantity::heading)),
+        read_(samples.reference),
+        heading_(*read_.find(Quantity::heading)),
+        along_(ground_speed_along_heading()),
         motion_(samples.motion),
         static_pressure_(*samples.model.find(Quantity::static_pressure)),
         dynamic_pressure_(*samples.model.find(Quantity::dynamic_pressure)),
         reach_(static_cast<std::size_t>(std::lround(0.5 * wind_window / samples.step))) {}
 
   std::size_t reach() const { return reach_; }
+
+  std::vector<Batch::Input> columns() const override {
+    std::vector<Batch::Input> inputs;
+    for (const auto& [quantity, values] : read_.columns) inputs.push_back({quantity, values.data()});
+    return inputs;
+  }
 
   template <class S>
   void find(const Span span, const std::size_t* samples, std::size_t count, const S* parameters,
@@ -105,6 +114,17 @@ class WindOnSamples final : public OfNeighbours<WindOnSamples> {
     }
   };
 
+  /// NaN where a sensor is frozen.
+  std::vector<double> ground_speed_along_heading() const {
+    std::vector<double> along = *read_.find(Quantity::ground_speed);
+    const std::vector<double>& track = *read_.find(Quantity::ground_track);
+    for (std::size_t i = 0; i < along.size(); ++i)
+      along[i] *= std::cos((track[i] - heading_[i]) * constants::radians_per_degree);
+    for (const FrozenSpan& span : read_.frozen)
+      std::fill_n(along.begin() + static_cast<std::ptrdiff_t>(span.first), span.count, nan);
+    return along;
+  }
+
   /// On the ground wheels make the speed, and slow flow gives none.
   bool is_flying(std::size_t sample) const {
     constexpr double least_airspeed = 40.0;  // m/s
@@ -129,8 +149,9 @@ class WindOnSamples final : public OfNeighbours<WindOnSamples> {
            (std::pow(ratio, 2.0 / 7.0) - 1.0);
   }
 
-  const std::vector<double>& along_;    // ground velocity along the heading, m/s
+  const ModelSamples& read_;
   const std::vector<double>& heading_;  // deg
+  std::vector<double> along_;           // ground velocity along the heading, m/s
   const FlightMotion& motion_;
   const std::vector<double>& static_pressure_;
   const std::vector<double>& dynamic_pressure_;
@@ -150,21 +171,21 @@ class WindReference final : public Reference {
                     std::vector<std::string>&) const override {
     RecordedSeries heading = read_role(flight, model_, Quantity::heading);
     GroundVelocity ground = read_ground_velocity(flight, model_);
-    if (heading.values.empty() || ground.east.empty()) {
+    if (heading.values.empty() || ground.speed.values.empty()) {
       throw Error(Error::Code::variable,
                   flight.path().string() +
                       ": no true heading and velocity over the ground with units (THDG, GGSPD, GGTRK and the "
                       "like), which the reference wind needs; name them in the table [variables] of the "
                       "model");
     }
-    std::vector<double>& along = ground.east;
-    for (std::size_t i = 0; i < along.size(); ++i) {
-      const double angle = heading.values[i] * constants::radians_per_degree;
-      along[i] = ground.east[i] * std::sin(angle) + ground.north[i] * std::cos(angle);
-    }
     ModelSamples samples;
-    samples.columns = {{Quantity::heading, std::move(heading.values)},
-                       {Quantity::ground_speed, std::move(along)}};
+    const auto add = [&samples](Quantity quantity, RecordedSeries& series) {
+      samples.columns.emplace_back(quantity, std::move(series.values));
+      samples.variables.emplace_back(quantity, std::move(series.variable));
+    };
+    add(Quantity::heading, heading);
+    add(Quantity::ground_speed, ground.speed);
+    add(Quantity::ground_track, ground.track);
     return samples;
   }
 
