@@ -228,11 +228,12 @@ std::vector<std::string> unexplained_text(const Unexplained& unexplained) {
     all.push_back(with);
   }
   for (const FlightStep& step : unexplained.steps) {
-    all.push_back(fmt::format(
-        "The mean of {} lies {} hPa {} that of the rest of the flights; chance would do as much with a probability "
-        "of {}. Ask what was changed on the aircraft between them.",
-        step.flight, with_error(std::abs(step.size), step.standard_error),
-        step.size < 0.0 ? "below" : "above", probability(step.p_value)));
+    all.push_back(
+        fmt::format("The mean of {} lies {} hPa {} that of the rest of the flights; chance would do as much "
+                    "with a probability "
+                    "of {}. Ask what was changed on the aircraft between them.",
+                    step.flight, with_error(std::abs(step.size), step.standard_error),
+                    step.size < 0.0 ? "below" : "above", probability(step.p_value)));
   }
   if (!unexplained.computed.empty()) {
     all.push_back(fmt::format(

@@ -206,8 +206,9 @@ void print_unexplained(const Unexplained& unexplained) {
               "other place");
   }
   for (const FlightStep& step : unexplained.steps) {
-    fmt::print("{} lies {:.3f} +- {:.3f} hPa {} the rest of the flights (p {})\n", step.flight, std::abs(step.size),
-               step.standard_error, step.size < 0.0 ? "below" : "above", probability(step.p_value));
+    fmt::print("{} lies {:.3f} +- {:.3f} hPa {} the rest of the flights (p {})\n", step.flight,
+               std::abs(step.size), step.standard_error, step.size < 0.0 ? "below" : "above",
+               probability(step.p_value));
   }
   if (!unexplained.computed.empty()) {
     fmt::print(
