@@ -32,7 +32,8 @@ Analysis::Analysis(std::vector<FlightColumns> flights, std::vector<ColumnGroup> 
     : groups_(std::move(groups)), seed_(seed) {
   base_ = flights.front().base.cols();
   for (FlightColumns& flight : flights) {
-    const Binning& bins = bins_.emplace_back(flight.given, flight.samples->time, flight.samples->step);
+    const Binning& bins = bins_.emplace_back(flight.given, flight.samples->time, flight.samples->step,
+                                             std::max(flight.window, Binning::usual_width));
     columns_.push_back(binned_columns(flight, bins));
     residuals_.push_back(bins.means(flight.given));
     (flight.reference == 0 ? flights_ : further_).push_back(std::move(flight));
@@ -211,7 +212,8 @@ void Analysis::find_search() {
   for (std::size_t f = 0; f < bins_.size(); ++f) left.push_back(scores_->left(f, coefficients_));
   for (std::size_t later = flights_.size(); later < bins_.size(); ++later) {
     for (std::size_t earlier = 0; earlier < later; ++earlier) {
-      if (flight(earlier).samples->name == flight(later).samples->name)
+      if (flight(earlier).samples->name == flight(later).samples->name &&
+          flight(earlier).window == flight(later).window)
         take_out_common_noise(bins_, earlier, later, left, *scores_);
     }
   }

@@ -66,6 +66,18 @@ std::filesystem::path flight(const std::string& scenario, unsigned seed, const s
   return made[key] = path;
 }
 
+/// Three hours of climbs and descents with a thermometer that reads so much too high, K.
+std::filesystem::path climbs(unsigned seed, double offset) {
+  static const pcor::test::TemporaryDirectory directory;
+  pcor::Scenario read = pcor::read_scenario(scenarios / "c130-climbs.toml");
+  read.seed = seed;
+  read.effects[0].parameters = {{"offset", offset}, {"slope", 0.0}};
+  const std::filesystem::path path =
+      directory / (std::to_string(seed) + "-" + std::to_string(offset) + ".nc");
+  if (!std::filesystem::exists(path)) pcor::simulate_flight(read, path);
+  return path;
+}
+
 ModelFile model() { return pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
 
 Diagnosis diagnose(const Paths& flights, const DiagnoseOptions& options = {}) {
@@ -341,6 +353,38 @@ TEST(Diagnose, AgainstAStaticSystemFindsWhatOneOfThemHas) {
   const Diagnosis diagnosis =
       pcor::diagnose({flight("c130-eq18", 361, "on = \"PSFD\"\n" + beta_odd)}, model(), {reference});
   EXPECT_THAT(names_of(diagnosis), testing::Contains("static-beta-odd"));
+}
+
+// To the laser an offset of the thermometer is a change of the law; to the heights of its climbs it is not.
+TEST(Diagnose, AgainstHeightsTooFindsAThermometerThatIsOff) {
+  const Paths flights{climbs(391, 1.0)};
+  EXPECT_THAT(diagnose(flights).findings, IsEmpty());
+  const pcor::References references{pcor::lams_reference(), pcor::height_reference(model())};
+  const Diagnosis diagnosis = pcor::diagnose(flights, model(), references);
+  ASSERT_THAT(diagnosis.findings, SizeIs(1));
+  const Finding& finding = diagnosis.findings[0];
+  EXPECT_THAT(family_of(finding), testing::Contains("temp-offset"));
+  EXPECT_LE(family_of(finding).size(), 3U);
+  if (finding.effect.id != "temp-offset") return;
+  // Isobars that rise along the track look like some tenths of a kelvin.
+  EXPECT_NEAR(finding.estimates[0].value, 1.0, 0.3);
+}
+
+TEST(Diagnose, AgainstHeightsTooIsSilentWhereNothingIsMissing) {
+  const pcor::References references{pcor::height_reference(model()), pcor::lams_reference()};
+  for (unsigned seed = 394; seed <= 396; ++seed) {
+    const Diagnosis diagnosis = pcor::diagnose({climbs(seed, 0.0)}, model(), references);
+    EXPECT_THAT(diagnosis.findings, IsEmpty()) << seed;
+    EXPECT_THAT(diagnosis.reference, testing::StartsWith("LAMS")) << "what tells of each sample comes first";
+  }
+}
+
+TEST(Diagnose, NeedsAReferenceThatTellsOfEachSample) {
+  const Paths flights{climbs(394, 0.0)};
+  EXPECT_THROW(pcor::diagnose(flights, model(), {pcor::height_reference(model())}), pcor::Error);
+  const Diagnosis diagnosis =
+      pcor::diagnose(flights, model(), {pcor::lams_reference(), pcor::wind_reference(model())});
+  EXPECT_THAT(diagnosis.notes, testing::Contains(HasSubstr("wind took no part")));
 }
 
 TEST(Diagnose, NeedsFlightsAndSamples) {
