@@ -1,4 +1,5 @@
 // Diagnoses of simulated flights whose missing effect is known.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <pcor/diagnose/diagnose.hpp>
 #include <pcor/simulate/simulate.hpp>
@@ -66,15 +67,24 @@ std::filesystem::path flight(const std::string& scenario, unsigned seed, const s
   return made[key] = path;
 }
 
-/// Three hours of climbs and descents with a thermometer that reads so much too high, K.
-std::filesystem::path climbs(unsigned seed, double offset) {
+/// Three hours of climbs and descents with a thermometer that reads so much too high, K, and a static
+/// pressure that does, hPa; beside it a second system that is right.
+std::filesystem::path climbs(unsigned seed, double offset, double bias = 0.0) {
   static const pcor::test::TemporaryDirectory directory;
+  const std::filesystem::path path = directory / fmt::format("{}-{}-{}.nc", seed, offset, bias);
+  if (std::filesystem::exists(path)) return path;
   pcor::Scenario read = pcor::read_scenario(scenarios / "c130-climbs.toml");
   read.seed = seed;
   read.effects[0].parameters = {{"offset", offset}, {"slope", 0.0}};
-  const std::filesystem::path path =
-      directory / (std::to_string(seed) + "-" + std::to_string(offset) + ".nc");
-  if (!std::filesystem::exists(path)) pcor::simulate_flight(read, path);
+  if (bias != 0.0) {
+    read.effects.push_back(read.effects[0]);
+    read.effects[1].id = "psfd-bias";
+    read.effects[1].on = "PSFD";
+    read.effects[1].parameters = {{"offset", bias}};
+  }
+  const pcor::Scenario two_systems = pcor::read_scenario(scenarios / "c130-eq18.toml");
+  read.systems.push_back(two_systems.systems[1]);
+  pcor::simulate_flight(read, path);
   return path;
 }
 
@@ -368,6 +378,24 @@ TEST(Diagnose, AgainstHeightsTooFindsAThermometerThatIsOff) {
   if (finding.effect.id != "temp-offset") return;
   // Isobars that rise along the track look like some tenths of a kelvin.
   EXPECT_NEAR(finding.estimates[0].value, 1.0, 0.3);
+}
+
+// The total pressures of two systems show that one is off, the heights which.
+TEST(Diagnose, AgainstHeightsTooTellsWhichSystemIsOff) {
+  const Paths flights{climbs(397, 0.0, 0.5)};
+  const auto total = pcor::total_pressure_reference(
+      pcor::read_model(std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "models" / "c130-psfrd-eq18.toml"));
+  const auto names = [&](const pcor::References& references) {
+    const Diagnosis diagnosis = pcor::diagnose(flights, model(), references);
+    return diagnosis.findings.size() == 1 ? family_of(diagnosis.findings[0]) : std::vector<std::string>{};
+  };
+  const std::vector<std::string> without = names({pcor::lams_reference(), total});
+  EXPECT_THAT(without, testing::Contains("psfd-bias"));
+  EXPECT_GT(without.size(), 3U);
+  const std::vector<std::string> with =
+      names({pcor::lams_reference(), total, pcor::height_reference(model())});
+  EXPECT_THAT(with, testing::Contains("psfd-bias"));
+  EXPECT_LE(with.size(), 3U);
 }
 
 TEST(Diagnose, AgainstHeightsTooIsSilentWhereNothingIsMissing) {

@@ -30,7 +30,9 @@ void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
   command
       .add_option(
           "--reference", options.references,
-          "a measurement that the model is held against, several times for several: " + reference_forms())
+          "a measurement that the model is held against, several times for several: " + reference_forms() +
+              "; not given it is lams, and the total pressure of a second pair where all flights have one; "
+              "compare then takes height and wind too")
       ->type_name("REFERENCE")
       ->expected(1)
       ->take_all();
@@ -121,8 +123,9 @@ ChosenReferences references_to_fit(const ComparisonOptions& options, const Model
   const auto held_together = std::stable_partition(chosen.used.begin(), chosen.used.end(),
                                                    [](const auto& each) { return each->is_of_one_sample(); });
   for (auto each = held_together; each != chosen.used.end(); ++each) {
-    chosen.not_used.push_back((*each)->name() +
-                              ": compare shows it; a fit takes it where --reference names it");
+    const char* const who = (*each)->window() > 0.0 ? "refit, diagnose and improve take" : "refit takes";
+    chosen.not_used.push_back(
+        fmt::format("{}: compare shows it, and {} it where --reference names it", (*each)->name(), who));
   }
   chosen.used.erase(held_together, chosen.used.end());
   return chosen;
