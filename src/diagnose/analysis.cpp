@@ -32,7 +32,8 @@ Analysis::Analysis(std::vector<FlightColumns> flights, std::vector<ColumnGroup> 
     : groups_(std::move(groups)), seed_(seed) {
   base_ = flights.front().base.cols();
   for (FlightColumns& flight : flights) {
-    const Binning& bins = bins_.emplace_back(flight.given, flight.samples->time, flight.samples->step);
+    const Binning& bins = bins_.emplace_back(flight.given, flight.samples->time, flight.samples->step,
+                                             std::max(flight.window, Binning::usual_width));
     columns_.push_back(binned_columns(flight, bins));
     residuals_.push_back(bins.means(flight.given));
     (flight.reference == 0 ? flights_ : further_).push_back(std::move(flight));
@@ -218,7 +219,8 @@ void Analysis::take_out_common_noise(Scores& scores) const {
   std::vector<Eigen::VectorXd> left = white_noise_;
   for (std::size_t later = flights_.size(); later < bins_.size(); ++later) {
     for (std::size_t earlier = 0; earlier < later; ++earlier) {
-      if (flight(earlier).samples->name == flight(later).samples->name)
+      if (flight(earlier).samples->name == flight(later).samples->name &&
+          flight(earlier).window == flight(later).window)
         internal::take_out_common_noise(bins_, earlier, later, left, scores);
     }
   }

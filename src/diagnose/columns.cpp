@@ -140,6 +140,31 @@ std::vector<std::size_t> with_flaps_out(const std::vector<Mask>& masks,
   return result;
 }
 
+/// The samples and those that are at most `reach` before or after one of them, of `size`.
+std::vector<std::size_t> with_neighbours(const std::vector<std::size_t>& samples, std::size_t reach,
+                                         std::size_t size) {
+  std::vector<std::size_t> result;
+  for (const std::size_t sample : samples) {
+    const std::size_t first = sample - std::min(sample, reach);
+    for (std::size_t i = result.empty() ? first : std::max(first, result.back() + 1);
+         i < std::min(sample + reach + 1, size); ++i)
+      result.push_back(i);
+  }
+  return result;
+}
+
+/// Takes out the samples that are made of neighbours which are not to be used.
+void mask_by_neighbours(std::vector<Mask>& masks, std::size_t reach) {
+  std::vector<std::size_t> spoiled;
+  for (std::size_t i = 0; i < masks.size(); ++i) {
+    // Where the residual alone is missing, what it is made of is there.
+    if (masks[i] != Mask::none && masks[i] != Mask::reference) spoiled.push_back(i);
+  }
+  for (const std::size_t i : with_neighbours(spoiled, reach, masks.size())) {
+    if (masks[i] == Mask::none) masks[i] = Mask::reference;
+  }
+}
+
 /// The places of the candidates of one system.
 std::vector<Where> places_of(const CandidateSet& set, bool of_reference) {
   std::vector<Where> places;
@@ -213,6 +238,34 @@ class CandidateValues {
   std::vector<std::pair<Quantity, const double*>> inputs_;
 };
 
+/// Makes of columns with what each coefficient adds at its place, sample by sample, those of residuals that
+/// are made of their neighbours. @param first_place among the parameters of the residuals
+void sum_over_neighbours(const Residuals& residuals, const std::vector<Evaluation>& evaluations,
+                         std::size_t first_place, const std::vector<std::size_t>& used,
+                         const std::vector<std::size_t>& needed, Eigen::MatrixXf& columns) {
+  std::vector<Direction> directions;
+  std::vector<Eigen::Index> numbers;
+  for (const Evaluation& each : evaluations) {
+    for (std::size_t p = 0; p < each.width; ++p) {
+      const Eigen::Index number = numbers.emplace_back(as_index(each.first_column + p));
+      auto column = columns.col(number);
+      bridge(column, needed);
+      Direction& direction = directions.emplace_back();
+      direction.parameter = first_place + each.place;
+      direction.rate.assign(residuals.size(), 0.0);
+      for (const std::size_t i : needed) direction.rate[i] = static_cast<double>(column[as_index(i)]);
+      column.setZero();
+    }
+  }
+  std::vector<double> derivatives(directions.size() * used.size());
+  residuals.differentiate_along(used.data(), used.size(), residuals.parameters().data(), directions,
+                                derivatives.data());
+  for (std::size_t c = 0; c < numbers.size(); ++c) {
+    for (std::size_t k = 0; k < used.size(); ++k)
+      columns(as_index(used[k]), numbers[c]) = static_cast<float>(derivatives[c * used.size() + k]);
+  }
+}
+
 }  // namespace
 
 const std::vector<double>& FlightColumns::quantity(Quantity wanted) const {
@@ -257,15 +310,20 @@ FlightColumns find_columns(std::shared_ptr<const FlightSamples> extended, const 
 
   FlightColumns columns;
   columns.reference = reference;
+  columns.window = held_against->window();
   columns.samples = extended;
   columns.mask = residuals.mask();
   columns.exact = residuals.values(start.data());
-  const std::vector<std::size_t> used = with_flaps_out(columns.mask, used_samples(columns.mask, first_part));
+  const bool of_neighbours = residuals.reach() > 0;
+  if (of_neighbours) mask_by_neighbours(columns.mask, residuals.reach());
+  std::vector<std::size_t> used = used_samples(columns.mask, first_part);
+  if (!of_neighbours) used = with_flaps_out(columns.mask, used);
   std::vector<std::size_t> wanted = free_parameters(model);
   const std::size_t base_count = wanted.size();
   std::size_t own_count = 0;
   for (const ModelEffect& effect : model.model.effects) own_count += effect.parameters.size();
-  for (std::size_t k = 0; k < places.size(); ++k) wanted.push_back(own_count + k);
+  const std::size_t first_place = own_count;
+  for (std::size_t k = 0; k < places.size() && !of_neighbours; ++k) wanted.push_back(first_place + k);
   own_count += places.size();
   const std::size_t other_begin = wanted.size();
   for (const std::size_t parameter : other_free) wanted.push_back(own_count + parameter);
@@ -296,18 +354,20 @@ FlightColumns find_columns(std::shared_ptr<const FlightSamples> extended, const 
   for (const Quantity quantity : measured)
     columns.quantities.emplace_back(quantity, std::vector<double>(records, nan));
   columns.candidates.setZero(as_index(records), as_index(column_count(set)));
-  const CandidateValues own(set.extended.model, found.at->model, extended->name,
-                            evaluations_of(set, reference, false, places));
+  const std::vector<Evaluation> evaluations = evaluations_of(set, reference, false, places);
+  const CandidateValues own(set.extended.model, found.at->model, extended->name, evaluations);
   std::optional<CandidateValues> others;
   if (set.others[reference])
     others.emplace(set.others[reference]->model, found.at->reference, extended->name,
                    evaluations_of(set, reference, true, other_places));
-  for (std::size_t k = 0; k < used.size(); ++k) {
-    const std::size_t sample = used[k];
+  const std::vector<std::size_t> needed = with_neighbours(used, residuals.reach(), records);
+  for (std::size_t k = 0; k < needed.size(); ++k) {
+    const std::size_t sample = needed[k];
     State<double> state;
     own.put(
-        sample, [&](std::size_t place) { return found.derivative(base_count + place, k); }, state,
-        columns.candidates);
+        sample,
+        [&](std::size_t place) { return of_neighbours ? 1.0 : found.derivative(base_count + place, k); },
+        state, columns.candidates);
     for (std::size_t q = 0; q < measured.size(); ++q)
       columns.quantities[q].second[sample] = state[measured[q]];
     if (!others) continue;
@@ -317,6 +377,8 @@ FlightColumns find_columns(std::shared_ptr<const FlightSamples> extended, const 
         [&](std::size_t place) { return found.derivative(other_begin + other_free.size() + place, k); },
         other_state, columns.candidates);
   }
+  if (of_neighbours)
+    sum_over_neighbours(residuals, evaluations, first_place, used, needed, columns.candidates);
   Eigen::Index column = 0;
   Eigen::Index source = 0;  // of what a derived candidate is derived from
   for (const Candidate& candidate : set.candidates) {

@@ -18,6 +18,8 @@ namespace pcor::internal {
 /// the laser, whose noise is that of the residual.
 struct FlightColumns {
   std::size_t reference = 0;  ///< which of the references
+  /// Over how long a mean of the residual tells something new, s; zero: of every sample.
+  double window = 0.0;
   std::shared_ptr<const FlightSamples> samples;
   std::vector<Mask> mask;
   std::vector<double> given;     ///< the residual with the coefficients of the model, hPa; NaN where not used

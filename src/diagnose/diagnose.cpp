@@ -57,20 +57,26 @@ std::string trouble_of(const std::vector<FlightColumns>& flights, Eigen::Index f
   return "";
 }
 
-/// The references that a diagnosis can use; a note on each of the others.
+/// The references that a diagnosis can use, those that tell of each sample first; a note on each of the
+/// others.
 References usable(const References& references, std::vector<std::string>& notes) {
   References result;
+  References of_windows;
   for (const auto& reference : references) {
     if (reference->is_of_one_sample()) {
       result.push_back(reference);
+    } else if (reference->window() > 0.0) {
+      of_windows.push_back(reference);
     } else {
       notes.push_back(fmt::format(
-          "the reference {} took no part in the diagnosis: it holds a minute or more together, and what an "
-          "effect does to it is not known there; compare shows it, and refit uses it",
+          "the reference {} took no part in the diagnosis: it holds many minutes together, of which no part "
+          "tells something for itself; compare shows it, and refit uses it",
           reference->name()));
     }
   }
-  if (result.empty())
+  const bool tells_of_samples = !result.empty();
+  result.insert(result.end(), of_windows.begin(), of_windows.end());
+  if (!tells_of_samples)
     throw Error(
         "nothing to diagnose with: give a reference that tells of each sample, such as --reference lams");
   return result;

@@ -8,6 +8,7 @@
 #include <set>
 
 #include <pcor/effects/catalogue.hpp>
+#include "diagnose/shape_doubt.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
@@ -130,8 +131,10 @@ std::vector<Rival> rivals_of(const Analysis& analysis, const std::vector<Candida
   constexpr double doubt_of_shape = 0.1;
   const Search& search = analysis.search();
   const double best = search.evidence(chosen);
-  const double margin =
-      0.5 * (alias_margin + doubt_of_shape * doubt_of_shape * search.score(winner, chosen).chi2);
+  const auto margin = [](double chi2) {
+    return 0.5 * (alias_margin + doubt_of_shape * doubt_of_shape * chi2);
+  };
+  const double widest = margin(search.score(winner, chosen).chi2);
   std::vector<std::size_t> others = chosen;
   others.erase(std::find(others.begin(), others.end(), winner));
   std::vector<Rival> rivals;
@@ -141,7 +144,8 @@ std::vector<Rival> rivals_of(const Analysis& analysis, const std::vector<Candida
     std::vector<std::size_t> instead = others;
     instead.push_back(g);
     const double less = best - search.evidence(instead);
-    if (less < margin) rivals.push_back({g, less});
+    if (less < widest && less < margin(chi2_where_they_differ(analysis, others, winner, g)))
+      rivals.push_back({g, less});
   }
   return rivals;
 }

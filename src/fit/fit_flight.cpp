@@ -83,7 +83,8 @@ void FitFlight::prepare(const Eigen::VectorXd& parameters, const Eigen::VectorXd
       if (calm[i] != series[i]) series[i] = nan;
     }
   }
-  bins_ = Binning(series, flight.time, flight.step);
+  bins_ =
+      Binning(series, flight.time, flight.step, std::max(task_->reference.window(), Binning::usual_width));
   bin_.assign(kept_.size(), -1);
   in_bin_ = Eigen::VectorXd::Zero(as_index(bins_.size()));
   std::size_t i = 0;

@@ -54,8 +54,9 @@ std::size_t shared_parameters(const Residuals& residuals, const FitTask& task);
 Eigen::VectorXd own_parameters(const Residuals& residuals, const FitTask& task,
                                const Eigen::VectorXd& parameters);
 
-/// One flight of a fit with one reference: the samples that take part, in bins of a few seconds, and their
-/// residuals and derivatives in units of the noise and without its memory.
+/// One flight of a fit with one reference: the samples that take part, in bins of a few seconds, or as long
+/// as a residual holds together, and their residuals and derivatives in units of the noise and without its
+/// memory.
 ///
 /// Derivatives by the coefficients of two static systems are those at common pressures
 /// (`Residuals::at_common_pressures`), and stay until the flight is prepared again: the solution is where

@@ -4,13 +4,9 @@
 #include <cmath>
 
 namespace pcor::internal {
-namespace {
 
-constexpr double width = 4.0;  // s
-
-}  // namespace
-
-Binning::Binning(const std::vector<double>& residual, const std::vector<double>& time, double step) {
+Binning::Binning(const std::vector<double>& residual, const std::vector<double>& time, double step,
+                 double width) {
   if (time.empty()) return;
   const double bin_width = std::max(1.0, std::round(width / step)) * step;
   const double fewest = 0.5 * bin_width / step;

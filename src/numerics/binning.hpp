@@ -9,12 +9,16 @@
 namespace pcor::internal {
 
 /// Means over about four seconds: long enough that the noise of sensors is not what whitening amplifies,
-/// short enough for every manoeuvre.
+/// short enough for every manoeuvre. Longer ones for residuals that are not of one sample alone.
 class Binning {
  public:
+  static constexpr double usual_width = 4.0;  ///< s
+
   Binning() = default;  // of nothing
   /// @param residual one value for each record, NaN where not used; @param time s; @param step s
-  Binning(const std::vector<double>& residual, const std::vector<double>& time, double step);
+  /// @param width s, to the next number of records
+  Binning(const std::vector<double>& residual, const std::vector<double>& time, double step,
+          double width = usual_width);
 
   std::size_t size() const { return time_.size(); }
   /// Middles of the bins, s.

@@ -8,6 +8,10 @@
 #include <pcor/residuals/masks.hpp>
 #include "residuals/model_on_samples.hpp"
 
+namespace pcor {
+struct Direction;
+}
+
 namespace pcor::internal {
 
 inline constexpr int jet_width = 4;
@@ -32,6 +36,19 @@ class NoisySensor {
   /// The derivative of the residual by it, hPa per unit, at the prediction of the files' parameters, for
   /// every sample.
   virtual std::vector<double> sensitivity() const = 0;
+};
+
+/// A residual that is made of the samples around its own.
+class Neighbours {
+ public:
+  virtual ~Neighbours() = default;
+
+  /// How many samples on either side.
+  virtual std::size_t reach() const = 0;
+
+  /// `Residuals::differentiate_along`.
+  virtual void differentiate(const std::size_t* samples, std::size_t count, const double* parameters,
+                             const std::vector<Direction>& directions, double* derivatives) const = 0;
 };
 
 /// What a reference says of the samples of a flight, beside the model that is held against it. Parameters are
@@ -61,6 +78,9 @@ class ReferenceOnSamples {
 
   /// Null where its noise is added to the residual itself.
   virtual const NoisySensor* sensor() const { return nullptr; }
+
+  /// Null where its residual is of one sample alone.
+  virtual const Neighbours* neighbours() const { return nullptr; }
 
   /// Why a sample has no residual, though the model has its pressures.
   virtual Mask why_missing(std::size_t sample) const = 0;

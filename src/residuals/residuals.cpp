@@ -169,6 +169,17 @@ void Residuals::evaluate_at_sensor(const std::size_t* samples, std::size_t count
   }
 }
 
+std::size_t Residuals::reach() const {
+  const Neighbours* const neighbours = implementation_->reference->neighbours();
+  return neighbours == nullptr ? 0 : neighbours->reach();
+}
+
+void Residuals::differentiate_along(const std::size_t* samples, std::size_t count, const double* parameters,
+                                    const std::vector<Direction>& directions, double* derivatives) const {
+  implementation_->reference->neighbours()->differentiate(samples, count, parameters, directions,
+                                                          derivatives);
+}
+
 std::optional<std::pair<Quantity, std::vector<double>>> Residuals::predicted_sensor(
     const double* parameters) const {
   const NoisySensor* const sensor = implementation_->reference->sensor();

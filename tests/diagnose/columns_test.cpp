@@ -12,6 +12,7 @@
 #include <memory>
 #include <numeric>
 #include <random>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -96,6 +97,9 @@ FlightSamples made_flight(const std::vector<Quantity>& roles, double laser_noise
     samples.model.columns.emplace_back(quantity, std::move(values));
   }
   samples.model.roles = recorded;
+  for (const auto& [quantity, values] : samples.model.columns) {
+    if (quantity == Quantity::altitude) samples.reference.columns = {{quantity, values}};
+  }
   std::mt19937_64 engine(1);
   std::normal_distribution<double> normal;
   for (auto& [quantity, values] : samples.model.columns) {
@@ -126,13 +130,16 @@ ModelEffect formula() {
 
 struct Made {
   ModelFile model = laser_model();
-  std::shared_ptr<const pcor::Reference> reference = pcor::lams_reference();
-  CandidateSet set = pcor::internal::find_candidates(model, {formula()}, {}, {reference});
+  std::shared_ptr<const pcor::Reference> reference;
+  CandidateSet set;
   std::shared_ptr<const FlightSamples> samples;
   FlightColumns columns;
 
-  explicit Made(double laser_noise = 0.3)
-      : samples(std::make_shared<const FlightSamples>(made_flight(set.extended.roles(), laser_noise))),
+  explicit Made(double laser_noise = 0.3,
+                std::shared_ptr<const pcor::Reference> held_against = pcor::lams_reference())
+      : reference(std::move(held_against)),
+        set(pcor::internal::find_candidates(model, {formula()}, {}, {reference})),
+        samples(std::make_shared<const FlightSamples>(made_flight(set.extended.roles(), laser_noise))),
         columns(pcor::internal::find_columns(samples, model, set, 0, {}, 1.0)) {}
 };
 
@@ -148,13 +155,59 @@ std::shared_ptr<const FlightSamples> without_laser_noise(const Made& made) {
 }
 
 std::vector<double> residual_of(const std::shared_ptr<const FlightSamples>& samples, const ModelFile& model,
-                                const std::vector<double>& parameters) {
-  const Residuals residuals(samples, model, *pcor::lams_reference());
+                                const std::vector<double>& parameters,
+                                const pcor::Reference& reference = *pcor::lams_reference()) {
+  const Residuals residuals(samples, model, reference);
   std::vector<std::size_t> all(samples->time.size());
   std::iota(all.begin(), all.end(), 0);
   std::vector<double> values(all.size());
   residuals.evaluate_at_sensor(all.data(), all.size(), parameters.data(), {}, values.data(), nullptr);
   return values;
+}
+
+/// Compares every column of a candidate with a centred difference of the residuals of `quiet`, with the
+/// effect in the model. @return the effects of which nothing reaches the residual
+std::set<std::string> expect_differences(const Made& made,
+                                         const std::shared_ptr<const FlightSamples>& quiet) {
+  std::set<std::string> without_trace;
+  EXPECT_GT(made.set.candidates.size(), 35U);
+  Eigen::Index column = 0;
+  for (const Candidate& candidate : made.set.candidates) {
+    ModelFile with = made.model;
+    with.model.effects.push_back(candidate.effect);
+    with.fits.clear();
+    for (const auto& [role, variable] : made.set.extended.variables) with.variables[role] = variable;
+    std::vector<double> parameters;
+    for (const ModelEffect& effect : with.model.effects)
+      parameters.insert(parameters.end(), effect.parameters.begin(), effect.parameters.end());
+    const std::size_t first = parameters.size() - candidate.effect.parameters.size();
+    for (std::size_t k = 0; k < candidate.tested.size(); ++k, ++column) {
+      if (candidate.is_derived()) continue;  // its column is made of one of these
+      const Eigen::VectorXd found = made.columns.candidates.col(column).cast<double>();
+      const double largest = found.cwiseAbs().maxCoeff();
+      if (largest == 0.0) {
+        without_trace.insert(candidate.effect.id);
+        continue;
+      }
+      // A centred difference over 0.01 hPa: curvature below 1e-6 of the derivative, rounding below 1e-9.
+      const double size = 0.01 / largest;
+      const std::size_t place = first + candidate.tested[k].place;
+      std::vector<double> moved = parameters;
+      moved[place] += size;
+      const std::vector<double> above = residual_of(quiet, with, moved, *made.reference);
+      moved[place] = parameters[place] - size;
+      const std::vector<double> below = residual_of(quiet, with, moved, *made.reference);
+      for (std::size_t i = 0; i < above.size(); i += 3) {
+        if (std::isnan(made.columns.given[i])) continue;
+        const double difference = -(above[i] - below[i]) / (2.0 * size);
+        // Columns have the precision of a float, 6e-8.
+        EXPECT_NEAR(found[static_cast<Eigen::Index>(i)], difference, 2e-5 * largest)
+            << candidate.effect.id << "." << candidate.tested[k].name << " at " << i;
+      }
+    }
+  }
+  EXPECT_EQ(column, made.columns.candidates.cols());
+  return without_trace;
 }
 
 const NotTestable* reason_for(const CandidateSet& set, const std::string& effect) {
@@ -178,47 +231,31 @@ CandidateSet candidates_of_file(const ModelFile& model, const std::vector<ModelE
 
 TEST(Columns, OfEveryCandidateAreDifferencesThroughTheWholeChain) {
   const Made made;
-  const std::shared_ptr<const FlightSamples> quiet = without_laser_noise(made);
-  const std::size_t count = made.samples->time.size();
   ASSERT_EQ(std::count(made.columns.mask.begin(), made.columns.mask.end(), pcor::Mask::none),
-            static_cast<std::ptrdiff_t>(count));
-  ASSERT_GT(made.set.candidates.size(), 35U);
-  Eigen::Index column = 0;
-  for (const Candidate& candidate : made.set.candidates) {
-    ModelFile with = made.model;
-    with.model.effects.push_back(candidate.effect);
-    with.fits.clear();
-    for (const auto& [role, variable] : made.set.extended.variables) with.variables[role] = variable;
-    std::vector<double> parameters;
-    for (const ModelEffect& effect : with.model.effects)
-      parameters.insert(parameters.end(), effect.parameters.begin(), effect.parameters.end());
-    const std::size_t first = parameters.size() - candidate.effect.parameters.size();
-    for (std::size_t k = 0; k < candidate.tested.size(); ++k, ++column) {
-      if (candidate.is_derived()) continue;  // its column is made of one of these
-      const Eigen::VectorXd found = made.columns.candidates.col(column).cast<double>();
-      const double largest = found.cwiseAbs().maxCoeff();
-      if (largest == 0.0) {
-        // Of all effects only one has nothing to act on here: there are no transonic speeds.
-        EXPECT_EQ(candidate.effect.id, "static-transonic");
-        continue;
-      }
-      // A centred difference over 0.01 hPa: curvature below 1e-6 of the derivative, rounding below 1e-9.
-      const double size = 0.01 / largest;
-      const std::size_t place = first + candidate.tested[k].place;
-      std::vector<double> moved = parameters;
-      moved[place] += size;
-      const std::vector<double> above = residual_of(quiet, with, moved);
-      moved[place] = parameters[place] - size;
-      const std::vector<double> below = residual_of(quiet, with, moved);
-      for (std::size_t i = 0; i < count; i += 3) {
-        const double difference = -(above[i] - below[i]) / (2.0 * size);
-        // Columns have the precision of a float, 6e-8.
-        EXPECT_NEAR(found[static_cast<Eigen::Index>(i)], difference, 2e-5 * largest)
-            << candidate.effect.id << "." << candidate.tested[k].name << " at " << i;
-      }
-    }
-  }
-  EXPECT_EQ(column, made.columns.candidates.cols());
+            static_cast<std::ptrdiff_t>(made.samples->time.size()));
+  const std::set<std::string> without_trace = expect_differences(made, without_laser_noise(made));
+  // Of all effects only one has nothing to act on here: there are no transonic speeds.
+  EXPECT_THAT(without_trace, testing::ElementsAre("static-transonic"));
+}
+
+// The height holds a minute together, in which an effect is at each sample another.
+TEST(Columns, AgainstHeightsAreDifferencesOfSumsOverAMinute) {
+  const Made made(0.3, pcor::height_reference(laser_model()));
+  EXPECT_EQ(made.columns.window, 60.0);
+  const std::set<std::string> without_trace = expect_differences(made, made.samples);
+  EXPECT_THAT(without_trace, testing::IsSupersetOf({"lams-scale", "lams-elevation", "static-transonic"}));
+  for (const char* seen : {"temp-offset", "psfd-bias", "static-lag", "temp-lag", "recovery-factor", "try-1"})
+    EXPECT_EQ(without_trace.count(seen), 0U) << seen;
+}
+
+TEST(Columns, AgainstHeightsUseNoMinuteThatHoldsWhatIsNotUsed) {
+  Made made(0.3, pcor::height_reference(laser_model()));
+  auto samples = std::make_shared<FlightSamples>(*made.samples);
+  samples->flaps.assign(samples->time.size(), 0.0);
+  samples->flaps[200] = 30.0;  // percent
+  const FlightColumns columns = pcor::internal::find_columns(samples, made.model, made.set, 0, {}, 1.0);
+  for (const std::size_t i : {35U, 169U, 231U, 365U}) EXPECT_FALSE(std::isnan(columns.given[i])) << i;
+  for (const std::size_t i : {29U, 170U, 200U, 230U, 370U}) EXPECT_TRUE(std::isnan(columns.given[i])) << i;
 }
 
 TEST(Columns, OfTheBaseAreDifferencesToo) {

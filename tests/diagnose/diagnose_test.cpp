@@ -1,4 +1,5 @@
 // Diagnoses of simulated flights whose missing effect is known.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <pcor/diagnose/diagnose.hpp>
 #include <pcor/simulate/simulate.hpp>
@@ -65,6 +66,27 @@ std::filesystem::path flight(const std::string& scenario, unsigned seed, const s
   const std::filesystem::path path = directory / ("flight-" + std::to_string(made.size()) + ".nc");
   pcor::simulate_flight(read, path);
   return made[key] = path;
+}
+
+/// Three hours of climbs and descents with a thermometer that reads so much too high, K, and a static
+/// pressure that does, hPa; beside it a second system that is right.
+std::filesystem::path climbs(unsigned seed, double offset, double bias = 0.0) {
+  static const pcor::test::TemporaryDirectory directory;
+  const std::filesystem::path path = directory / fmt::format("{}-{}-{}.nc", seed, offset, bias);
+  if (std::filesystem::exists(path)) return path;
+  pcor::Scenario read = pcor::read_scenario(scenarios / "c130-climbs.toml");
+  read.seed = seed;
+  read.effects[0].parameters = {{"offset", offset}, {"slope", 0.0}};
+  if (bias != 0.0) {
+    read.effects.push_back(read.effects[0]);
+    read.effects[1].id = "psfd-bias";
+    read.effects[1].on = "PSFD";
+    read.effects[1].parameters = {{"offset", bias}};
+  }
+  const pcor::Scenario two_systems = pcor::read_scenario(scenarios / "c130-eq18.toml");
+  read.systems.push_back(two_systems.systems[1]);
+  pcor::simulate_flight(read, path);
+  return path;
 }
 
 ModelFile model() { return pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
@@ -384,6 +406,56 @@ TEST(Diagnose, DoesNotBelieveAFrozenSensorOfAFurtherReference) {
       {path}, model(), {pcor::lams_reference(), pcor::read_reference("total:PSFRD+QCFR", model())});
   EXPECT_THAT(diagnosis.notes, testing::Contains(HasSubstr("PSFRD is frozen")));
   EXPECT_EQ(diagnosis.verdict, Verdict::silent);
+}
+
+// To the laser an offset of the thermometer is a change of the law; to the heights of its climbs it is not.
+TEST(Diagnose, AgainstHeightsTooFindsAThermometerThatIsOff) {
+  const Paths flights{climbs(391, 1.0)};
+  EXPECT_THAT(diagnose(flights).findings, IsEmpty());
+  const pcor::References references{pcor::lams_reference(), pcor::height_reference(model())};
+  const Diagnosis diagnosis = pcor::diagnose(flights, model(), references);
+  ASSERT_THAT(diagnosis.findings, SizeIs(1));
+  const Finding& finding = diagnosis.findings[0];
+  EXPECT_THAT(family_of(finding), testing::Contains("temp-offset"));
+  EXPECT_LE(family_of(finding).size(), 3U);
+  if (finding.effect.id != "temp-offset") return;
+  // Isobars that rise along the track look like some tenths of a kelvin.
+  EXPECT_NEAR(finding.estimates[0].value, 1.0, 0.3);
+}
+
+// The total pressures of two systems show that one is off, the heights which.
+TEST(Diagnose, AgainstHeightsTooTellsWhichSystemIsOff) {
+  const Paths flights{climbs(397, 0.0, 0.5)};
+  const auto total = pcor::total_pressure_reference(
+      pcor::read_model(std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "models" / "c130-psfrd-eq18.toml"));
+  const auto names = [&](const pcor::References& references) {
+    const Diagnosis diagnosis = pcor::diagnose(flights, model(), references);
+    return diagnosis.findings.size() == 1 ? family_of(diagnosis.findings[0]) : std::vector<std::string>{};
+  };
+  const std::vector<std::string> without = names({pcor::lams_reference(), total});
+  EXPECT_THAT(without, testing::Contains("psfd-bias"));
+  EXPECT_GT(without.size(), 3U);
+  const std::vector<std::string> with =
+      names({pcor::lams_reference(), total, pcor::height_reference(model())});
+  EXPECT_THAT(with, testing::Contains("psfd-bias"));
+  EXPECT_LE(with.size(), 3U);
+}
+
+TEST(Diagnose, AgainstHeightsTooIsSilentWhereNothingIsMissing) {
+  const pcor::References references{pcor::height_reference(model()), pcor::lams_reference()};
+  for (unsigned seed = 394; seed <= 396; ++seed) {
+    const Diagnosis diagnosis = pcor::diagnose({climbs(seed, 0.0)}, model(), references);
+    EXPECT_THAT(diagnosis.findings, IsEmpty()) << seed;
+    EXPECT_THAT(diagnosis.reference, testing::StartsWith("LAMS")) << "what tells of each sample comes first";
+  }
+}
+
+TEST(Diagnose, NeedsAReferenceThatTellsOfEachSample) {
+  const Paths flights{climbs(394, 0.0)};
+  EXPECT_THROW(pcor::diagnose(flights, model(), {pcor::height_reference(model())}), pcor::Error);
+  const Diagnosis diagnosis =
+      pcor::diagnose(flights, model(), {pcor::lams_reference(), pcor::wind_reference(model())});
+  EXPECT_THAT(diagnosis.notes, testing::Contains(HasSubstr("wind took no part")));
 }
 
 TEST(Diagnose, NeedsFlightsAndSamples) {

@@ -105,6 +105,14 @@ TEST(Binning, AGapInTimeEndsAStretch) {
   EXPECT_EQ(bins.stretches()[1].count, 5U);
 }
 
+// The differences over a minute that begin in one telescope into a difference of means of minutes.
+TEST(Binning, AreAsLongAsIsAsked) {
+  const Binning bins(std::vector<double>(300, 0.0), seconds(300), 1.0, 60.0);
+  EXPECT_EQ(bins.size(), 5U);
+  EXPECT_EQ(bins.time()[1] - bins.time()[0], 60.0);
+  EXPECT_EQ(bins.stretches().size(), 1U);
+}
+
 TEST(Binning, OfNothingIsNothing) {
   EXPECT_EQ(Binning({}, {}, 1.0).size(), 0U);
   EXPECT_EQ(Binning(std::vector<double>(30, missing), seconds(30), 1.0).size(), 0U);

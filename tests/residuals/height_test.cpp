@@ -3,6 +3,7 @@
 #include <pcor/words/error.hpp>
 
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "support/isothermal_air.hpp"
@@ -70,6 +71,21 @@ TEST(Height, HasTheDerivativesOfItsResiduals) {
   const pcor::ModelFile model = made::air_model({{"psfd-bias", 0.3}});
   // Centred differences of a step of 1e-3 hPa are right to 1e-9 / 1e-3.
   EXPECT_LT(made::derivative_error(climb(), model, *pcor::height_reference(model), 1e-3), 1e-5);
+}
+
+// Or else a fit would shrink the residual by a coefficient that the heights do not see.
+TEST(Height, HasDerivativesWithoutTheNoiseOfTheHeights) {
+  auto flight = std::make_shared<pcor::FlightSamples>(climb());
+  for (std::size_t i = 0; i < flight->time.size(); ++i)
+    flight->reference.columns[0].second[i] += 3.0 * std::sin(0.7 * static_cast<double>(i));
+  const pcor::ModelFile model = made::air_model({{"static-constant", 0.01}});
+  const pcor::Residuals residuals(flight, model, *pcor::height_reference(model));
+  const std::size_t sample = 900;
+  double residual = 0.0;
+  double derivative = 0.0;
+  residuals.evaluate(&sample, 1, residuals.parameters().data(), {0}, &residual, &derivative);
+  EXPECT_GT(std::abs(residual), 0.01);
+  EXPECT_NEAR(derivative, 0.0, 1e-9);
 }
 
 TEST(Height, DoesNotReachOverGapsAndMissingValues) {

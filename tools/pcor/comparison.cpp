@@ -123,8 +123,9 @@ ChosenReferences references_to_fit(const ComparisonOptions& options, const Model
   const auto held_together = std::stable_partition(chosen.used.begin(), chosen.used.end(),
                                                    [](const auto& each) { return each->is_of_one_sample(); });
   for (auto each = held_together; each != chosen.used.end(); ++each) {
-    chosen.not_used.push_back((*each)->name() +
-                              ": compare shows it; a fit takes it where --reference names it");
+    const char* const who = (*each)->window() > 0.0 ? "refit, diagnose and improve take" : "refit takes";
+    chosen.not_used.push_back(
+        fmt::format("{}: compare shows it, and {} it where --reference names it", (*each)->name(), who));
   }
   chosen.used.erase(held_together, chosen.used.end());
   return chosen;

@@ -47,7 +47,8 @@ std::vector<std::filesystem::path> flight_paths(const ComparisonOptions& options
 
 /// What a model is fitted to: the references that the options name, else LAMS and the total pressure of a
 /// second pair. What the others leave to their noise, winds that change and slopes of surfaces of one
-/// pressure, is not known well enough to be taken unasked.
+/// pressure, is not known well enough to be taken unasked: heights that are off by a thousandth, and air that
+/// is not at rest, look to a diagnosis like some tenths of a kelvin at the thermometer.
 /// @param holdout flights that are held out, which must allow the references too
 ChosenReferences references_to_fit(const ComparisonOptions& options, const ModelFile& model,
                                    const std::vector<std::string>& holdout = {});

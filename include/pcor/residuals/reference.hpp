@@ -55,9 +55,12 @@ class Reference {
   virtual ModelSamples read(const Flight& flight, const std::vector<double>& time,
                             std::vector<std::string>& notes) const;
 
-  /// True where its residual is of one sample alone, not of many around it: only then the diagnosis knows
-  /// what an effect that changes from sample to sample does to it.
+  /// True where its residual is of one sample alone, not of many around it.
   virtual bool is_of_one_sample() const { return true; }
+
+  /// Where its residual is a difference over so long a time, s: means over as much tell each something new,
+  /// and what a diagnosis holds against a model. Zero where it is no such difference.
+  virtual double window() const { return 0.0; }
 
   /// What it says of every sample. Both arguments must outlive the result.
   virtual std::unique_ptr<internal::ReferenceOnSamples> on(const FlightSamples& samples,

@@ -14,6 +14,12 @@
 
 namespace pcor {
 
+/// A coefficient that changes a parameter differently at every sample.
+struct Direction {
+  std::size_t parameter = 0;
+  std::vector<double> rate{};  ///< of every sample, units of the parameter per unit of the coefficient
+};
+
 /// One model held against one reference on one flight.
 ///
 /// The residual is that of the reference less the model, hPa. Its parameters are those of the model, in the
@@ -68,6 +74,20 @@ class Residuals {
   void evaluate_at_sensor(const std::size_t* samples, std::size_t count, const double* parameters,
                           const std::vector<std::size_t>& wanted, double* residual,
                           double* derivatives) const;
+
+  /// How many samples on either side a residual is made of; zero where it is of one sample alone.
+  std::size_t reach() const;
+
+  /// Derivatives at some samples of residuals that are made of their neighbours too, by coefficients that
+  /// change from sample to sample: with the parameters a_k of the samples k, the sum of dr_i/da_k rate_k.
+  /// Exact: dual numbers through the whole chain and through the sums over neighbours. Samples whose rate is
+  /// zero need no finite derivative of their own.
+  ///
+  /// @param derivatives `directions.size()` columns of `count` values, one after another, hPa per unit of the
+  ///        coefficient
+  /// @pre `reach()` is not zero
+  void differentiate_along(const std::size_t* samples, std::size_t count, const double* parameters,
+                           const std::vector<Direction>& directions, double* derivatives) const;
 
   /// The column of the model's samples that the sensor of the reference fills, and what the sensor would show
   /// at every sample where the model says that the air is, without its noise: of LAMS the speed along the

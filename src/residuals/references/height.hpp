@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <memory>
@@ -26,41 +27,49 @@ inline constexpr double height_window = 60.0;
 ///     r_i = p_i g0/(R T)_i [ sum_a^b dH - (H_b - H_a) ],   dH = hydrostatic_step times the mean temperature
 ///
 /// with the geopotential heights H of GPS: where the step of the model is too large, its pressure has fallen
-/// too far. In hPa.
-class HeightOnSamples final : public OfNeighbours<HeightOnSamples> {
+/// too far. In hPa. The factor before the brackets, which is a unit, is that of the model's file: if it moved
+/// with the coefficients, a derivative would hold the residual itself, and so its noise.
+class HeightOnSamples final : public OfNeighbours<HeightOnSamples, 3> {
  public:
   HeightOnSamples(const FlightSamples& samples, const ModelOnSamples& model)
       : OfNeighbours(model, samples.time.size()),
         height_(*samples.reference.find(Quantity::altitude)),
         time_(samples.time),
-        step_(samples.step) {}
+        step_(samples.step) {
+    const double* const parameters = model.parameters().data();
+    for (std::size_t i = 0; i < time_.size(); ++i) {
+      const auto [pressure, temperature, gas_constant] = parts_of(i, parameters);
+      pressure_of_height_.push_back(pressure * constants::standard_gravity / (gas_constant * temperature));
+    }
+  }
 
-  std::size_t reach() const { return static_cast<std::size_t>(std::lround(0.5 * height_window / step_)); }
+  std::size_t reach() const override {
+    return static_cast<std::size_t>(std::lround(0.5 * height_window / step_));
+  }
+
+  /// Static pressure, hPa; temperature, K; gas constant, J kg^-1 K^-1.
+  template <class S>
+  Parts<S> parts_of(std::size_t sample, const S* parameters) const {
+    State<S> state;
+    law().air(sample, parameters, state);
+    return {state[Quantity::corrected_static_pressure], state[Quantity::ambient_temperature],
+            moist_air(state[Quantity::humidity]).gas_constant};
+  }
 
   template <class S>
-  void find(const Span span, const std::size_t* samples, std::size_t count, const S* parameters,
-            S* out) const {
-    std::vector<S> risen(span.size(), S(0.0));       // m since the first sample
-    std::vector<S> pressure_of_height(span.size());  // hPa/m
+  void find(const Span span, const std::vector<Parts<S>>& parts, const std::size_t* samples,
+            std::size_t count, S* out) const {
+    std::vector<S> risen(span.size(), S(0.0));  // m since the first sample
     std::vector<std::size_t> missing_steps(span.size(), 0);
-    S pressure_before;
-    S temperature_before;
     for (std::size_t k = 0; k < span.size(); ++k) {
-      State<S> state;
-      law().air(span.first + k, parameters, state);
-      const S pressure = state[Quantity::corrected_static_pressure];
-      const S temperature = state[Quantity::ambient_temperature];
-      const S gas_constant = moist_air(state[Quantity::humidity]).gas_constant;
-      pressure_of_height[k] = pressure * S(constants::standard_gravity) / (gas_constant * temperature);
+      const auto& [pressure, temperature, gas_constant] = parts[k];
       if (k > 0) {
-        const S rise = S(0.5) * (temperature_before + temperature) *
-                       hydrostatic_step(pressure_before, pressure, gas_constant);
+        const S rise = S(0.5) * (parts[k - 1][1] + temperature) *
+                       hydrostatic_step(parts[k - 1][0], pressure, gas_constant);
         const bool known = is_finite(rise) && is_next(span.first + k);
         risen[k] = known ? S(risen[k - 1] + rise) : risen[k - 1];
         missing_steps[k] = missing_steps[k - 1] + (known ? 0 : 1);
       }
-      pressure_before = pressure;
-      temperature_before = temperature;
     }
     for (std::size_t i = 0; i < count; ++i) {
       out[i] = missing<S>();
@@ -69,7 +78,7 @@ class HeightOnSamples final : public OfNeighbours<HeightOnSamples> {
       const std::size_t to = from + 2 * reach();
       if (missing_steps[from] != missing_steps[to]) continue;
       const double climbed = height_[span.first + to] - height_[span.first + from];
-      out[i] = pressure_of_height[samples[i] - span.first] * (risen[to] - risen[from] - S(climbed));
+      out[i] = S(pressure_of_height_[samples[i]]) * (risen[to] - risen[from] - S(climbed));
     }
   }
 
@@ -81,6 +90,7 @@ class HeightOnSamples final : public OfNeighbours<HeightOnSamples> {
   const std::vector<double>& height_;  // geopotential, m
   const std::vector<double>& time_;
   double step_;
+  std::vector<double> pressure_of_height_{};  // hPa/m
 };
 
 class HeightReference final : public Reference {
@@ -91,6 +101,7 @@ class HeightReference final : public Reference {
   std::string name() const override { return "height"; }
   bool is_static_pressure() const override { return false; }
   bool is_of_one_sample() const override { return false; }
+  double window() const override { return height_window; }
 
   ModelSamples read(const Flight& flight, const std::vector<double>&,
                     std::vector<std::string>&) const override {

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <vector>
 
+#include <pcor/residuals/residuals.hpp>
 #include "residuals/model_on_samples.hpp"
 #include "residuals/reference_on_samples.hpp"
 
@@ -15,15 +18,20 @@ struct Span {
   std::size_t size() const { return end - first; }
 };
 
-/// A reference whose residual at a sample is made of the samples around it. `Derived` gives `reach`, how many
-/// they are on either side, and
+/// A reference whose residual at a sample is made of the samples around it, in two steps: of each sample
+/// alone `part_count` numbers that follow from the model there, and the residuals from those of all samples.
+/// `Derived` gives beside `reach`
 ///
 ///     template <class S>
-///     void find(Span span, const std::size_t* samples, std::size_t count, const S* parameters, S* out) const
+///     std::array<S, part_count> parts_of(std::size_t sample, const S* parameters) const
 ///
-/// with the residuals of `samples`, which lie with their neighbours in `span`.
-template <class Derived>
-class OfNeighbours : public ReferenceOnSamples {
+/// and, with the parts of all samples of `span`, in which `samples` lie with their neighbours,
+///
+///     template <class S>
+///     void find(Span span, const std::vector<std::array<S, part_count>>& parts, const std::size_t* samples,
+///               std::size_t count, S* out) const
+template <class Derived, std::size_t part_count>
+class OfNeighbours : public ReferenceOnSamples, public Neighbours {
  public:
   OfNeighbours(const ModelOnSamples& model, std::size_t size) : model_(model), size_(size) {}
 
@@ -36,22 +44,94 @@ class OfNeighbours : public ReferenceOnSamples {
     find(samples, count, parameters, out);
   }
 
+  const Neighbours* neighbours() const override { return this; }
+
+  void differentiate(const std::size_t* samples, std::size_t count, const double* parameters,
+                     const std::vector<Direction>& directions, double* derivatives) const override {
+    if (count == 0) return;
+    const Span span = span_of(samples, count);
+    std::vector<std::size_t> wanted;
+    for (const Direction& direction : directions) wanted.push_back(direction.parameter);
+    std::sort(wanted.begin(), wanted.end());
+    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    const std::vector<Parts<double>> values = parts(span, parameters);
+    const std::vector<std::vector<Parts<double>>> slopes = slopes_of_parts(span, parameters, wanted);
+    std::vector<Jet> out(count);
+    for (std::size_t first = 0; first < directions.size(); first += jet_width) {
+      const std::size_t width = std::min<std::size_t>(jet_width, directions.size() - first);
+      std::vector<Parts<Jet>> moved(span.size());
+      for (std::size_t k = 0; k < span.size(); ++k)
+        std::transform(values[k].begin(), values[k].end(), moved[k].begin(),
+                       [](double value) { return Jet(value); });
+      for (std::size_t d = 0; d < width; ++d) {
+        const Direction& direction = directions[first + d];
+        const auto place = std::lower_bound(wanted.begin(), wanted.end(), direction.parameter);
+        const std::vector<Parts<double>>& slope = slopes[static_cast<std::size_t>(place - wanted.begin())];
+        for (std::size_t k = 0; k < span.size(); ++k) {
+          const double rate = direction.rate[span.first + k];
+          if (rate == 0.0) continue;  // the slope may be missing there
+          for (std::size_t part = 0; part < part_count; ++part)
+            moved[k][part].v[static_cast<Eigen::Index>(d)] = rate * slope[k][part];
+        }
+      }
+      derived().find(span, moved, samples, count, out.data());
+      for (std::size_t d = 0; d < width; ++d) {
+        double* const column = derivatives + (first + d) * count;
+        for (std::size_t i = 0; i < count; ++i) column[i] = out[i].v[static_cast<Eigen::Index>(d)];
+      }
+    }
+  }
+
   Mask why_missing(std::size_t sample) const override {
     return model_.is_missing_needed(sample) ? Mask::missing : Mask::reference;
   }
 
  protected:
+  template <class S>
+  using Parts = std::array<S, part_count>;
+
   const ModelOnSamples& law() const { return model_; }
 
  private:
+  const Derived& derived() const { return static_cast<const Derived&>(*this); }
+
+  Span span_of(const std::size_t* samples, std::size_t count) const {
+    const auto [least, greatest] = std::minmax_element(samples, samples + count);
+    return {*least - std::min(*least, reach()), std::min(*greatest + reach() + 1, size_)};
+  }
+
+  template <class S>
+  std::vector<Parts<S>> parts(const Span span, const S* parameters) const {
+    std::vector<Parts<S>> result;
+    result.reserve(span.size());
+    for (std::size_t k = span.first; k < span.end; ++k) result.push_back(derived().parts_of(k, parameters));
+    return result;
+  }
+
+  /// The derivatives of the parts by each of the wanted parameters.
+  std::vector<std::vector<Parts<double>>> slopes_of_parts(const Span span, const double* parameters,
+                                                          const std::vector<std::size_t>& wanted) const {
+    std::vector<std::vector<Parts<double>>> slopes(wanted.size(), std::vector<Parts<double>>(span.size()));
+    for (std::size_t first = 0; first < wanted.size(); first += jet_width) {
+      const std::size_t width = std::min<std::size_t>(jet_width, wanted.size() - first);
+      std::vector<Jet> dual(parameters, parameters + model_.parameters().size());
+      for (std::size_t d = 0; d < width; ++d) dual[wanted[first + d]].v[static_cast<Eigen::Index>(d)] = 1.0;
+      const std::vector<Parts<Jet>> of_samples = parts(span, static_cast<const Jet*>(dual.data()));
+      for (std::size_t k = 0; k < span.size(); ++k) {
+        for (std::size_t part = 0; part < part_count; ++part) {
+          for (std::size_t d = 0; d < width; ++d)
+            slopes[first + d][k][part] = of_samples[k][part].v[static_cast<Eigen::Index>(d)];
+        }
+      }
+    }
+    return slopes;
+  }
+
   template <class S>
   void find(const std::size_t* samples, std::size_t count, const S* parameters, S* out) const {
     if (count == 0) return;
-    const auto& derived = static_cast<const Derived&>(*this);
-    const auto [least, greatest] = std::minmax_element(samples, samples + count);
-    const Span span{*least - std::min(*least, derived.reach()),
-                    std::min(*greatest + derived.reach() + 1, size_)};
-    derived.find(span, samples, count, parameters, out);
+    const Span span = span_of(samples, count);
+    derived().find(span, parts(span, parameters), samples, count, out);
   }
 
   const ModelOnSamples& model_;

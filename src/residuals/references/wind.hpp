@@ -35,7 +35,7 @@ inline constexpr double wind_window = 900.0;
 ///
 /// Source: memo eq. 5-7, differentiated with the total pressure kept. Samples at which heading or ground
 /// velocity are frozen tell nothing of the wind.
-class WindOnSamples final : public OfNeighbours<WindOnSamples> {
+class WindOnSamples final : public OfNeighbours<WindOnSamples, 1> {
  public:
   WindOnSamples(const FlightSamples& samples, const ModelOnSamples& model)
       : OfNeighbours(model, samples.time.size()),
@@ -47,7 +47,16 @@ class WindOnSamples final : public OfNeighbours<WindOnSamples> {
         dynamic_pressure_(*samples.model.find(Quantity::dynamic_pressure)),
         reach_(static_cast<std::size_t>(std::lround(0.5 * wind_window / samples.step))) {}
 
-  std::size_t reach() const { return reach_; }
+  std::size_t reach() const override { return reach_; }
+
+  /// d, m/s.
+  template <class S>
+  Parts<S> parts_of(std::size_t sample, const S* parameters) const {
+    if (!is_flying(sample)) return {missing<S>()};
+    State<S> state;
+    law().air(sample, parameters, state);
+    return {state[Quantity::corrected_airspeed] * S(along_heading(sample)) - S(along_[sample])};
+  }
 
   std::vector<Batch::Input> columns() const override {
     std::vector<Batch::Input> inputs;
@@ -56,18 +65,13 @@ class WindOnSamples final : public OfNeighbours<WindOnSamples> {
   }
 
   template <class S>
-  void find(const Span span, const std::size_t* samples, std::size_t count, const S* parameters,
-            S* out) const {
+  void find(const Span span, const std::vector<Parts<S>>& parts, const std::size_t* samples,
+            std::size_t count, S* out) const {
     std::vector<Sums<S>> sums(span.size() + 1);  // over the samples before
-    std::vector<S> difference(span.size(), missing<S>());
     for (std::size_t k = 0; k < span.size(); ++k) {
       sums[k + 1] = sums[k];
-      const std::size_t sample = span.first + k;
-      if (!is_flying(sample)) continue;
-      State<S> state;
-      law().air(sample, parameters, state);
-      difference[k] = state[Quantity::corrected_airspeed] * S(along_heading(sample)) - S(along_[sample]);
-      if (is_finite(difference[k])) sums[k + 1].add(heading_[sample], difference[k]);
+      const S& difference = parts[k][0];
+      if (is_finite(difference)) sums[k + 1].add(heading_[span.first + k], difference);
     }
     for (std::size_t i = 0; i < count; ++i) {
       out[i] = missing<S>();
@@ -75,7 +79,7 @@ class WindOnSamples final : public OfNeighbours<WindOnSamples> {
       const std::size_t k = samples[i] - span.first;
       const Sums<S>& before = sums[k - std::min(k, reach())];
       const Sums<S>& after = sums[std::min(k + reach() + 1, span.size())];
-      const S left = difference[k] - after.wind_along(heading_[samples[i]], before);
+      const S left = parts[k][0] - after.wind_along(heading_[samples[i]], before);
       out[i] = left / S(speed_of_defect(samples[i]));
     }
   }

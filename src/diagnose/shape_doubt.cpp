@@ -1,0 +1,64 @@
+#include "diagnose/shape_doubt.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <map>
+
+#include "numerics/triangular_factor.hpp"
+
+namespace pcor::internal {
+namespace {
+
+/// The coefficients of all columns in a fit of base and groups; those of the base and of what is before the
+/// last group are zero with `alone`.
+Eigen::VectorXd coefficients_of(const Analysis& analysis, const std::vector<std::size_t>& groups,
+                                bool alone = false) {
+  Eigen::VectorXd estimate;
+  Eigen::MatrixXd covariance;
+  analysis.search().fit(groups, estimate, covariance);
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(analysis.scores().columns());
+  Eigen::Index place = analysis.base();
+  if (!alone) all.head(place) = estimate.head(place);
+  for (const std::size_t number : groups) {
+    const ColumnGroup& group = analysis.groups()[number];
+    if (!alone || number == groups.back())
+      all.segment(analysis.base() + group.first, group.count) = estimate.segment(place, group.count);
+    place += group.count;
+  }
+  return all;
+}
+
+std::vector<std::size_t> with(std::vector<std::size_t> groups, std::size_t group) {
+  groups.push_back(group);
+  return groups;
+}
+
+}  // namespace
+
+double chi2_where_they_differ(const Analysis& analysis, const std::vector<std::size_t>& others,
+                              std::size_t effect, std::size_t rival) {
+  const double whole = analysis.search().score(effect, others).chi2;
+  const Eigen::VectorXd added = coefficients_of(analysis, with(others, effect), true);
+  const Eigen::VectorXd difference =
+      coefficients_of(analysis, with(others, effect)) - coefficients_of(analysis, with(others, rival));
+  struct Sums {
+    double added = 0.0;
+    double difference = 0.0;
+  };
+  std::map<std::size_t, Sums> against;  // each reference
+  double differences = 0.0;
+  for (std::size_t f = 0; f < analysis.flight_count(); ++f) {
+    const auto columns = analysis.scores().rows[f].leftCols(analysis.scores().columns());
+    Sums& sums = against[analysis.flight(f).reference];
+    sums.added += (columns * added).squaredNorm();
+    const double here = (columns * difference).squaredNorm();
+    sums.difference += here;
+    differences += here;
+  }
+  if (!(differences > 0.0)) return whole;
+  double chi2 = 0.0;
+  for (const auto& [reference, sums] : against) chi2 += sums.added * sums.difference / differences;
+  return std::min(chi2, whole);
+}
+
+}  // namespace pcor::internal
