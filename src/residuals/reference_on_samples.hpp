@@ -6,11 +6,8 @@
 #include <vector>
 
 #include <pcor/residuals/masks.hpp>
+#include <pcor/residuals/residuals.hpp>
 #include "residuals/model_on_samples.hpp"
-
-namespace pcor {
-struct Direction;
-}
 
 namespace pcor::internal {
 
