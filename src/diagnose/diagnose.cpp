@@ -138,6 +138,11 @@ bool reads_flow_angles(const EffectFacts& facts) {
   });
 }
 
+// Of an effect of flow angles where the model has one: what is left of its variance may be the noise by which
+// two sensors of one angle differ. Another scaling of it differs still less.
+constexpr double left_by_same_angle = 0.005;
+constexpr double left_by_same_sensors = 0.02;
+
 /// Whether an effect of the catalogue is of the family and the place of one that a model has, by other
 /// sensors.
 bool is_like_one_of(const ModelFile& model, const Candidate& candidate) {
@@ -162,7 +167,8 @@ std::vector<ColumnGroup> groups_of(const ModelFile& model, const std::vector<Can
     before = candidate.id;
     ColumnGroup& group = groups.emplace_back();
     group.effect = effect;
-    group.is_like_the_base = is_like_one_of(model, candidate);
+    if (is_like_one_of(model, candidate))
+      group.least_left = candidate.is_variant ? left_by_same_sensors : left_by_same_angle;
     group.first = first;
     group.count = as_index(candidate.tested.size());
     for (const CandidateParameter& parameter : candidate.tested) {

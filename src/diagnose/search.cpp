@@ -17,9 +17,7 @@
 namespace pcor::internal {
 namespace {
 
-constexpr double absorbed_below = 1e-6;  // of a variance: what rounding of single precision leaves of it
-constexpr double like_the_base_below = 0.005;  // the same for an effect that the base has by other sensors
-constexpr double redundant_below = 1e-3;       // of what the base leaves, given others
+constexpr double redundant_below = 1e-3;  // of what the base leaves, given others
 constexpr double errors_beyond_bounds = 2.0;
 constexpr double least_share = 0.08;  // of the rms that is explained already, for one more effect
 constexpr double enough_blocks = 12.0;
@@ -32,7 +30,7 @@ struct Tail {
   double times;
   double share;
 };
-constexpr std::array<Tail, 4> tails{{{1.0, 0.5}, {0.1, 0.25}, {3.0, 0.2}, {10.0, 0.05}}};
+constexpr std::array<Tail, 4> tails{{{1.0, 0.65}, {0.1, 0.1}, {3.0, 0.2}, {10.0, 0.05}}};
 
 /// `one_degree_equivalent` from a table: draws ask for it thousands of times.
 class EquivalentTable {
@@ -126,7 +124,7 @@ Search::Search(const Scores& scores, Eigen::Index base, const std::vector<Column
       Eigen::Index next = 0;
       const double most = left.diagonal().maxCoeff(&next);
       if (told.empty()) remaining_.back() = std::clamp(most, 0.0, 1.0);
-      if (!(most > (group.is_like_the_base ? like_the_base_below : absorbed_below))) break;
+      if (!(most > group.least_left)) break;
       told.push_back(next);
       left -= Eigen::MatrixXd(left.col(next) * left.row(next) / most);
       for (const Eigen::Index column : told) left(column, column) = 0.0;

@@ -447,6 +447,35 @@ TEST(ImprovementReport, ShowsTheLadder) {
   words_of(report);
 }
 
+TEST(ImprovementReport, BeginsWithTheModelAsItCameAndShowsHeldOutFlights) {
+  Improvement made = improvement();
+  made.given_rms_holdout = 0.5;
+  made.rms_holdout = 0.13;
+  ImproveStep& rung = made.steps[1];
+  rung.rivals = {{"static-beta-odd", 0.8, 0.3}, {"lams-azimuth", 0.2, 0.0}};
+  rung.share = 0.4;
+  rung.spread = 0.12;
+  for (const FlightDiagnosis& one : made.steps[0].diagnosis.flights) {
+    if (one.samples) made.flights.push_back({one.samples, false, one.before, one.before, one.before});
+  }
+  auto later = std::make_shared<FlightSamples>(*made.flights.front().samples);
+  later->name = "later.nc";
+  made.flights.push_back(
+      {later, true, made.flights.front().given, made.flights.front().given, made.flights.front().given});
+  const Report report = improvement_report(made, model());
+  const auto* bars = item<BarPanel>(report, "The ladder");
+  ASSERT_NE(bars, nullptr);
+  EXPECT_EQ(bars->bars.front().label, "as it came");
+  EXPECT_EQ(bars->bars[4].label, "averaged over rivals");
+  EXPECT_THAT(report.summary, Contains(HasSubstr("40 % of their average is applied")));
+  EXPECT_THAT(report.flight_names, Contains("later.nc"));
+  const auto* time = item<TimePanel>(report, "The ladder in time");
+  ASSERT_NE(time, nullptr);
+  EXPECT_EQ(time->caption, "Held out: later.nc.");
+  EXPECT_THAT(time->columns, ElementsAre("ladder-given", "ladder-refitted", "ladder-best"));
+  words_of(report);
+}
+
 TEST(ImprovementReport, HasAPageAndPicturesForEveryRung) {
   const Report report = improvement_report(improvement(), model());
   const auto* page = item<ReportText>(report, "Rung 1: static-beta-odd");

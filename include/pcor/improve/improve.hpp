@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -61,10 +62,12 @@ struct ImprovedFlight {
 
 struct Improvement {
   ModelFile model;  ///< the best one, refitted, its correction averaged over the rivals that remain
-  double given_rms_train = 0.0;    ///< of the model as it came, hPa, on the samples of the fit
-  double given_rms_holdout = 0.0;  ///< on what was held out; NaN without held-out flights or parts
-  double rms_train = 0.0;          ///< of the model that is delivered
-  double rms_holdout = 0.0;
+  double given_rms_train =
+      std::numeric_limits<double>::quiet_NaN();  ///< of the model as it came, hPa, on the samples of the fit
+  double given_rms_holdout = std::numeric_limits<double>::quiet_NaN();  ///< on what was held out; NaN without
+                                                                        ///< held-out flights or parts
+  double rms_train = std::numeric_limits<double>::quiet_NaN();          ///< of the model that is delivered
+  double rms_holdout = std::numeric_limits<double>::quiet_NaN();
   std::vector<ImproveStep> steps{};
   std::string why_stopped{};  ///< a sentence
   RefitResult fit;            ///< of the best model, before it was averaged
