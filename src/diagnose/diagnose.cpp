@@ -1,6 +1,7 @@
 #include <pcor/diagnose/diagnose.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -306,6 +307,18 @@ std::string id_on_other_system(const std::string& system, const std::string& nam
   return "reference:" + (system.empty() ? "" : system + ":") + name;
 }
 
+std::string places_text(const TracedVariable& variable) {
+  const std::string formula = variable.formula.empty()
+                                  ? ""
+                                  : fmt::format("; the formula is written as added to the {} pressure",
+                                                variable.where == Where::pitot ? "total" : "static");
+  if (variable.places.empty()) return "where it acts is not known" + formula;
+  return fmt::format("it acts at one of these places: {}, since the total pressures of the two systems {}{}",
+                     fmt::join(variable.places, ", "),
+                     variable.where == Where::pitot ? "differ with it, too" : "do not differ with it",
+                     formula);
+}
+
 std::string Finding::id() const { return of_reference ? id_on_other_system(system, effect.id) : effect.id; }
 
 void judge_held_out(Diagnosis& diagnosis) {
@@ -334,7 +347,6 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
 
   Diagnosis diagnosis;
   const References references = usable(all_references, diagnosis.notes);
-  const Reference& reference = first_of(references);
   diagnosis.reference = description_of(references);
   CandidateSet set = find_candidates(model, options.formulas, flights, references);
   std::vector<FlightColumns> columns;
@@ -396,7 +408,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
       std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   const double rms_after = rms_of(diagnosis.flights, &FlightDiagnosis::after);
   UnexplainedStructure structure =
-      find_unexplained(analysis, files, model, reference, inputs_of(diagnosis.findings, set.extended),
+      find_unexplained(analysis, files, model, references, inputs_of(diagnosis.findings, set.extended),
                        options, rms_after, diagnosis.noise_rms_with_findings);
   diagnosis.unexplained = std::move(structure.found);
   for (std::size_t f = 0; f < structure.traced.size(); ++f)

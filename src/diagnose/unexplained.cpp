@@ -213,6 +213,48 @@ std::vector<Eigen::MatrixXd> lines_in(const Analysis& analysis, const Tested& te
   return lines;
 }
 
+/// How many references an analysis has.
+std::size_t reference_count(const Analysis& analysis) {
+  std::size_t count = 0;
+  for (std::size_t f = 0; f < analysis.flight_count(); ++f)
+    count = std::max(count, analysis.flight(f).reference + 1);
+  return count;
+}
+
+/// Where what goes with variables may act: a cause at the static ports, the laser or the thermometer leaves
+/// the total pressures alone, one at the pitot or at the transducers does not. @param numbers of the
+/// variables
+void find_places(const Analysis& analysis, const Tested& tested, const std::vector<std::size_t>& numbers,
+                 const References& references, std::vector<TracedVariable>& variables) {
+  constexpr double seen = 3.0;           // standard errors
+  constexpr double would_be_seen = 6.0;  // of the same slope as against the first reference
+  const std::size_t count = reference_count(analysis);
+  std::size_t blind = 0;  // the first reference that does not see static defects
+  while (blind < count && references[blind]->sees_static_defect()) ++blind;
+  if (blind == 0 || blind >= count || numbers.empty()) return;
+  std::vector<ColumnGroup> groups(count * numbers.size());
+  for (std::size_t k = 0; k < groups.size(); ++k) {
+    groups[k].first = as_index(k);
+    groups[k].count = 1;
+    groups[k].bounds.resize(1);
+  }
+  const Scores scores = analysis.scores_with(lines_in(analysis, tested, numbers, as_index(count)));
+  const Search search(scores, analysis.base(), groups);
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    TracedVariable& variable = variables[k];
+    const GroupScore total = search.score(count * k + blind, {count * k});
+    if (total.freedom == 0.0) continue;
+    const double error = std::sqrt(total.covariance(0, 0));
+    if (std::abs(total.estimate[0]) > seen * error) {
+      variable.places = {"pitot", "p-transducer", "q-transducer", "other-system"};
+      variable.where = Where::pitot;
+    } else if (std::abs(variable.slope) > would_be_seen * error) {
+      variable.places = {"port", references.front()->reads_laser() ? "laser" : "other-system"};
+      if (references.front()->reads_laser()) variable.places.emplace_back("thermometer");
+    }
+  }
+}
+
 /// The line in a variable that explains most beside the base, of those that may be a cause and are no input
 /// of an effect. It has a slope of its own against each reference, since where the cause acts is not known.
 GroupScore best_line(const Analysis& analysis, const Tested& tested, const std::set<std::string>& inputs) {
@@ -222,9 +264,7 @@ GroupScore best_line(const Analysis& analysis, const Tested& tested, const std::
     if (variable.may_be_cause && variable.turn == 0.0 && inputs.count(variable.name) == 0)
       causes.push_back(i);
   }
-  std::size_t references = 0;
-  for (std::size_t f = 0; f < analysis.flight_count(); ++f)
-    references = std::max(references, analysis.flight(f).reference + 1);
+  const std::size_t references = reference_count(analysis);
   std::vector<ColumnGroup> groups(causes.size());
   for (std::size_t k = 0; k < groups.size(); ++k) {
     groups[k].first = as_index(references * k);
@@ -269,8 +309,8 @@ bool line_overrules(const Analysis& analysis, const std::vector<std::size_t>& ch
   return line - best.freedom > least_gain * (together - by_effects) + margin;
 }
 
-/// The variables whose structure is beyond chance, each once.
-void add_traced(const Tested& tested, UnexplainedStructure& result) {
+/// The variables whose structure is beyond chance, each once; their numbers.
+std::vector<std::size_t> add_traced(const Tested& tested, UnexplainedStructure& result) {
   const std::vector<Structure>& structures = tested.test.structures();
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < structures.size(); ++i) {
@@ -282,14 +322,17 @@ void add_traced(const Tested& tested, UnexplainedStructure& result) {
   };
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return merit(a) > merit(b); });
   std::set<std::string> named;
+  std::vector<std::size_t> numbers;
   for (const std::size_t i : order) {
     if (result.found.variables.size() == most_variables) break;
     if (!named.insert(structures[i].name).second) continue;
     result.found.variables.push_back(
         traced_of(structures[i], *tested.variables[i], tested.test.chance_of(structures[i].equivalent)));
+    numbers.push_back(i);
     if (!result.traced.empty()) continue;
     for (const auto& values : tested.variables[i]->values) result.traced.push_back(*values);
   }
+  return numbers;
 }
 
 std::vector<FlightStep> steps_between(const Analysis& analysis, const std::vector<std::size_t>& chosen) {
@@ -308,7 +351,7 @@ std::vector<FlightStep> steps_between(const Analysis& analysis, const std::vecto
 }  // namespace
 
 UnexplainedStructure find_unexplained(const Analysis& analysis, const std::vector<Flight>& files,
-                                      const ModelFile& model, const Reference& reference,
+                                      const ModelFile& model, const References& references,
                                       const std::set<std::string>& inputs, const DiagnoseOptions& options,
                                       double residual_rms, double noise_rms) {
   UnexplainedStructure result;
@@ -316,7 +359,7 @@ UnexplainedStructure find_unexplained(const Analysis& analysis, const std::vecto
   const std::vector<std::size_t>& chosen = analysis.result().chosen;
   const std::vector<std::vector<double>> after = residuals_after(analysis, chosen);
   const std::vector<TestedVariable> variables =
-      variables_to_test(analysis, files, model, reference, options, after, found);
+      variables_to_test(analysis, files, model, first_of(references), options, after, found);
 
   const Tested beside_all(analysis, chosen, variables, options.seed);
   const double by_variables = beside_all.p_value();
@@ -342,7 +385,9 @@ UnexplainedStructure find_unexplained(const Analysis& analysis, const std::vecto
 
   const std::vector<std::vector<double>> left = result.overrules ? residuals_after(analysis, {}) : after;
   const double rms = result.overrules ? rms_of(left, whole) : residual_rms;
-  add_traced(shown, result);
+  const std::vector<std::size_t> traced = add_traced(shown, result);
+  // Effects that stay describe a part of every reference, of which the lines know nothing.
+  if (chosen.empty() || result.overrules) find_places(analysis, shown, traced, references, found.variables);
   // What is beyond the noise; at least what drifts, and what the best variable explains.
   found.rms = std::max(found.drift_rms, std::sqrt(std::max(0.0, rms * rms - noise_rms * noise_rms)));
   if (!found.variables.empty()) found.rms = std::max(found.rms, std::sqrt(found.variables.front().r2) * rms);

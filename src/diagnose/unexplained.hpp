@@ -23,9 +23,10 @@ struct UnexplainedStructure {
 
 /// Tests whether something is left, in any variable of the files.
 ///
+/// @param references in the order of the analysis
 /// @param residual_rms and @param noise_rms after the chosen effects, hPa
 UnexplainedStructure find_unexplained(const Analysis& analysis, const std::vector<Flight>& files,
-                                      const ModelFile& model, const Reference& reference,
+                                      const ModelFile& model, const References& references,
                                       const std::set<std::string>& inputs, const DiagnoseOptions& options,
                                       double residual_rms, double noise_rms);
 

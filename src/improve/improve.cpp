@@ -101,6 +101,7 @@ Candidate candidate_of(const TracedVariable& variable, const std::string& flight
   effect.parameter_names = {"k"};
   effect.parameters = {variable.slope};
   effect.formula = variable.formula;
+  effect.where = variable.where;
   effect.unit = "hPa";
   effect.source = fmt::format("traced in the residuals of {}: {:.0f} % of their variance, p = {:.2g}",
                               flights, 100.0 * variable.r2, variable.p_value);

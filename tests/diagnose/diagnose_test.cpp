@@ -376,6 +376,27 @@ TEST(Diagnose, HoldsALineAgainstEffectsByAllReferences) {
   EXPECT_THAT(diagnosis.notes, testing::Contains(HasSubstr("a line in ENGTRQ explains more")));
 }
 
+// What goes with the engines acts at the static ports, or in the total line, of which the total pressures
+// know.
+TEST(Diagnose, TellsByTotalPressuresWhereWhatItTracesActs) {
+  for (const bool total : {false, true}) {
+    std::string torque = engine_torque;
+    if (total) torque.replace(torque.find("static"), 6, "total");
+    const Diagnosis diagnosis =
+        pcor::diagnose({flight("c130-eq18", 343, torque)}, model(),
+                       {pcor::lams_reference(), pcor::read_reference("total:PSFRD+QCFR", model())});
+    const auto& variables = diagnosis.unexplained.variables;
+    const auto found = std::find_if(variables.begin(), variables.end(),
+                                    [](const auto& variable) { return variable.name == "ENGTRQ"; });
+    ASSERT_NE(found, variables.end()) << total;
+    const pcor::TracedVariable& traced = *found;
+    EXPECT_EQ(traced.where, total ? pcor::Where::pitot : pcor::Where::static_defect);
+    EXPECT_THAT(traced.places, testing::Contains(total ? "pitot" : "port"));
+    EXPECT_THAT(traced.places, testing::Not(testing::Contains(total ? "port" : "pitot")));
+    EXPECT_THAT(places_text(traced), HasSubstr(total ? "differ with it, too" : "do not differ with it"));
+  }
+}
+
 // The simulated avionics low-pass their pressures; the second pair does not.
 TEST(Diagnose, TellsWhichOfTwoOtherSystemsAnEffectIsOf) {
   const Diagnosis diagnosis =

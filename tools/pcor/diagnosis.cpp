@@ -102,6 +102,7 @@ Json variable_as_json(const TracedVariable& variable) {
           {"slope_stderr", variable.slope_error},
           {"centre", variable.centre},
           {"formula", variable.formula},
+          {"places", variable.places},
           {"sampling", variable.sampling}};
 }
 
@@ -198,12 +199,8 @@ void print_unexplained(const Unexplained& unexplained) {
                variable.description);
   }
   if (!unexplained.variables.empty()) {
-    fmt::print(
-        "where it acts is not known{}\n",
-        unexplained.variables.front().formula.empty()
-            ? ""
-            : ": the formula is written as added to the static pressure, which describes it as well as any "
-              "other place");
+    const TracedVariable& first = unexplained.variables.front();
+    fmt::print("{}\n", places_text(first));
   }
   for (const FlightStep& step : unexplained.steps) {
     fmt::print("{} lies {:.3f} +- {:.3f} hPa {} the rest of the flights (p {})\n", step.flight,

@@ -181,10 +181,10 @@ std::function<void()> add_improve(CLI::App& program) {
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
   add_candidate_options(*command, options->candidates);
-  command->add_flag(
-      "--trace-variables", options->trace_variables,
-      "where no effect of the catalogue explains what is left, add a formula, at the static ports, of the "
-      "variable that correlates with it");
+  command->add_flag("--trace-variables", options->trace_variables,
+                    "where no effect of the catalogue explains what is left, add a formula, at the static "
+                    "ports unless total pressures have it too, of the "
+                    "variable that correlates with it");
   command
       ->add_option("--loss", options->loss,
                    "loss function of the fits, which limits the weight of outliers; none: least squares")

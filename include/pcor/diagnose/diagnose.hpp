@@ -177,7 +177,14 @@ struct TracedVariable {
   double centre = 0.0;     ///< mean of the variable over the samples used
   std::string formula{};   ///< of an effect that would describe it, e.g. "k * (ENGTRQ - 48)"
   std::string sampling{};  ///< how it was brought to one value a record, in words; empty where it has one
+  /// Where what goes with it may act, as far as references that do not see the static ports tell it: e.g.
+  /// "port", "laser"; empty where they do not.
+  std::vector<std::string> places{};
+  Where where = Where::static_defect;  ///< of the formula: at the pitot where the total pressures have it too
 };
+
+/// What is known of where the cause of a traced variable acts, a clause without its full stop.
+std::string places_text(const TracedVariable& variable);
 
 /// A flight whose residual lies above or below those of the others.
 struct FlightStep {

@@ -17,8 +17,9 @@ struct ImproveOptions {
   RefitOptions refit;
   std::vector<ModelEffect> formulas{};  ///< tried beside the catalogue
   /// Where no effect of the catalogue explains what is left, but a variable of the files does: add a formula
-  /// of that variable at the static ports. Not asked for, it is left to the user: what goes with a variable
-  /// may have its cause in the laser or a thermometer, and then the corrected pressure would get worse.
+  /// of that variable, at the static ports unless the total pressures have it too. Not asked for, it is left
+  /// to the user: what goes with a variable may have its cause in the laser or a thermometer, and then the
+  /// corrected pressure would get worse.
   bool trace_variables = false;
   std::size_t most_steps = 8;
   std::function<void(const std::string& what)> progress{};

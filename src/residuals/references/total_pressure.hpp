@@ -41,6 +41,7 @@ class TotalPressureReference final : public SecondSystem {
   }
   std::string name() const override { return "total:" + system().model.name; }
   bool is_static_pressure() const override { return false; }
+  bool sees_static_defect() const override { return false; }
 
   std::shared_ptr<const Reference> with_model(const ModelFile& system) const override {
     return std::make_shared<TotalPressureReference>(std::move(system));
