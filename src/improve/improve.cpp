@@ -288,7 +288,8 @@ class Climb {
   std::string why_worse(const Comparison& whole) const {
     constexpr double much = 1.02;
     const double growth = whole.rms_after / whole.rms_before;
-    if (!(growth > much) && !(growth > 1.0 && whole.is_worse())) return "";
+    const double allowed = loop_.has_holdout ? 1.0 : fit_limit;
+    if (!(growth > much) && !(growth > allowed && whole.is_worse())) return "";
     return fmt::format(
         "{} the rms of the best model is {:.4f} times that of the model as it was given (its squared "
         "residuals are larger by {:.0f} +- {:.0f} in units of the noise)",
