@@ -246,11 +246,13 @@ void find_places(const Analysis& analysis, const Tested& tested, const std::vect
     if (total.freedom == 0.0) continue;
     const double error = std::sqrt(total.covariance(0, 0));
     if (std::abs(total.estimate[0]) > seen * error) {
-      variable.places = {"pitot", "p-transducer", "q-transducer", "other-system"};
+      variable.places = {"pitot", "p-transducer", "q-transducer"};
+      if (!references.front()->reads_laser()) variable.places.emplace_back("other-system");
       variable.where = Where::pitot;
     } else if (std::abs(variable.slope) > would_be_seen * error) {
       variable.places = {"port", references.front()->reads_laser() ? "laser" : "other-system"};
       if (references.front()->reads_laser()) variable.places.emplace_back("thermometer");
+      variable.places.emplace_back("pitot");  // of both systems alike
     }
   }
 }

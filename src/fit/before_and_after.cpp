@@ -35,7 +35,7 @@ Compared compared(const Residuals& residuals, const FitTask& task, const Eigen::
     result.parts.push_back({samples.name, held, sums_of_flight(samples, was, noise).statistics(),
                             sums_of_flight(samples, is, noise).statistics()});
     result.parts.back().reference = task.reference.name();
-    const Gain gain = gain_between(samples, was, is, noise);
+    const Gain gain = gain_between(samples, was, is, noise, task.reference.window());
     result.parts.back().gain = gain.value;
     result.parts.back().gain_error = gain.error;
     const std::vector<double> means = means_of_blocks(samples, is);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 
 #include "numerics/missing.hpp"
 #include "numerics/spikes.hpp"
@@ -16,12 +17,49 @@ std::size_t shared_parameters(const Residuals& residuals, const FitTask& task) {
   return task.shares_system ? residuals.parameters().size() : of_model;
 }
 
+namespace {
+
+/// A coefficient of the reference's model that is one of the model's own: their places among the parameters.
+struct Tie {
+  std::size_t own;
+  std::size_t other;
+};
+
+/// Where the coefficients of an effect begin among those of a model's effects; nothing where it has none.
+std::optional<std::size_t> place_of(const ModelFile& model, const std::string& effect) {
+  std::size_t place = 0;
+  for (const ModelEffect& each : model.model.effects) {
+    if (each.id == effect) return place;
+    place += each.parameters.size();
+  }
+  return std::nullopt;
+}
+
+std::vector<Tie> ties_of(const FitTask& task) {
+  std::vector<Tie> ties;
+  const ModelFile* const other = task.reference.model();
+  if (other == nullptr) return ties;
+  std::size_t of_model = task.model.model.additions.size();
+  for (const ModelEffect& effect : task.model.model.effects) of_model += effect.parameters.size();
+  for (const std::string& effect : task.options.alike) {
+    const auto mine = place_of(task.model, effect);
+    const auto theirs = place_of(*other, effect);
+    if (!mine || !theirs) continue;
+    for (std::size_t i = 0; i < neutral_effect(effect).parameters.size(); ++i)
+      ties.push_back({*mine + i, of_model + *theirs + i});
+  }
+  return ties;
+}
+
+}  // namespace
+
 Eigen::VectorXd own_parameters(const Residuals& residuals, const FitTask& task,
                                const Eigen::VectorXd& parameters) {
   const std::vector<double>& file = residuals.parameters();
   Eigen::VectorXd own = Eigen::Map<const Eigen::VectorXd>(file.data(), as_index(file.size()));
   const Eigen::Index shared = as_index(shared_parameters(residuals, task));
   own.head(shared) = parameters.head(shared);
+  for (const Tie& tie : ties_of(task)) own[as_index(tie.other)] = own[as_index(tie.own)];
   return own;
 }
 
@@ -139,6 +177,20 @@ void FitFlight::evaluate(const Residuals& residuals, std::size_t first, std::siz
     } else {
       std::fill_n(column, count, 0.0);
     }
+  }
+  if (wanted.empty()) return;
+  // A coefficient that the other system shares changes the residual there, too.
+  std::vector<double> through_other(count);
+  for (const Tie& tie : ties_of(*task_)) {
+    const auto place = std::find(wanted.begin(), wanted.end(), tie.own);
+    if (place == wanted.end()) continue;
+    if (linear_) {
+      residuals.evaluate(samples, count, own.data(), {tie.other}, residual, through_other.data());
+    } else {
+      residuals.evaluate_at_sensor(samples, count, own.data(), {tie.other}, residual, through_other.data());
+    }
+    double* const column = derivatives + static_cast<std::size_t>(place - wanted.begin()) * count;
+    for (std::size_t i = 0; i < count; ++i) column[i] += through_other[i];
   }
 }
 

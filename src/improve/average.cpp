@@ -97,7 +97,7 @@ double mean_product(const std::vector<double>& a, const std::vector<double>& b) 
 ModelFile averaged(const ModelFile& best, const std::vector<Mixture>& mixtures) {
   std::vector<ModelFile> all{best};
   for (const Mixture& mixture : mixtures) {
-    for (const WeighedModel& each : mixture) all.push_back(each.model);
+    for (const WeighedModel& each : mixture.rivals) all.push_back(each.model);
   }
   ModelFile whole = union_of(all);
   const std::vector<std::string> names = names_of(whole);
@@ -106,14 +106,16 @@ ModelFile averaged(const ModelFile& best, const std::vector<Mixture>& mixtures) 
   Eigen::VectorXd values = start;
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
   for (const Mixture& mixture : mixtures) {
-    Eigen::VectorXd mean = Eigen::VectorXd::Zero(size);
-    for (const WeighedModel& each : mixture) mean += each.weight * values_in(each.model, whole);
-    for (const WeighedModel& each : mixture) {
-      const Eigen::VectorXd off = values_in(each.model, whole) - mean;
+    const Eigen::VectorXd without = mixture.share < 1.0 ? values_in(mixture.without, whole) : start;
+    Eigen::VectorXd delivered = (1.0 - mixture.share) * without;
+    for (const WeighedModel& each : mixture.rivals)
+      delivered += mixture.share * each.weight * values_in(each.model, whole);
+    for (const WeighedModel& each : mixture.rivals) {
+      const Eigen::VectorXd off = values_in(each.model, whole) - delivered;
       covariance += each.weight * (off * off.transpose() +
                                    covariance_in(each.model, names) / static_cast<double>(mixtures.size()));
     }
-    values += mean - start;
+    values += delivered - start;
   }
   set(whole, values, covariance);
   for (std::size_t e = 0; e < whole.model.effects.size(); ++e) {

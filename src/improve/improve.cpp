@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <utility>
 
 #include <pcor/flight/flight.hpp>
@@ -157,12 +156,21 @@ std::string coefficients_of(const RefitResult& fit, const std::string& effect) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
+bool names_other_system(const Alias& alias) { return alias.effect.rfind("reference:", 0) == 0; }
+
+/// A finding of which an effect of the other system is the cause, and none of the own one.
+bool is_of_reference(const Finding& finding) {
+  return finding.of_reference &&
+         std::none_of(finding.aliases.begin(), finding.aliases.end(), [](const Alias& alias) {
+           return alias.probability >= least_probability && !names_other_system(alias);
+         });
+}
+
 /// A finding of which an effect of the other system may be the cause: then nothing of the model is.
 bool may_be_of_reference(const Finding& finding) {
-  constexpr std::string_view prefix = "reference:";
   return finding.of_reference ||
-         std::any_of(finding.aliases.begin(), finding.aliases.end(), [prefix](const Alias& alias) {
-           return alias.probability >= least_probability && alias.effect.rfind(prefix, 0) == 0;
+         std::any_of(finding.aliases.begin(), finding.aliases.end(), [](const Alias& alias) {
+           return alias.probability >= least_probability && names_other_system(alias);
          });
 }
 
@@ -213,14 +221,15 @@ class Climb {
     for (std::size_t rung = 0; rung < rungs_.size(); ++rung) {
       if (rungs_[rung].size() < 2) continue;
       Mixture mixture = mixture_of(rung, result_.steps[rung + 1]);
-      if (!mixture.empty()) mixtures.push_back(std::move(mixture));
+      if (!mixture.rivals.empty()) mixtures.push_back(std::move(mixture));
     }
     if (mixtures.empty()) return;
     result_.model = averaged(result_.fit.model, mixtures);
     ProvenanceList rivals;
     for (const ImproveStep& step : result_.steps) {
       for (const RungRival& rival : step.rivals)
-        rivals.emplace_back(fmt::format("{} for {}: {:.3f}", rival.effect, step.added, rival.probability));
+        rivals.emplace_back(fmt::format("{} for {}: probability {:.3f}, {:.0f} % of the average applied",
+                                        rival.effect, step.added, rival.probability, 100.0 * step.share));
     }
     result_.model.provenance.emplace_back("averaged_over", ProvenanceValue{std::move(rivals)});
   }
@@ -228,22 +237,27 @@ class Climb {
   /// The models that the rivals of a rung make, and that without any of them; none where it does not matter
   /// which of the rivals is there.
   Mixture mixture_of(std::size_t rung, ImproveStep& step) const {
+    Mixture mixture;
     std::vector<std::size_t> choice(rungs_.size(), 0);
-    std::vector<TrialModel> models{model_with(choice, rung), top()};
-    std::vector<std::string> names{rungs_[rung].front().added.effect.id};
-    std::vector<double> weights{rungs_[rung].front().probability};
-    for (std::size_t k = 1; k < rungs_[rung].size(); ++k) {
+    std::vector<TrialModel> models;
+    std::vector<std::string> names;
+    for (std::size_t k = 0; k < rungs_[rung].size(); ++k) {
       choice[rung] = k;
       try {
-        models.push_back(model_with(choice, rungs_.size()));
+        if (k == 0) models.push_back(model_with(choice, rung));
+        models.push_back(k == 0 ? top() : model_with(choice, rungs_.size()));
       } catch (const Error&) {
+        if (k == 0) return {};
         continue;  // what cannot be fitted here is no rival
       }
       names.push_back(rungs_[rung][k].added.effect.id);
-      weights.push_back(rungs_[rung][k].probability);
+      mixture.rivals.push_back({models.back().file, rungs_[rung][k].probability});
     }
-    const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
-    for (double& weight : weights) weight /= sum;
+    mixture.without = models.front().file;
+    double sum = 0.0;
+    for (const WeighedModel& rival : mixture.rivals) sum += rival.weight;
+    std::vector<double> weights;
+    for (WeighedModel& rival : mixture.rivals) weights.push_back(rival.weight /= sum);
     const std::vector<TrialFlight> tried = loop_.try_models(models);
     const std::vector<double> without = static_pressures_of(tried, 0);
     std::vector<std::vector<double>> changes;
@@ -254,13 +268,11 @@ class Climb {
     const double matters = negligible * step.noise_rms;
     const double spread = spread_of(changes, weights);
     if (!(spread > matters)) return {};
+    mixture.share = harmless_share(changes, weights, matters);
     step.spread = spread;
-    step.share = harmless_share(changes, weights, matters);
-    Mixture mixture{{std::move(models.front().file), 1.0 - step.share}};
-    for (std::size_t k = 0; k < weights.size(); ++k) {
+    step.share = mixture.share;
+    for (std::size_t k = 0; k < weights.size(); ++k)
       step.rivals.push_back({names[k], weights[k], rms_of(changes[k])});
-      mixture.push_back({std::move(models[k + 1].file), step.share * weights[k]});
-    }
     return mixture;
   }
 
@@ -269,6 +281,7 @@ class Climb {
     std::vector<TrialFlight> tried = loop_.try_models({given_, {refitted_}, {result_.model, alike_}, top()});
     const Comparison train = comparison_of(tried, 0, 2, false);
     const Comparison holdout = comparison_of(tried, 0, 2, true);
+    if (result_.model.law.rms_hpa) result_.model.law.rms_hpa = train.rms_after;
     result_.given_rms_train = train.rms_before;
     result_.rms_train = train.rms_after;
     result_.given_rms_holdout = holdout.rms_before;
@@ -280,7 +293,8 @@ class Climb {
       std::vector<std::size_t> used = flight.fitted;
       used.insert(used.end(), flight.held_out.begin(), flight.held_out.end());
       const auto shown = [&](std::size_t model) { return only_at(flight.residuals[model], used); };
-      result_.flights.push_back({flight.samples, !flight.held_out.empty(), shown(0), shown(1), shown(2)});
+      result_.flights.push_back(
+          {flight.samples, flight.fitted.empty() || !flight.held_out.empty(), shown(0), shown(1), shown(2)});
     }
   }
 
@@ -288,8 +302,7 @@ class Climb {
   std::string why_worse(const Comparison& whole) const {
     constexpr double much = 1.02;
     const double growth = whole.rms_after / whole.rms_before;
-    const double allowed = loop_.has_holdout ? 1.0 : fit_limit;
-    if (!(growth > much) && !(growth > allowed && whole.is_worse())) return "";
+    if (!(growth > much) && !(growth > fit_limit && whole.is_worse())) return "";
     return fmt::format(
         "{} the rms of the best model is {:.4f} times that of the model as it was given (its squared "
         "residuals are larger by {:.0f} +- {:.0f} in units of the noise)",
@@ -371,7 +384,7 @@ class Climb {
         return fmt::format(
             "{} {} of the system that the model is held against, and nothing of the model is to be changed "
             "for it{}{}",
-            finding.id(), finding.of_reference ? "is" : "may be an error",
+            finding.id(), is_of_reference(finding) ? "is" : "may be an error",
             finding.advice.sentence.empty() ? "" : "; ", finding.advice.sentence);
       }
       if (is_a_gamble(finding, now)) {
@@ -449,7 +462,7 @@ class Climb {
   }
 
   /// The figures of a rung. Without samples that are held out those of a diagnosis stand for them.
-  void measure(ImproveStep& step, const RefitResult& fit, const std::vector<ModelEffect>& alike) const {
+  void measure(ImproveStep& step, const RefitResult& fit, const std::vector<std::string>& alike) const {
     step.rms_train = fit.rms;
     step.noise_rms = fit.noise_rms;
     step.terms = static_cast<std::size_t>(
@@ -464,7 +477,7 @@ class Climb {
   }
 
   /// A rung that was measured is part of the ladder, with what is still missing there.
-  void take(ImproveStep step, RefitResult fit, std::vector<Choice> choices, std::vector<ModelEffect> alike) {
+  void take(ImproveStep step, RefitResult fit, std::vector<Choice> choices, std::vector<std::string> alike) {
     if (result_.steps.empty())
       refitted_ = fit.model;
     else
@@ -485,7 +498,7 @@ class Climb {
   Improvement result_;
   TrialModel given_;
   ModelFile refitted_;
-  std::vector<ModelEffect> alike_{};          // of the model at the top of the ladder
+  std::vector<std::string> alike_{};          // effects of the model at the top of the ladder
   std::vector<std::vector<Choice>> rungs_{};  // what may be each effect that was added, itself first
 };
 
@@ -551,6 +564,10 @@ Improvement improve(const std::vector<std::filesystem::path>& flights, const Mod
     return file.model.effects.size() == model.model.effects.size() ? std::string("the model as it is")
                                                                    : file.model.effects.back().id;
   };
+  // Those that tell of each sample come first, as in the diagnosis: figures are of the first.
+  References ordered = references;
+  std::stable_partition(ordered.begin(), ordered.end(),
+                        [](const auto& reference) { return reference->is_of_one_sample(); });
   DiagnoseOptions diagnose_with;
   diagnose_with.mask = options.refit.mask;
   diagnose_with.time_stamp = options.refit.time_stamp;
@@ -562,7 +579,9 @@ Improvement improve(const std::vector<std::filesystem::path>& flights, const Mod
   ImproveLoop loop;
   loop.refit = [&](const TrialModel& trial) {
     tell("fitting with " + last_of(trial.file));
-    return refit(flights, trial.file, with_alike(references, trial.alike, variables), options.refit);
+    RefitOptions refit_with = options.refit;
+    refit_with.alike = trial.alike;
+    return refit(flights, trial.file, with_alike(ordered, trial, variables), refit_with);
   };
   loop.diagnose = [&](const TrialModel& trial) {
     tell("looking for what is missing beside " + last_of(trial.file));
@@ -571,8 +590,7 @@ Improvement improve(const std::vector<std::filesystem::path>& flights, const Mod
       const auto before = found.find(effect.id);
       if (before != found.end()) diagnose_with.explained += before->second;
     }
-    Diagnosis diagnosis =
-        diagnose(flights, trial.file, with_alike(references, trial.alike, variables), diagnose_with);
+    Diagnosis diagnosis = diagnose(flights, trial.file, with_alike(ordered, trial, variables), diagnose_with);
     for (const Finding& finding : diagnosis.findings) {
       if (!finding.of_reference) found.insert_or_assign(finding.effect.id, finding.chi2);
     }
@@ -581,11 +599,11 @@ Improvement improve(const std::vector<std::filesystem::path>& flights, const Mod
   loop.add = [&](const TrialModel& trial, const AddedEffect& added) {
     TrialModel extended{with_effects(trial.file, {added.effect}, variables), trial.alike};
     hold(extended.file, added.held);
-    if (added.is_alike) extended.alike.push_back(added.effect);
+    if (added.is_alike) extended.alike.push_back(added.effect.id);
     return extended;
   };
   loop.try_models = [&](const std::vector<TrialModel>& models) {
-    return try_models(flights, models, references, options.refit, variables);
+    return try_models(flights, models, ordered, options.refit, variables);
   };
   loop.has_holdout = !options.refit.holdout.empty() || options.refit.training_share < 1.0;
   loop.trace_variables = options.trace_variables;

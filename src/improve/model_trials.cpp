@@ -33,6 +33,21 @@ std::vector<double> neutral_of(const ModelEffect& effect) {
   return parameters;
 }
 
+/// Another system's model with the effects that are alike, with the coefficients that the model has.
+ModelFile with_what_is_alike(ModelFile other, const TrialModel& model,
+                             const std::vector<std::string>& variables) {
+  for (const std::string& effect : model.alike) {
+    const ModelEffect& own = model.file.model.effects[place_of(model.file, effect)];
+    const std::size_t place = place_of(other, effect);
+    if (place < other.model.effects.size()) {
+      other.model.effects[place].parameters = own.parameters;
+    } else {
+      other = with_effects(other, {own}, variables);
+    }
+  }
+  return other;
+}
+
 /// A reference that has the effects of all trials, and of each trial all coefficients that the residual has.
 struct TrialReference {
   std::shared_ptr<const Reference> reference;
@@ -89,14 +104,14 @@ std::vector<double> coefficients_in(const ModelFile& model, const ModelFile& who
   return coefficients;
 }
 
-References with_alike(const References& references, const std::vector<ModelEffect>& alike,
+References with_alike(const References& references, const TrialModel& model,
                       const std::vector<std::string>& variables) {
-  if (alike.empty()) return references;
+  if (model.alike.empty()) return references;
   References result;
   for (const std::shared_ptr<const Reference>& reference : references) {
-    const ModelFile* const model = reference->model();
-    result.push_back(model == nullptr ? reference
-                                      : reference->with_model(with_effects(*model, alike, variables)));
+    const ModelFile* const other = reference->model();
+    result.push_back(other == nullptr ? reference
+                                      : reference->with_model(with_what_is_alike(*other, model, variables)));
   }
   return result;
 }
@@ -114,7 +129,7 @@ std::vector<TrialFlight> try_models(const std::vector<std::filesystem::path>& fl
     if (reference->model() != nullptr) {
       std::vector<ModelFile> others;
       for (const TrialModel& model : models)
-        others.push_back(with_effects(*reference->model(), model.alike, variables));
+        others.push_back(with_what_is_alike(*reference->model(), model, variables));
       const ModelFile whole_other = union_of(others);
       trial.reference = reference->with_model(whole_other);
       for (std::size_t m = 0; m < models.size(); ++m) {
@@ -126,6 +141,7 @@ std::vector<TrialFlight> try_models(const std::vector<std::filesystem::path>& fl
       for (const std::filesystem::path& path : paths) {
         tried.push_back(tried_on(path, whole, trial, options, held_out));
         tried.back().first_reference = reference == references.front();
+        tried.back().window = reference->window();
       }
     };
     add(flights, false);
@@ -134,7 +150,9 @@ std::vector<TrialFlight> try_models(const std::vector<std::filesystem::path>& fl
   return tried;
 }
 
-bool Comparison::is_better() const { return gain > surely * gain_error; }
+bool Comparison::is_better() const {
+  return gain > surely * gain_error || (!is_worse() && first_gain > surely * first_gain_error);
+}
 bool Comparison::is_worse() const { return gain < -surely * gain_error; }
 
 Comparison comparison_of(const std::vector<TrialFlight>& flights, std::size_t before, std::size_t after,
@@ -144,15 +162,19 @@ Comparison comparison_of(const std::vector<TrialFlight>& flights, std::size_t be
   double squares_after = 0.0;
   double samples = 0.0;
   double variance = 0.0;
+  double first_variance = 0.0;
   for (const TrialFlight& flight : flights) {
     const std::vector<std::size_t>& part = held_out ? flight.held_out : flight.fitted;
     if (part.empty()) continue;
     const std::vector<double> was = only_at(flight.residuals[before], part);
     const std::vector<double> is = only_at(flight.residuals[after], part);
-    const Gain gain = gain_between(*flight.samples, was, is, noise_of_flight(*flight.samples, is));
+    const Gain gain =
+        gain_between(*flight.samples, was, is, noise_of_flight(*flight.samples, is), flight.window);
     result.gain += gain.value;
     variance += gain.error * gain.error;
     if (!flight.first_reference) continue;
+    result.first_gain += gain.value;
+    first_variance += gain.error * gain.error;
     for (const std::size_t i : part) {
       if (std::isnan(was[i]) || std::isnan(is[i])) continue;
       squares_before += was[i] * was[i];
@@ -161,6 +183,7 @@ Comparison comparison_of(const std::vector<TrialFlight>& flights, std::size_t be
     }
   }
   result.gain_error = std::sqrt(variance);
+  result.first_gain_error = std::sqrt(first_variance);
   result.rms_before = samples > 0.0 ? std::sqrt(squares_before / samples) : nan;
   result.rms_after = samples > 0.0 ? std::sqrt(squares_after / samples) : nan;
   return result;

@@ -13,18 +13,19 @@ namespace pcor::internal {
 /// which all pitot tubes lose pressure is no difference between them.
 struct TrialModel {
   ModelFile file;
-  std::vector<ModelEffect> alike{};  ///< with their coefficients
+  std::vector<std::string> alike{};  ///< names of effects of the model
 };
 
-/// The references, those with a model of their own with these effects besides. @param variables of the
-/// flights
-References with_alike(const References& references, const std::vector<ModelEffect>& alike,
+/// The references, those with a model of their own with what is alike as the model has it.
+/// @param variables of the flights
+References with_alike(const References& references, const TrialModel& model,
                       const std::vector<std::string>& variables);
 
 /// What several models leave on one flight with one reference.
 struct TrialFlight {
   std::shared_ptr<const FlightSamples> samples{};
   bool first_reference = true;
+  double window = 0.0;                  ///< s, over which a residual holds together, as `Reference::window`
   std::vector<std::size_t> fitted{};    ///< places of the samples that a fit uses
   std::vector<std::size_t> held_out{};  ///< those that it would use were they not held out
   /// Of each model, of all samples, hPa; NaN where a value is missing.
@@ -54,9 +55,13 @@ struct Comparison {
   /// differs between minutes.
   double gain = 0.0;
   double gain_error = 0.0;
+  double first_gain = 0.0;  ///< with the first reference alone
+  double first_gain_error = 0.0;
 
-  bool is_better() const;  ///< by more than chance
-  bool is_worse() const;   ///< by more than chance
+  /// By more than chance, with all references, or with the first one while all together do not surely object:
+  /// what systems have alike is hardly seen where they are compared with each other.
+  bool is_better() const;
+  bool is_worse() const;  ///< by more than chance, with all references
 };
 
 /// Model number `after` beside model number `before`, on samples that were held out or that were fitted.

@@ -78,18 +78,20 @@ ResidualSums flaps_out(const Residuals& residuals, const double* parameters) {
 }
 
 Gain gain_between(const FlightSamples& samples, const std::vector<double>& before,
-                  const std::vector<double>& after, const NoiseFloor& noise) {
-  constexpr double minute = 60.0;  // s
+                  const std::vector<double>& after, const NoiseFloor& noise, double window) {
+  const double stretch = std::max(60.0, 2.0 * window);  // s
+  const double weight = window > samples.step ? samples.step / window : 1.0;
   Gain sum;
   double squares = 0.0;
   for (std::size_t i = 0; i < after.size();) {
-    const double end = samples.time[i] + minute;
+    const double end = samples.time[i] + stretch;
     double gain = 0.0;
     for (; i < after.size() && samples.time[i] < end; ++i) {
       const double deviation = noise.local_rms[i];
       if (!std::isnan(after[i]) && !std::isnan(before[i]) && deviation > 0.0)
         gain += (before[i] * before[i] - after[i] * after[i]) / (deviation * deviation);
     }
+    gain *= weight;
     sum.value += gain;
     squares += gain * gain;
   }

@@ -40,15 +40,16 @@ ResidualSums sums_of_flight(const FlightSamples& samples, const std::vector<doub
 ResidualSums flaps_out(const Residuals& residuals, const double* parameters);
 
 /// By how much squared residuals fall, in units of the noise, and its error from how that differs between
-/// minutes.
+/// minutes, or longer stretches that are independent.
 struct Gain {
   double value = 0.0;
   double error = 0.0;
 };
 
 /// From residuals `before` to residuals `after`, both of all samples; NaN where they do not count.
+/// @param window over which a residual holds together, s: the samples within count as one; 0 for one sample
 Gain gain_between(const FlightSamples& samples, const std::vector<double>& before,
-                  const std::vector<double>& after, const NoiseFloor& noise);
+                  const std::vector<double>& after, const NoiseFloor& noise, double window = 0.0);
 
 /// The means of a residual over every five minutes, of which at least half count.
 std::vector<double> means_of_blocks(const FlightSamples& samples, const std::vector<double>& residual);

@@ -50,7 +50,7 @@ double rms_off(const Series& a, double share, const Series& mean) {
 TEST(Averaged, HasTheMomentsOfTheMixture) {
   const ModelFile one = model(0.004, 0.0002, "static-mach", 0.01, 0.001);
   const ModelFile other = model(0.006, 0.0001, "static-beta-odd", -0.02, 0.003);
-  const ModelFile mean = averaged(one, {{{one, 0.7}, {other, 0.3}}});
+  const ModelFile mean = averaged(one, {{{{one, 0.7}, {other, 0.3}}}});
   ASSERT_EQ(mean.model.effects.size(), 3U);
   // What the models say of delta-p where the three effects are `weights` of their coefficients.
   const std::vector<double> weights{1.0, 0.35, 0.1};
@@ -69,9 +69,22 @@ TEST(Averaged, HasTheMomentsOfTheMixture) {
   EXPECT_TRUE(mean.fit(2, 0).fixed);
 }
 
+TEST(Averaged, KnowsOfWhatIsNotApplied) {
+  const ModelFile one = model(0.004, 0.0, "static-mach", 0.01, 0.0);
+  const ModelFile other = model(0.004, 0.0, "static-mach", -0.006, 0.0);
+  ModelFile without = model(0.004, 0.0, "static-mach", 0.0, 0.0);
+  for (const double share : {0.0, 0.4, 1.0}) {
+    const ModelFile mean = averaged(one, {{{{one, 0.75}, {other, 0.25}}, without, share}});
+    const double delivered = share * (0.75 * 0.01 - 0.25 * 0.006);
+    EXPECT_NEAR(mean.model.effects[1].parameters[0], delivered, 1e-15) << share;
+    const double square = 0.75 * std::pow(0.01 - delivered, 2) + 0.25 * std::pow(-0.006 - delivered, 2);
+    EXPECT_NEAR(*mean.fit(1, 0).standard_error, std::sqrt(square), 1e-12) << share;
+  }
+}
+
 TEST(Averaged, OfOneModelIsThatModel) {
   const ModelFile one = model(0.004, 0.0002, "static-mach", 0.01, 0.001);
-  const ModelFile same = averaged(one, {{{one, 1.0}}});
+  const ModelFile same = averaged(one, {{{{one, 1.0}}}});
   EXPECT_EQ(same.model.effects[1].parameters, one.model.effects[1].parameters);
   EXPECT_NEAR(*same.fit(1, 0).standard_error, 0.001, 1e-15);
   EXPECT_FALSE(same.fit(1, 0).fixed);
@@ -85,7 +98,7 @@ TEST(Averaged, IndependentMixturesAddTheirDifferences) {
   ModelFile without_beta = best;
   without_beta.model.effects[2].parameters = {0.0};
   const ModelFile mean =
-      averaged(best, {{{best, 0.75}, {without_mach, 0.25}}, {{best, 0.5}, {without_beta, 0.5}}});
+      averaged(best, {{{{best, 0.75}, {without_mach, 0.25}}}, {{{best, 0.5}, {without_beta, 0.5}}}});
   EXPECT_NEAR(mean.model.effects[0].parameters[0], 0.004, 1e-15);
   EXPECT_NEAR(mean.model.effects[1].parameters[0], 0.0075, 1e-15);
   EXPECT_NEAR(mean.model.effects[2].parameters[0], 0.015, 1e-15);

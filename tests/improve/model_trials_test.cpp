@@ -96,6 +96,19 @@ TEST(Trials, TheTruthIsBetterAndTheRestWorseByTheSame) {
   EXPECT_TRUE(comparison_of(flights, 0, 1, false).is_worse());
 }
 
+TEST(Trials, TheFirstReferenceIsHeardWhereTheOthersAddNoiseAlone) {
+  Comparison comparison;
+  comparison.gain = 97.0;
+  comparison.gain_error = 141.0;
+  EXPECT_FALSE(comparison.is_better() || comparison.is_worse());
+  comparison.first_gain = 60.0;
+  comparison.first_gain_error = 12.0;
+  EXPECT_TRUE(comparison.is_better());
+  comparison.gain = -400.0;
+  EXPECT_TRUE(comparison.is_worse());
+  EXPECT_FALSE(comparison.is_better());
+}
+
 TEST(Trials, PartsAreFittedOrHeldOut) {
   pcor::RefitOptions options;
   options.training_share = 0.6;
@@ -127,7 +140,7 @@ TEST(Trials, WhatBothSystemsHaveAlikeIsNoDifferenceOfTheirTotalPressures) {
   const pcor::References total{
       pcor::total_pressure_reference(pcor::read_model(data / "models" / "c130-psfrd-eq18.toml"))};
   const ModelFile own = pcor::with_effects(law(), {loss});
-  const std::vector<TrialFlight> flights = tried({{law()}, {own}, {own, {loss}}}, total);
+  const std::vector<TrialFlight> flights = tried({{law()}, {own}, {own, {loss.id}}}, total);
   const TrialFlight& only = flights.front();
   const double alone = rms_between(only.residuals[0], only.residuals[1], only.fitted);
   const double alike = rms_between(only.residuals[0], only.residuals[2], only.fitted);

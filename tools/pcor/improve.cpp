@@ -111,7 +111,8 @@ void print(const Improvement& improvement, const ChosenReferences& references, c
   fmt::print("\n");
   for (const ImproveStep& step : improvement.steps) {
     fmt::print("{}\n", step.learnt);
-    if (const std::string text = rivals_text(step); !text.empty()) fmt::print("  {}\n", text);
+    if (const std::string text = rivals_text(step); !text.empty())
+      fmt::print("  the coefficients above are as if it alone were there; {}\n", text);
   }
   fmt::print("stopped: {}\n", improvement.why_stopped);
   print_unexplained(improvement.steps.back().diagnosis.unexplained);

@@ -35,6 +35,9 @@ struct RefitOptions {
   bool drift = true;
   /// The model of a static system that is the reference is fitted together with the model.
   bool fit_reference = false;
+  /// Effects that the references' models have alike: their coefficients there are those of the model. Of such
+  /// an effect total pressures know nothing but how much the two dynamic pressures differ.
+  std::vector<std::string> alike{};
   /// Every coefficient is drawn to its starting value, as if that were measured: with the covariance that its
   /// file states, else to within the typical size of its effect. Always so where the reference is fitted too:
   /// two static systems tell only their difference, and what they have in common keeps its value, and the

@@ -42,7 +42,7 @@ class StaticSystemReference final : public SecondSystem {
   std::string name() const override { return "static:" + system().model.name; }
 
   std::shared_ptr<const Reference> with_model(const ModelFile& system) const override {
-    return std::make_shared<StaticSystemReference>(std::move(system));
+    return std::make_shared<StaticSystemReference>(system);
   }
 
   std::unique_ptr<ReferenceOnSamples> on(const FlightSamples& samples,

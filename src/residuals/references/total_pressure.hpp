@@ -44,7 +44,7 @@ class TotalPressureReference final : public SecondSystem {
   bool sees_static_defect() const override { return false; }
 
   std::shared_ptr<const Reference> with_model(const ModelFile& system) const override {
-    return std::make_shared<TotalPressureReference>(std::move(system));
+    return std::make_shared<TotalPressureReference>(system);
   }
 
   std::unique_ptr<ReferenceOnSamples> on(const FlightSamples& samples,
