@@ -19,12 +19,6 @@ std::size_t shared_parameters(const Residuals& residuals, const FitTask& task) {
 
 namespace {
 
-/// A coefficient of the reference's model that is one of the model's own: their places among the parameters.
-struct Tie {
-  std::size_t own;
-  std::size_t other;
-};
-
 /// Where the coefficients of an effect begin among those of a model's effects; nothing where it has none.
 std::optional<std::size_t> place_of(const ModelFile& model, const std::string& effect) {
   std::size_t place = 0;
@@ -35,20 +29,29 @@ std::optional<std::size_t> place_of(const ModelFile& model, const std::string& e
   return std::nullopt;
 }
 
-std::vector<Tie> ties_of(const FitTask& task) {
-  std::vector<Tie> ties;
+/// A coefficient of an effect that the model and the reference's model have alike, and its neutral value.
+struct Alike {
+  std::size_t place;  ///< among the parameters of residuals
+  double neutral;
+};
+
+std::vector<Alike> alike_in(const FitTask& task) {
+  std::vector<Alike> alike;
   const ModelFile* const other = task.reference.model();
-  if (other == nullptr) return ties;
+  if (other == nullptr) return alike;
   std::size_t of_model = task.model.model.additions.size();
   for (const ModelEffect& effect : task.model.model.effects) of_model += effect.parameters.size();
   for (const std::string& effect : task.options.alike) {
-    const auto mine = place_of(task.model, effect);
-    const auto theirs = place_of(*other, effect);
-    if (!mine || !theirs) continue;
-    for (std::size_t i = 0; i < neutral_effect(effect).parameters.size(); ++i)
-      ties.push_back({*mine + i, of_model + *theirs + i});
+    const std::vector<double> neutral = neutral_effect(effect).parameters;
+    const auto add = [&](const ModelFile& model, std::size_t first) {
+      const std::optional<std::size_t> place = place_of(model, effect);
+      for (std::size_t i = 0; place && i < neutral.size(); ++i)
+        alike.push_back({first + *place + i, neutral[i]});
+    };
+    add(task.model, 0);
+    add(*other, of_model);
   }
-  return ties;
+  return alike;
 }
 
 }  // namespace
@@ -59,7 +62,7 @@ Eigen::VectorXd own_parameters(const Residuals& residuals, const FitTask& task,
   Eigen::VectorXd own = Eigen::Map<const Eigen::VectorXd>(file.data(), as_index(file.size()));
   const Eigen::Index shared = as_index(shared_parameters(residuals, task));
   own.head(shared) = parameters.head(shared);
-  for (const Tie& tie : ties_of(task)) own[as_index(tie.other)] = own[as_index(tie.own)];
+  for (const Alike& alike : alike_in(task)) own[as_index(alike.place)] = alike.neutral;
   return own;
 }
 
@@ -178,19 +181,10 @@ void FitFlight::evaluate(const Residuals& residuals, std::size_t first, std::siz
       std::fill_n(column, count, 0.0);
     }
   }
-  if (wanted.empty()) return;
-  // A coefficient that the other system shares changes the residual there, too.
-  std::vector<double> through_other(count);
-  for (const Tie& tie : ties_of(*task_)) {
-    const auto place = std::find(wanted.begin(), wanted.end(), tie.own);
-    if (place == wanted.end()) continue;
-    if (linear_) {
-      residuals.evaluate(samples, count, own.data(), {tie.other}, residual, through_other.data());
-    } else {
-      residuals.evaluate_at_sensor(samples, count, own.data(), {tie.other}, residual, through_other.data());
-    }
-    double* const column = derivatives + static_cast<std::size_t>(place - wanted.begin()) * count;
-    for (std::size_t i = 0; i < count; ++i) column[i] += through_other[i];
+  for (const Alike& alike : alike_in(*task_)) {
+    const auto place = std::find(wanted.begin(), wanted.end(), alike.place);
+    if (place != wanted.end())
+      std::fill_n(derivatives + (place - wanted.begin()) * as_index(count), count, 0.0);
   }
 }
 

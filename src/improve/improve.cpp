@@ -581,7 +581,7 @@ Improvement improve(const std::vector<std::filesystem::path>& flights, const Mod
     tell("fitting with " + last_of(trial.file));
     RefitOptions refit_with = options.refit;
     refit_with.alike = trial.alike;
-    return refit(flights, trial.file, with_alike(ordered, trial, variables), refit_with);
+    return refit(flights, trial.file, ordered, refit_with);
   };
   loop.diagnose = [&](const TrialModel& trial) {
     tell("looking for what is missing beside " + last_of(trial.file));
@@ -603,7 +603,7 @@ Improvement improve(const std::vector<std::filesystem::path>& flights, const Mod
     return extended;
   };
   loop.try_models = [&](const std::vector<TrialModel>& models) {
-    return try_models(flights, models, ordered, options.refit, variables);
+    return try_models(flights, models, ordered, options.refit);
   };
   loop.has_holdout = !options.refit.holdout.empty() || options.refit.training_share < 1.0;
   loop.trace_variables = options.trace_variables;

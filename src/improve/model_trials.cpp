@@ -48,9 +48,19 @@ ModelFile with_what_is_alike(ModelFile other, const TrialModel& model,
   return other;
 }
 
-/// A reference that has the effects of all trials, and of each trial all coefficients that the residual has.
+/// A model without the effects that are alike: they cancel where two systems are held against each other.
+ModelFile without_what_is_alike(ModelFile file, const TrialModel& model) {
+  std::vector<ModelEffect>& effects = file.model.effects;
+  for (const std::string& alike : model.alike) {
+    const auto place = static_cast<std::ptrdiff_t>(place_of(file, alike));
+    if (place < static_cast<std::ptrdiff_t>(effects.size())) effects.erase(effects.begin() + place);
+  }
+  return file;
+}
+
+/// A reference, and of each trial all coefficients that the residual has.
 struct TrialReference {
-  std::shared_ptr<const Reference> reference;
+  const Reference& reference;
   std::vector<std::vector<double>> coefficients;
 };
 
@@ -59,8 +69,8 @@ TrialFlight tried_on(const std::filesystem::path& path, const ModelFile& whole, 
   const Flight file(path, options.time_stamp);
   TrialFlight flight;
   flight.samples =
-      std::make_shared<const FlightSamples>(read_samples(file, whole, *trial.reference, options.mask));
-  const Residuals residuals(flight.samples, whole, *trial.reference, options.mask);
+      std::make_shared<const FlightSamples>(read_samples(file, whole, trial.reference, options.mask));
+  const Residuals residuals(flight.samples, whole, trial.reference, options.mask);
   flight.held_out = used_samples(residuals.mask());
   if (!held_out) {
     flight.fitted = used_samples(residuals.mask(), options.training_share);
@@ -118,24 +128,20 @@ References with_alike(const References& references, const TrialModel& model,
 
 std::vector<TrialFlight> try_models(const std::vector<std::filesystem::path>& flights,
                                     const std::vector<TrialModel>& models, const References& references,
-                                    const RefitOptions& options, const std::vector<std::string>& variables) {
+                                    const RefitOptions& options) {
   std::vector<ModelFile> files;
   for (const TrialModel& model : models) files.push_back(model.file);
   const ModelFile whole = union_of(files);
   std::vector<TrialFlight> tried;
   for (const std::shared_ptr<const Reference>& reference : references) {
-    TrialReference trial{reference, {}};
-    for (const ModelFile& file : files) trial.coefficients.push_back(coefficients_in(file, whole));
-    if (reference->model() != nullptr) {
-      std::vector<ModelFile> others;
-      for (const TrialModel& model : models)
-        others.push_back(with_what_is_alike(*reference->model(), model, variables));
-      const ModelFile whole_other = union_of(others);
-      trial.reference = reference->with_model(whole_other);
-      for (std::size_t m = 0; m < models.size(); ++m) {
-        const std::vector<double> own = coefficients_in(others[m], whole_other);
-        trial.coefficients[m].insert(trial.coefficients[m].end(), own.begin(), own.end());
-      }
+    TrialReference trial{*reference, {}};
+    for (const TrialModel& model : models) {
+      std::vector<double>& all = trial.coefficients.emplace_back();
+      const ModelFile* const other = reference->model();
+      all = coefficients_in(other == nullptr ? model.file : without_what_is_alike(model.file, model), whole);
+      if (other == nullptr) continue;
+      const std::vector<double> theirs = coefficients_in(without_what_is_alike(*other, model), *other);
+      all.insert(all.end(), theirs.begin(), theirs.end());
     }
     const auto add = [&](const std::vector<std::filesystem::path>& paths, bool held_out) {
       for (const std::filesystem::path& path : paths) {

@@ -16,7 +16,8 @@ struct TrialModel {
   std::vector<std::string> alike{};  ///< names of effects of the model
 };
 
-/// The references, those with a model of their own with what is alike as the model has it.
+/// The references, those with a model of their own with what is alike as the model has it, for a diagnosis,
+/// in which both coefficients are free.
 /// @param variables of the flights
 References with_alike(const References& references, const TrialModel& model,
                       const std::vector<std::string>& variables);
@@ -38,7 +39,7 @@ struct TrialFlight {
 /// @throws Error as `refit`.
 std::vector<TrialFlight> try_models(const std::vector<std::filesystem::path>& flights,
                                     const std::vector<TrialModel>& models, const References& references,
-                                    const RefitOptions& options, const std::vector<std::string>& variables);
+                                    const RefitOptions& options);
 
 /// A model that has the effects of all models, with the coefficients of the first that has them.
 ModelFile union_of(const std::vector<ModelFile>& models);

@@ -121,7 +121,7 @@ class Improve : public testing::Test {
   std::deque<double> rms_{1.0};
   std::deque<Diagnosis> diagnoses_;
   double given_rms_ = 1.0;
-  bool held_out_tells_ = true;  // the held-out flight knows one model from another
+  bool held_out_tells_ = true;             // the held-out flight knows one model from another
   std::map<std::string, double> changes_;  // of the static pressure by effects, hPa
 };
 

@@ -35,8 +35,9 @@ struct RefitOptions {
   bool drift = true;
   /// The model of a static system that is the reference is fitted together with the model.
   bool fit_reference = false;
-  /// Effects that the references' models have alike: their coefficients there are those of the model. Of such
-  /// an effect total pressures know nothing but how much the two dynamic pressures differ.
+  /// Effects of the model that the systems of the references have alike: they cancel where two systems are
+  /// held against each other, and are left out there. A lag, for example, would be found there from the noise
+  /// of both sensors alone.
   std::vector<std::string> alike{};
   /// Every coefficient is drawn to its starting value, as if that were measured: with the covariance that its
   /// file states, else to within the typical size of its effect. Always so where the reference is fitted too:
