@@ -75,6 +75,22 @@ TEST(SeveralReferences, ThatSeeNoCoefficientChangeNothing) {
   EXPECT_EQ(both.further.front().after.rms, both.further.front().before.rms);
 }
 
+TEST(SeveralReferences, DoNotTellWhatTwoSystemsHaveAlike) {
+  ModelFile model = pcor::with_effects(law(), {pcor::neutral_effect("total-lag")}, {});
+  model.fits.back().front().bounds =
+      pcor::Bounds{-30.0, 30.0};  // the flight has no lag, and may go below zero
+  const FittedParameter alone = parameter(fit(model, {"lams"}), "total-lag.tau");
+  pcor::RefitOptions options;
+  options.alike = {"total-lag"};
+  const References references = pcor::read_references({"lams", "total:PSFRD+QCFR"}, model, {}).used;
+  const FittedParameter alike =
+      parameter(pcor::refit({flight_file()}, model, references, options), "total-lag.tau");
+  EXPECT_NEAR(alike.value, alone.value, 1e-9) << "the total pressures see no other coefficient of this model";
+  EXPECT_NEAR(alike.standard_error, alone.standard_error, 1e-9);
+  const FittedParameter of_one = parameter(fit(model, {"lams", "total:PSFRD+QCFR"}), "total-lag.tau");
+  EXPECT_LT(of_one.standard_error, 0.5 * alone.standard_error) << "a lag of one system is seen there";
+}
+
 TEST(SeveralReferences, TellSingleFiguresOfTheFirst) {
   const RefitResult alone = fit(law(), {"pressure:TRUE_PS"});
   const RefitResult both = fit(law(), {"pressure:TRUE_PS", "lams"});
