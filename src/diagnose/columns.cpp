@@ -284,7 +284,7 @@ Eigen::MatrixXd binned_columns(const FlightColumns& flight, const Binning& bins)
   return columns;
 }
 
-FlightColumns find_columns(std::shared_ptr<const FlightSamples> extended, const ModelFile& model,
+FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended, const ModelFile& model,
                            const CandidateSet& set, std::size_t reference, const MaskOptions& mask,
                            double first_part) {
   const std::size_t records = extended->time.size();
@@ -303,7 +303,7 @@ FlightColumns find_columns(std::shared_ptr<const FlightSamples> extended, const 
     other.model.additions = other_places;
     other_free = free_parameters(other);
     for (const ModelEffect& effect : other.model.effects) other_count += effect.parameters.size();
-    held_against = held_against->with_model(std::move(other));
+    held_against = held_against->with_model(other);
   }
   const Residuals residuals(extended, with_additions, *held_against, mask);
   const std::vector<double>& start = residuals.parameters();

@@ -24,8 +24,9 @@ std::size_t place_of(const ModelFile& model, const std::string& effect) {
 
 /// The coefficients with which an effect does nothing, in its shape.
 std::vector<double> neutral_of(const ModelEffect& effect) {
-  if (effect.is_formula()) return std::vector<double>(effect.parameters.size(), 0.0);
-  std::vector<double> parameters = neutral_effect(effect.id).parameters;
+  std::vector<double> parameters(effect.parameters.size(), 0.0);
+  if (effect.is_formula()) return parameters;
+  parameters = neutral_effect(effect.id).parameters;
   const EffectFacts& facts = effect_facts[effect_named(effect.id)];
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (facts.parameters[i].shape) parameters[i] = effect.parameters[i];

@@ -31,7 +31,7 @@ class Binning {
   Eigen::VectorXd means(const Column& values) const {
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(size()));
     for (std::size_t k = 0; k < record_.size(); ++k)
-      sum[bin_[k]] += static_cast<double>(values[static_cast<Eigen::Index>(record_[k])]);
+      sum[bin_[k]] += static_cast<double>(values[static_cast<decltype(values.size())>(record_[k])]);
     return sum.cwiseQuotient(count_);
   }
 

@@ -22,7 +22,7 @@ CLI::Validator is_amount() {
     const bool number = status == std::errc{} && rest == end && std::isfinite(value);
     return number && value >= 0.0 ? "" : text + " is not a number of zero or more";
   };
-  return CLI::Validator(check, "NUMBER");
+  return {check, "NUMBER"};
 }
 
 void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
