@@ -37,7 +37,8 @@ class Reference {
   /// True where the residual is the static pressure of the reference less that of the model.
   virtual bool is_static_pressure() const { return true; }
 
-  /// True where a static defect at the ports changes its residual: not of total pressures, in which it cancels.
+  /// True where a static defect at the ports changes its residual: not of total pressures, in which it
+  /// cancels.
   virtual bool sees_static_defect() const { return true; }
 
   /// The model that corrects it, whose parameters can be fitted together with those of the model that is held
