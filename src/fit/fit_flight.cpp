@@ -11,13 +11,14 @@
 
 namespace pcor::internal {
 
-std::size_t shared_parameters(const Residuals& residuals, const FitTask& task) {
-  std::size_t of_model = task.model.model.additions.size();
-  for (const ModelEffect& effect : task.model.model.effects) of_model += effect.parameters.size();
-  return task.shares_system ? residuals.parameters().size() : of_model;
-}
-
 namespace {
+
+/// How many parameters of residuals are the model's own; those of the reference's model stand behind them.
+std::size_t parameters_of_model(const FitTask& task) {
+  std::size_t count = task.model.model.additions.size();
+  for (const ModelEffect& effect : task.model.model.effects) count += effect.parameters.size();
+  return count;
+}
 
 /// Where the coefficients of an effect begin among those of a model's effects; nothing where it has none.
 std::optional<std::size_t> place_of(const ModelFile& model, const std::string& effect) {
@@ -39,8 +40,6 @@ std::vector<Alike> alike_in(const FitTask& task) {
   std::vector<Alike> alike;
   const ModelFile* const other = task.reference.model();
   if (other == nullptr) return alike;
-  std::size_t of_model = task.model.model.additions.size();
-  for (const ModelEffect& effect : task.model.model.effects) of_model += effect.parameters.size();
   for (const std::string& effect : task.options.alike) {
     const std::vector<double> neutral = neutral_effect(effect).parameters;
     const auto add = [&](const ModelFile& model, std::size_t first) {
@@ -49,12 +48,16 @@ std::vector<Alike> alike_in(const FitTask& task) {
         alike.push_back({first + *place + i, neutral[i]});
     };
     add(task.model, 0);
-    add(*other, of_model);
+    add(*other, parameters_of_model(task));
   }
   return alike;
 }
 
 }  // namespace
+
+std::size_t shared_parameters(const Residuals& residuals, const FitTask& task) {
+  return task.shares_system ? residuals.parameters().size() : parameters_of_model(task);
+}
 
 Eigen::VectorXd own_parameters(const Residuals& residuals, const FitTask& task,
                                const Eigen::VectorXd& parameters) {

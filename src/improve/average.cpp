@@ -40,12 +40,6 @@ Eigen::MatrixXd covariance_in(const ModelFile& model, const std::vector<std::str
   return result;
 }
 
-bool has(const ModelFile& model, const std::string& effect) {
-  const std::vector<ModelEffect>& effects = model.model.effects;
-  return std::any_of(effects.begin(), effects.end(),
-                     [&effect](const ModelEffect& each) { return each.id == effect; });
-}
-
 /// Writes coefficients and covariance into the model. Those without any variance stay out of its covariance.
 void set(ModelFile& model, const Eigen::VectorXd& values, const Eigen::MatrixXd& covariance) {
   const std::vector<std::string> names = names_of(model);

@@ -56,12 +56,6 @@ struct Candidates {
   bool all = false;
 };
 
-bool has(const ModelFile& model, const std::string& effect) {
-  const std::vector<ModelEffect>& effects = model.model.effects;
-  return std::any_of(effects.begin(), effects.end(),
-                     [&effect](const ModelEffect& each) { return each.id == effect; });
-}
-
 std::string id_of_trace(const std::string& variable) {
   std::string id = "traced-";
   for (const char letter : variable) {

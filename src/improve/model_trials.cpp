@@ -88,13 +88,17 @@ TrialFlight tried_on(const std::filesystem::path& path, const ModelFile& whole, 
 
 }  // namespace
 
+bool has(const ModelFile& model, const std::string& effect) {
+  return place_of(model, effect) < model.model.effects.size();
+}
+
 ModelFile union_of(const std::vector<ModelFile>& models) {
   ModelFile whole = models.front();
   whole.fits.resize(whole.model.effects.size());
   for (const ModelFile& model : models) {
     for (std::size_t e = 0; e < model.model.effects.size(); ++e) {
       const ModelEffect& effect = model.model.effects[e];
-      if (place_of(whole, effect.id) < whole.model.effects.size()) continue;
+      if (has(whole, effect.id)) continue;
       whole.model.effects.push_back(effect);
       whole.fits.push_back(e < model.fits.size() ? model.fits[e] : EffectFit{});
     }

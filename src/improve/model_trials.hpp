@@ -41,6 +41,9 @@ std::vector<TrialFlight> try_models(const std::vector<std::filesystem::path>& fl
                                     const std::vector<TrialModel>& models, const References& references,
                                     const RefitOptions& options);
 
+/// Whether a model has an effect of that name.
+bool has(const ModelFile& model, const std::string& effect);
+
 /// A model that has the effects of all models, with the coefficients of the first that has them.
 ModelFile union_of(const std::vector<ModelFile>& models);
 
