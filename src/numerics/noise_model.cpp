@@ -250,6 +250,14 @@ FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen:
   return found;
 }
 
+NoiseModel with_slower_noise(NoiseModel noise) {
+  for (std::size_t k = 2; k < noise.slow.size(); ++k) {
+    const double before = noise.slow[k - 1] * noise.slow[k - 1] + noise.slow[k - 2] * noise.slow[k - 2];
+    noise.slow[k] = std::max(noise.slow[k], std::sqrt(0.5 * before));
+  }
+  return noise;
+}
+
 Eigen::MatrixXd whitened(const Eigen::Ref<const Eigen::MatrixXd>& columns, const Binning& bins,
                          const NoiseModel& noise, std::size_t flight) {
   return Whitening(bins, noise, flight)(columns);

@@ -10,7 +10,7 @@ namespace pcor::internal {
 
 /// For how long each slow part of the noise remembers itself, s: a factor of four apart, so that their sum
 /// follows a drift of any such time, a random walk, or 1/f noise, within a tenth of its power.
-inline constexpr std::array<double, 4> slow_times{50.0, 200.0, 800.0, 3200.0};
+inline constexpr std::array<double, 5> slow_times{50.0, 200.0, 800.0, 3200.0, 12800.0};
 
 /// The noise of a series of binned residuals: an autoregression whose level changes every five minutes, and
 /// beside it slow parts, first-order processes of fixed times.
@@ -47,6 +47,11 @@ NoiseModel estimate_noise(const std::vector<Binning>& bins, const std::vector<Ei
 /// @param residuals of each flight, in bins, after the fit, hPa
 FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
                       const std::vector<Eigen::VectorXd>& residuals);
+
+/// The noise as if it went on beyond what the flights tell: each part as large, at least, as the two before it
+/// are in the mean, as it is of 1/f noise. That the slowest parts are not seen in a flight or two does not say
+/// that they are not there.
+NoiseModel with_slower_noise(NoiseModel noise);
 
 /// The columns in units of the noise and without its memory: `Whitening` of one flight.
 Eigen::MatrixXd whitened(const Eigen::Ref<const Eigen::MatrixXd>& columns, const Binning& bins,
