@@ -11,6 +11,7 @@
 #include <pcor/residuals/residuals.hpp>
 #include <pcor/units/units.hpp>
 #include <pcor/words/error.hpp>
+#include "residuals/moving_columns.hpp"
 #include "roles/recorded_series.hpp"
 
 namespace pcor::internal {
@@ -59,18 +60,6 @@ Candidate candidate_of(const EffectFacts& facts) {
                                 {parameter.lower - parameter.neutral, parameter.upper - parameter.neutral}});
   }
   return candidate;
-}
-
-constexpr std::array<Quantity, 5> rates_of_change{
-    Quantity::static_pressure_rate, Quantity::dynamic_pressure_rate, Quantity::recovery_temperature_rate,
-    Quantity::ambient_temperature_rate, Quantity::airspeed_rate};
-
-/// Whether an effect goes with a rate of change, so that what it is may lag behind: a delay or a lag of more
-/// than a second is not its derivative.
-bool goes_with_a_rate(const EffectFacts& facts) {
-  return std::any_of(facts.needs.begin(), facts.needs.end(), [](Quantity need) {
-    return std::find(rates_of_change.begin(), rates_of_change.end(), need) != rates_of_change.end();
-  });
 }
 
 /// The begins of the flights after the first, in the unit of the role date.
@@ -167,10 +156,10 @@ bool is_built_alike(Where where) {
   return where == Where::static_line || where == Where::total_line || where == Where::pitot;
 }
 
-/// Puts behind each candidate those whose columns are its own, changed: in tubes and lines the same on both
-/// systems, and a rate of change with a memory. No chain computes them.
+/// Puts behind each candidate those that no chain has beside it: in tubes and lines the same on both systems,
+/// and with its need as found over other times.
 void add_derived_ones(CandidateSet& set, bool two_systems) {
-  constexpr std::array<double, 5> memories{1.0, 2.0, 4.0, 8.0, 16.0};  // s
+  constexpr std::array<double, 10> times{0.5, -0.5, 1.0, -1.0, 1.5, -1.5, 2.0, -2.0, 4.0, -4.0};  // s
   std::vector<Candidate> all;
   for (const Candidate& candidate : set.candidates) {
     const auto derive = [&all, &candidate]() -> Candidate& {
@@ -181,8 +170,8 @@ void add_derived_ones(CandidateSet& set, bool two_systems) {
     all.push_back(candidate);
     if (candidate.effect.is_formula()) continue;
     if (two_systems && is_built_alike(where_of(candidate.effect))) derive().is_shared = true;
-    if (candidate.is_variant || !goes_with_a_rate(effect_facts[effect_named(candidate.effect.id)])) continue;
-    for (const double memory : memories) derive().memory = memory;
+    if (memory_of(candidate.effect).of == Quantity::count) continue;
+    for (const double time : times) derive().memory = time;
   }
   set.candidates = std::move(all);
 }

@@ -29,8 +29,7 @@ struct Candidate {
   /// none. Empty for an effect on the own system.
   std::vector<std::optional<std::size_t>> numbers_in_others{};
   std::string system{};  ///< which other system, where the references have several: "PSFRD+QCFR"; else empty
-  /// How long the effect remembers what it goes with, s: a lag is the rate of change as the last seconds had
-  /// it, tau dx/dt low-passed with tau.
+  /// The time over which its need is found that it remembers (`EffectFacts::memory`), s.
   double memory = 0.0;
   /// The same on the other system, built alike: what holds the two against each other does not see it.
   bool is_shared = false;
@@ -38,8 +37,6 @@ struct Candidate {
   std::vector<CandidateParameter> tested{};
   bool is_variant = false;  ///< the same effect as a candidate before it, in another shape
 
-  /// Whether its columns are those of the last candidate before it that is not derived itself, changed.
-  bool is_derived() const { return memory > 0.0 || is_shared; }
   bool is_of_reference() const { return !numbers_in_others.empty(); }
   /// Whether it acts on what a reference is made of: an effect on the own system in the first of them, which
   /// tells all figures; one on another system in those that have that system.

@@ -15,12 +15,20 @@
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "residuals/masks.hpp"
+#include "residuals/moving_columns.hpp"
 
 namespace pcor::internal {
 namespace {
 
 constexpr int jet_width = 3;
 using Jet = ceres::Jet<double, jet_width>;
+
+/// What a candidate remembers, found over its own time.
+struct Remembered {
+  Quantity quantity = Quantity::count;
+  double time = 0.0;  // s
+  std::vector<double> values{};
+};
 
 /// One evaluation of a candidate: its derivatives by some of the tested parameters.
 struct Evaluation {
@@ -29,6 +37,7 @@ struct Evaluation {
   std::size_t first_column;  // of the parameters
   std::size_t width;
   std::vector<Jet> parameters;
+  const Remembered* remembered = nullptr;  // instead of what the samples have
 };
 
 /// The number of a candidate in the extended model of its system; nothing where that has none.
@@ -36,15 +45,16 @@ std::optional<std::size_t> number_of(const Candidate& candidate, std::size_t ref
   return candidate.is_of_reference() ? candidate.numbers_in_others[reference] : candidate.number;
 }
 
-/// The evaluations of the candidates of one system. Those with a memory are made of the columns without.
+/// The evaluations of the candidates of one system.
 std::vector<Evaluation> evaluations_of(const CandidateSet& set, std::size_t reference, bool of_reference,
-                                       const std::vector<Where>& places) {
+                                       const std::vector<Where>& places,
+                                       const std::vector<Remembered>& remembered) {
   std::vector<Evaluation> evaluations;
   std::size_t column = 0;
   for (const Candidate& candidate : set.candidates) {
     const std::size_t end = column + candidate.tested.size();
     const std::optional<std::size_t> number = number_of(candidate, reference);
-    if (candidate.is_of_reference() == of_reference && !candidate.is_derived() && number) {
+    if (candidate.is_of_reference() == of_reference && !candidate.is_shared && number) {
       const auto place = std::find(places.begin(), places.end(), where_of(candidate.effect)) - places.begin();
       const std::vector<double>& neutral = candidate.effect.parameters;
       for (std::size_t first = 0; first < candidate.tested.size(); first += jet_width) {
@@ -54,11 +64,35 @@ std::vector<Evaluation> evaluations_of(const CandidateSet& set, std::size_t refe
           parameters[candidate.tested[first + k].place].v[as_index(k)] = 1.0;
         evaluations.push_back(
             {*number, static_cast<std::size_t>(place), column + first, width, std::move(parameters)});
+        const auto own = std::find_if(remembered.begin(), remembered.end(), [&](const Remembered& each) {
+          return each.quantity == memory_of(candidate.effect).of && each.time == candidate.memory;
+        });
+        if (own != remembered.end()) evaluations.back().remembered = &*own;
       }
     }
     column = end;
   }
   return evaluations;
+}
+
+/// What the candidates of the own system remember, each over the times that are tried.
+std::vector<Remembered> remembered_by(const CandidateSet& set, const ModelFile& model,
+                                      const FlightSamples& samples) {
+  std::vector<Remembered> all;
+  std::vector<double> airspeed;
+  double period = 0.0;
+  for (const Candidate& candidate : set.candidates) {
+    const Quantity quantity = memory_of(candidate.effect).of;
+    if (quantity == Quantity::count || candidate.is_of_reference() || samples.model.find(quantity) == nullptr)
+      continue;
+    if (airspeed.empty()) {
+      airspeed = airspeed_along_beam(model, samples.model);
+      period = shortest_period_of(airspeed, samples.time, samples.step);
+    }
+    all.push_back({quantity, candidate.memory,
+                   mean_rate(airspeed, samples.time, samples.step, period, candidate.memory)});
+  }
+  return all;
 }
 
 std::size_t column_count(const CandidateSet& set) {
@@ -176,30 +210,6 @@ std::vector<Where> places_of(const CandidateSet& set, bool of_reference) {
   return places;
 }
 
-/// A first-order low-pass of a column over the samples used, exact for what is linear between them. It begins
-/// anew after a gap.
-Eigen::VectorXf low_passed(const Eigen::Ref<const Eigen::VectorXf>& column,
-                           const std::vector<std::size_t>& used, const std::vector<double>& time,
-                           double memory) {
-  constexpr double gap = 10.0;  // s
-  Eigen::VectorXf result = column;
-  double value = nan;
-  for (std::size_t k = 0; k < used.size(); ++k) {
-    const auto here = static_cast<double>(column[as_index(used[k])]);
-    const double step = k == 0 ? nan : time[used[k]] - time[used[k - 1]];
-    const double before = k == 0 ? nan : static_cast<double>(column[as_index(used[k - 1])]);
-    if (!(step <= gap) || std::isnan(value + before)) {
-      value = here;
-    } else {
-      const double kept = std::exp(-step / memory);
-      const double ramp = memory / step * (1.0 - kept);
-      value = kept * value + (ramp - kept) * before + (1.0 - ramp) * here;
-    }
-    result[as_index(used[k])] = static_cast<float>(value);
-  }
-  return result;
-}
-
 /// The value of the candidates of one system at a sample, through its chain.
 class CandidateValues {
  public:
@@ -217,6 +227,7 @@ class CandidateValues {
     for (const auto& [quantity, series] : inputs_) state[quantity] = series[sample];
     chain_.measure(state, chain_.parameters().data(), flags);
     for (const Evaluation& each : evaluations_) {
+      if (each.remembered != nullptr) state[each.remembered->quantity] = each.remembered->values[sample];
       const Jet value = chain_.effect_value(each.effect, state, each.parameters.data());
       const double at_place = derivative(each.place);
       for (std::size_t p = 0; p < each.width; ++p)
@@ -354,12 +365,13 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
   for (const Quantity quantity : measured)
     columns.quantities.emplace_back(quantity, std::vector<double>(records, nan));
   columns.candidates.setZero(as_index(records), as_index(column_count(set)));
-  const std::vector<Evaluation> evaluations = evaluations_of(set, reference, false, places);
+  const std::vector<Remembered> remembered = remembered_by(set, model, *found.at);
+  const std::vector<Evaluation> evaluations = evaluations_of(set, reference, false, places, remembered);
   const CandidateValues own(set.extended.model, found.at->model, extended->name, evaluations);
   std::optional<CandidateValues> others;
   if (set.others[reference])
     others.emplace(set.others[reference]->model, found.at->reference, extended->name,
-                   evaluations_of(set, reference, true, other_places));
+                   evaluations_of(set, reference, true, other_places, {}));
   const std::vector<std::size_t> needed = with_neighbours(used, residuals.reach(), records);
   for (std::size_t k = 0; k < needed.size(); ++k) {
     const std::size_t sample = needed[k];
@@ -380,15 +392,12 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
   if (of_neighbours)
     sum_over_neighbours(residuals, evaluations, first_place, used, needed, columns.candidates);
   Eigen::Index column = 0;
-  Eigen::Index source = 0;  // of what a derived candidate is derived from
+  Eigen::Index source = 0;  // of what both systems share, on the own one
   for (const Candidate& candidate : set.candidates) {
-    if (!candidate.is_derived()) source = column;
+    if (!candidate.is_shared) source = column;
     for (Eigen::Index c = 0; c < as_index(candidate.tested.size()); ++c, ++column) {
       if (candidate.is_shared && !set.others[reference])
         columns.candidates.col(column) = columns.candidates.col(source + c);
-      else if (candidate.memory > 0.0)
-        columns.candidates.col(column) =
-            low_passed(columns.candidates.col(source + c), used, extended->time, candidate.memory);
       else if (!candidate.is_shared)
         bridge(columns.candidates.col(column), used);
     }

@@ -266,14 +266,14 @@ void measure(const Analysis& analysis, const std::vector<std::size_t>& chosen, s
 
 /// What no model file can hold of the shape that a candidate is tried in; empty where it can hold all.
 std::string shape_beyond_model(const Candidate& candidate) {
-  if (candidate.is_shared) return "alike on the other system";
-  return candidate.memory > 0.0 ? fmt::format("with a memory of {:g} s", candidate.memory) : "";
+  return candidate.is_shared ? "alike on the other system" : "";
 }
 
 /// What shape a candidate is tried in, in words; empty in that of the catalogue.
 std::string shape_of(const Candidate& candidate) {
   if (!candidate.is_variant) return "";
   if (std::string beyond = shape_beyond_model(candidate); !beyond.empty()) return beyond;
+  if (candidate.memory != 0.0) return fmt::format("over {:g} s", candidate.memory);
   const Scaling& scaling = candidate.effect.scaling;
   if (!scaling.is_none())
     return fmt::format("times p^{} q^{}", scaling.static_pressure, scaling.dynamic_pressure);

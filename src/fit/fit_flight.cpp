@@ -8,6 +8,7 @@
 #include "numerics/missing.hpp"
 #include "numerics/spikes.hpp"
 #include "residuals/masks.hpp"
+#include "residuals/moving_columns.hpp"
 
 namespace pcor::internal {
 
@@ -72,7 +73,8 @@ Eigen::VectorXd own_parameters(const Residuals& residuals, const FitTask& task,
 FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask& task, const FitSetup& setup)
     : task_(&task),
       setup_(&setup),
-      residuals_(std::move(samples), task.model, task.reference, task.options.mask),
+      moving_(samples->model.moving.empty() ? nullptr : std::make_shared<FlightSamples>(*samples)),
+      residuals_(moving_ ? moving_ : std::move(samples), task.model, task.reference, task.options.mask),
       static_pressure_(residuals_.samples().model.find(Quantity::static_pressure)) {
   const FlightSamples& flight = residuals_.samples();
   kept_ = used_samples(residuals_.mask(), task.options.training_share);
@@ -109,6 +111,10 @@ void FitFlight::prepare(const Eigen::VectorXd& parameters, const Eigen::VectorXd
   prepared_parameters_ = parameters;
   prepared_offsets_ = offsets;
   const FlightSamples& flight = residuals_.samples();
+  if (moving_) {
+    const Eigen::VectorXd own = own_parameters(residuals_, *task_, parameters);
+    find_moving_columns(task_->model, own.data(), flight.time, flight.step, moving_->model);
+  }
   std::vector<double> residual(kept_.size());
   for (std::size_t first = 0; first < kept_.size(); first += samples_per_chunk) {
     const std::size_t count = std::min(samples_per_chunk, kept_.size() - first);

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "numerics/missing.hpp"
+#include "residuals/moving_columns.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -74,8 +75,13 @@ std::vector<FitFlights*> FitFlights::joint() {
   return all;
 }
 
-bool FitFlights::keeps_derivatives() const {
-  return task_.reference.model() != nullptr || !task_.reference.is_static_pressure() || !seeing_.empty();
+bool FitFlights::stays_as_prepared() const {
+  const std::vector<ModelEffect>& effects = task_.model.model.effects;
+  const bool moves = std::any_of(effects.begin(), effects.end(), [](const ModelEffect& effect) {
+    return memory_of(effect).of != Quantity::count;
+  });
+  return moves || task_.reference.model() != nullptr || !task_.reference.is_static_pressure() ||
+         !seeing_.empty();
 }
 
 std::shared_ptr<const FlightSamples> FitFlights::samples_of(std::size_t number) const {

@@ -114,6 +114,7 @@ class FitFlight {
 
   const FitTask* task_;
   const FitSetup* setup_;
+  std::shared_ptr<FlightSamples> moving_;  // those of `residuals_`, where columns hang on coefficients
   Residuals residuals_;
   std::optional<Residuals> at_common_pressures_;  // of two static systems
   const std::vector<double>* static_pressure_;    // of the samples
@@ -164,8 +165,9 @@ class FitFlights {
   /// is said of flights, samples, masks and single figures is of the first reference.
   std::vector<FitFlights*> joint();
 
-  /// True where derivatives stay until the flights are prepared again.
-  bool keeps_derivatives() const;
+  /// True where something stays until the flights are prepared again: derivatives, or columns that hang on a
+  /// coefficient.
+  bool stays_as_prepared() const;
 
   std::size_t count() const { return sources_.size(); }
 

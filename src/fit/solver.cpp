@@ -97,7 +97,7 @@ class Solver {
     for (int round = 0; round < rounds; ++round) {
       const Eigen::VectorXd before = unknowns_;
       const bool settled = settles_with(loss);
-      if (!flights_.keeps_derivatives()) {
+      if (!flights_.stays_as_prepared()) {
         if (settled) break;
         continue;
       }

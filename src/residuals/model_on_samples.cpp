@@ -29,6 +29,13 @@ std::vector<Batch::Input> gathered(const std::vector<Batch::Input>& columns, con
 ModelOnSamples::ModelOnSamples(const ModelFile& file, const ModelSamples& samples)
     : model_(file.model), batch_(file.model, roles_of(file, samples)) {
   for (const Quantity input : chain().inputs()) columns_.push_back({input, samples.find(input)->data()});
+  for (const MovingColumn& column : samples.moving) {
+    std::size_t first = 0;
+    for (const ModelEffect& effect : model_.effects) {
+      if (effect.id == column.effect) moving_.push_back({&column, first + column.parameter});
+      first += effect.parameters.size();
+    }
+  }
 }
 
 std::vector<bool> ModelOnSamples::linear() const {

@@ -43,7 +43,7 @@ class ModelOnSamples {
   template <class S>
   S corrected_static_pressure(std::size_t sample, const S* parameters, State<S>& state) const {
     NoQualityFlags flags;
-    for (const Batch::Input& column : columns_) state[column.quantity] = S(column.values[sample]);
+    read(sample, parameters, state);
     chain().measure(state, parameters, flags);
     state[Quantity::static_defect] = chain().static_defect(state, parameters, flags);
     return state[Quantity::port_static_pressure] + state[Quantity::static_defect];
@@ -63,7 +63,7 @@ class ModelOnSamples {
   S total_pressure(std::size_t sample, const S* parameters) const {
     State<S> state;
     NoQualityFlags flags;
-    for (const Batch::Input& column : columns_) state[column.quantity] = S(column.values[sample]);
+    read(sample, parameters, state);
     chain().measure(state, parameters, flags);
     return state[Quantity::port_static_pressure] + state[Quantity::port_dynamic_pressure];
   }
@@ -84,11 +84,27 @@ class ModelOnSamples {
   bool is_missing_any(std::size_t sample) const;
 
  private:
+  /// A column that hangs on a coefficient, and the place of that among the parameters.
+  struct Moving {
+    const MovingColumn* column;
+    std::size_t parameter;
+  };
+
+  template <class S>
+  void read(std::size_t sample, const S* parameters, State<S>& state) const {
+    for (const Batch::Input& column : columns_) state[column.quantity] = S(column.values[sample]);
+    for (const Moving& each : moving_) {
+      state[each.column->quantity] +=
+          S(each.column->slope[sample]) * (parameters[each.parameter] - S(each.column->at));
+    }
+  }
+
   double step_of(std::size_t parameter) const;
 
   Model model_;
   Batch batch_;
   std::vector<Batch::Input> columns_;
+  std::vector<Moving> moving_;
 };
 
 }  // namespace pcor::internal

@@ -15,7 +15,7 @@
 #include "numerics/missing.hpp"
 #include "residuals/flaps_by_lift.hpp"
 #include "residuals/frozen.hpp"
-#include "residuals/model_on_samples.hpp"
+#include "residuals/moving_columns.hpp"
 #include "roles/model_inputs.hpp"
 #include "roles/recorded_series.hpp"
 
@@ -25,14 +25,8 @@ using namespace internal;
 
 namespace {
 
-/// Centred differences in time; NaN at the ends and beside gaps.
 std::vector<double> rate_of(const std::vector<double>& values, const std::vector<double>& time, double step) {
-  std::vector<double> rate(values.size(), nan);
-  for (std::size_t i = 1; i + 1 < values.size(); ++i) {
-    const double across = time[i + 1] - time[i - 1];
-    if (across <= 2.5 * step) rate[i] = (values[i + 1] - values[i - 1]) / across;
-  }
-  return rate;
+  return mean_rate(values, time, step, shortest_period_of(values, time, step));
 }
 
 Chain chain_of(const Model& model, const std::vector<Quantity>& roles) {
@@ -153,11 +147,8 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelFile&
   }
   if (chain.derives(Quantity::airspeed_rate)) {
     // Of corrected pressures: in a pitch manoeuvre delta-p changes faster than the dynamic pressure.
-    const ModelOnSamples law(model, samples);
-    std::vector<double> airspeed(time.size());
-    law.batch().run(law.columns(), {{Quantity::corrected_airspeed, airspeed.data()}}, airspeed.size(),
-                    law.parameters().data());
-    add(Quantity::airspeed_rate, rate_of(airspeed, time, flight.time().step));
+    add(Quantity::airspeed_rate, rate_of(airspeed_along_beam(model, samples), time, flight.time().step));
+    find_moving_columns(model, chain.parameters().data(), time, flight.time().step, samples);
   }
   return samples;
 }

@@ -14,6 +14,7 @@ struct ClockSkew {
     facts.formula = "seconds * airspeed_rate";
     facts.parameters[0] = {"seconds", "s", 0.0, -60.0, 60.0, 0.5};
     facts.needs = {Quantity::airspeed_rate, Quantity::count, Quantity::count, Quantity::count};
+    facts.memory = {Quantity::airspeed_rate, 0};
     facts.size = "0.08 to 2 s between the clocks of one aircraft: 0.27 to 0.5 hPa/s in a speed run";
     facts.look_alikes = "qcf-lag, total-lag, temp-lag, lams-volume";
     facts.manoeuvre = "both branches of a speed run; phase in a pitch manoeuvre";

@@ -93,6 +93,12 @@ inline constexpr std::size_t parameter_capacity = 3;
 inline constexpr std::size_t need_capacity = 4;
 inline constexpr std::size_t scaling_capacity = 2;
 
+/// A need of an effect that is found over a time, which one of its coefficients says.
+struct Memory {
+  Quantity of = Quantity::count;  ///< nothing is remembered
+  std::size_t parameter = 0;      ///< the number of the coefficient, in s
+};
+
 /// The gas constants of a model in which an effect has a meaning.
 enum class GasConstants : std::uint8_t { any, dry, moist };
 
@@ -125,6 +131,7 @@ struct EffectFacts {
   std::array<ParameterFacts, parameter_capacity> parameters{};
   std::array<Quantity, need_capacity> needs{Quantity::count, Quantity::count, Quantity::count,
                                             Quantity::count};
+  Memory memory{};
   std::array<Scaling, scaling_capacity> scalings{};  ///< other ones that nature may have; behind them none
   std::string_view size;                             ///< how large it is met, in words
   std::string_view look_alikes;                      ///< effects that data easily confuse with it

@@ -178,15 +178,21 @@ class Chain : public BoundModel {
     return defect;
   }
 
+  /// The cosine of the angle between the beam of the laser and the wind.
+  template <class S, class P>
+  S cosine_of_beam(const State<S>& state, const P* parameters) const {
+    const S elevation = S(lams_.elevation) + sum<S>(Where::beam_elevation, state, parameters);
+    const S azimuth = S(lams_.azimuth) + sum<S>(Where::beam_azimuth, state, parameters);
+    const S sideslip = needs(Quantity::sideslip) ? state[Quantity::sideslip] : S(0.0);
+    return beam_cosine(elevation, azimuth, state[Quantity::attack], sideslip);
+  }
+
   /// The true airspeed that LAMS measures, m/s: the speed along the beam over the cosine of its angle to the
   /// wind.
   template <class S, class P>
   S lams_airspeed(const State<S>& state, const P* parameters) const {
-    const S elevation = S(lams_.elevation) + sum<S>(Where::beam_elevation, state, parameters);
-    const S azimuth = S(lams_.azimuth) + sum<S>(Where::beam_azimuth, state, parameters);
     const S beam = state[Quantity::lams_airspeed] + sum<S>(Where::beam_speed, state, parameters);
-    const S sideslip = needs(Quantity::sideslip) ? state[Quantity::sideslip] : S(0.0);
-    return airspeed_from_beam(beam, beam_cosine(elevation, azimuth, state[Quantity::attack], sideslip));
+    return airspeed_from_beam(beam, cosine_of_beam(state, parameters));
   }
 
   /// Ambient temperature (K, eq. 12) and dynamic pressure (hPa, eq. 8) from LAMS and the corrected pressures.

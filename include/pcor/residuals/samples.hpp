@@ -20,12 +20,23 @@ struct FrozenSpan {
   std::size_t count = 0;
 };
 
+/// A column that hangs on a coefficient, as the mean rate of the airspeed does on the seconds over which it
+/// is the mean: how it changes with that coefficient.
+struct MovingColumn {
+  Quantity quantity = Quantity::count;
+  std::string effect{};
+  std::size_t parameter = 0;    ///< the number of the coefficient in its effect
+  double at = 0.0;              ///< the value of the coefficient at which the column was found
+  std::vector<double> slope{};  ///< of each sample, per unit of the coefficient
+};
+
 /// What a model or a reference reads of a flight: quantities as arrays, one value for each record.
 struct ModelSamples {
   std::vector<Quantity> roles{};  ///< those that `Chain::build` is told of
   std::vector<std::pair<Quantity, std::vector<double>>> columns{};
   std::vector<std::pair<Quantity, std::string>> variables{};  ///< of the file, for what is recorded
   std::vector<FrozenSpan> frozen{};
+  std::vector<MovingColumn> moving{};
 
   const std::vector<double>* find(Quantity quantity) const;
 };
