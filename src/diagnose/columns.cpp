@@ -16,6 +16,7 @@
 #include "numerics/triangular_factor.hpp"
 #include "residuals/masks.hpp"
 #include "residuals/moving_columns.hpp"
+#include "residuals/rate_of_series.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -76,21 +77,17 @@ std::vector<Evaluation> evaluations_of(const CandidateSet& set, std::size_t refe
 }
 
 /// What the candidates of the own system remember, each over the times that are tried.
-std::vector<Remembered> remembered_by(const CandidateSet& set, const ModelFile& model,
-                                      const FlightSamples& samples) {
+std::vector<Remembered> remembered_by(const CandidateSet& set, const FlightSamples& samples) {
   std::vector<Remembered> all;
-  std::vector<double> airspeed;
   double period = 0.0;
   for (const Candidate& candidate : set.candidates) {
     const Quantity quantity = memory_of(candidate.effect).of;
     if (quantity == Quantity::count || candidate.is_of_reference() || samples.model.find(quantity) == nullptr)
       continue;
-    if (airspeed.empty()) {
-      airspeed = airspeed_along_beam(model, samples.model);
-      period = shortest_period_of(airspeed, samples.time, samples.step);
-    }
-    all.push_back({quantity, candidate.memory,
-                   mean_rate(airspeed, samples.time, samples.step, period, candidate.memory)});
+    const FastSeries& speed = samples.model.along_beam;
+    if (period == 0.0) period = shortest_period_of(speed, samples.time, samples.step);
+    all.push_back(
+        {quantity, candidate.memory, rate_of(speed, samples.time, samples.step, period, candidate.memory)});
   }
   return all;
 }
@@ -365,7 +362,7 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
   for (const Quantity quantity : measured)
     columns.quantities.emplace_back(quantity, std::vector<double>(records, nan));
   columns.candidates.setZero(as_index(records), as_index(column_count(set)));
-  const std::vector<Remembered> remembered = remembered_by(set, model, *found.at);
+  const std::vector<Remembered> remembered = remembered_by(set, *extended);
   const std::vector<Evaluation> evaluations = evaluations_of(set, reference, false, places, remembered);
   const CandidateValues own(set.extended.model, found.at->model, extended->name, evaluations);
   std::optional<CandidateValues> others;

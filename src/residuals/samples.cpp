@@ -16,6 +16,7 @@
 #include "residuals/flaps_by_lift.hpp"
 #include "residuals/frozen.hpp"
 #include "residuals/moving_columns.hpp"
+#include "residuals/rate_of_series.hpp"
 #include "roles/model_inputs.hpp"
 #include "roles/recorded_series.hpp"
 
@@ -24,10 +25,6 @@ namespace pcor {
 using namespace internal;
 
 namespace {
-
-std::vector<double> rate_of(const std::vector<double>& values, const std::vector<double>& time, double step) {
-  return mean_rate(values, time, step, shortest_period_of(values, time, step));
-}
 
 Chain chain_of(const Model& model, const std::vector<Quantity>& roles) {
   BindingError why;
@@ -114,6 +111,48 @@ void read_flaps(const Flight& flight, const ModelFile& model, double least_airsp
                 times, 100.0 * lift->deficit, 100.0 * lift->deviation));
 }
 
+FastSeries read_fast(const Flight& flight, const ModelInput& input, int rate) {
+  FastSeries series;
+  series.in_record = static_cast<std::size_t>(rate);
+  series.values.resize(flight.records() * series.in_record);
+  for (const RecordBlock block : blocks_of(flight.records()))
+    flight.read_at_rate(rate, input.variable, block, input.conversion,
+                        series.values.data() + block.first * series.in_record);
+  return series;
+}
+
+/// What is recorded, at some rate.
+ModelSamples read_inputs(const Flight& flight, const std::vector<ModelInput>& inputs, int rate) {
+  ModelSamples samples;
+  for (const ModelInput& input : inputs) {
+    samples.columns.emplace_back(input.quantity, read_fast(flight, input, rate).values);
+    samples.variables.emplace_back(input.quantity, input.variable);
+    if (is_role(input.quantity)) samples.roles.push_back(input.quantity);
+  }
+  return samples;
+}
+
+/// The airspeed along the beam, at the highest rate at which a pressure is recorded. What else a model adds
+/// up from the records, rates of change and the time, is that of the whole record.
+FastSeries read_along_beam(const Flight& flight, const ModelFile& model,
+                           const std::vector<ModelInput>& inputs, const ModelSamples& records) {
+  int rate = 1;
+  for (const ModelInput& input : inputs) {
+    if (input.quantity == Quantity::static_pressure || input.quantity == Quantity::dynamic_pressure)
+      rate = std::max(rate, flight.variable(input.variable).rate);
+  }
+  if (rate == 1) return {airspeed_along_beam(model, records), 1};
+  ModelSamples fast = read_inputs(flight, inputs, rate);
+  const auto in_record = static_cast<std::size_t>(rate);
+  for (const auto& [quantity, values] : records.columns) {
+    if (fast.find(quantity) != nullptr) continue;
+    std::vector<double>& held = fast.columns.emplace_back(quantity, std::vector<double>()).second;
+    fast.roles.push_back(quantity);
+    for (const double value : values) held.insert(held.end(), in_record, value);
+  }
+  return {airspeed_along_beam(model, fast), in_record};
+}
+
 }  // namespace
 
 const std::vector<double>* ModelSamples::find(Quantity quantity) const {
@@ -127,12 +166,8 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelFile&
   std::vector<Quantity> roles = model.roles();
   if (!with_laser) roles.erase(std::remove(roles.begin(), roles.end(), Quantity::lams_airspeed), roles.end());
   const Chain chain = chain_of(model.model, roles);
-  ModelSamples samples;
-  for (const ModelInput& input : model_inputs(flight, model, chain, roles, notes)) {
-    samples.columns.emplace_back(input.quantity, read_values(flight, input.variable, input.conversion));
-    samples.variables.emplace_back(input.quantity, input.variable);
-    if (is_role(input.quantity)) samples.roles.push_back(input.quantity);
-  }
+  const std::vector<ModelInput> inputs = model_inputs(flight, model, chain, roles, notes);
+  ModelSamples samples = read_inputs(flight, inputs, 1);
   const auto add = [&samples](Quantity quantity, std::vector<double> values) {
     samples.columns.emplace_back(quantity, std::move(values));
     samples.roles.push_back(quantity);
@@ -142,13 +177,21 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelFile&
     for (double& each : since_first) each -= time.front();
     add(Quantity::time, std::move(since_first));
   }
-  for (const auto& [quantity, rate] : rates) {
-    if (chain.derives(rate)) add(rate, rate_of(*samples.find(quantity), time, flight.time().step));
+  const double step = flight.time().step;
+  const auto rate = [&](const FastSeries& series) {
+    return rate_of(series, time, step, shortest_period_of(series, time, step));
+  };
+  for (const auto& [quantity, its_rate] : rates) {
+    if (!chain.derives(its_rate)) continue;
+    const auto input = std::find_if(inputs.begin(), inputs.end(),
+                                    [of = quantity](const ModelInput& each) { return each.quantity == of; });
+    add(its_rate, rate(read_fast(flight, *input, flight.variable(input->variable).rate)));
   }
   if (chain.derives(Quantity::airspeed_rate)) {
     // Of corrected pressures: in a pitch manoeuvre delta-p changes faster than the dynamic pressure.
-    add(Quantity::airspeed_rate, rate_of(airspeed_along_beam(model, samples), time, flight.time().step));
-    find_moving_columns(model, chain.parameters().data(), time, flight.time().step, samples);
+    samples.along_beam = read_along_beam(flight, model, inputs, samples);
+    add(Quantity::airspeed_rate, rate(samples.along_beam));
+    find_moving_columns(model, chain.parameters().data(), time, step, samples);
   }
   return samples;
 }

@@ -20,6 +20,12 @@ struct FrozenSpan {
   std::size_t count = 0;
 };
 
+/// A series at the rate of its sensor: some samples in each record.
+struct FastSeries {
+  std::vector<double> values{};
+  std::size_t in_record = 1;
+};
+
 /// A column that hangs on a coefficient, as the mean rate of the airspeed does on the seconds over which it
 /// is the mean: how it changes with that coefficient.
 struct MovingColumn {
@@ -37,6 +43,7 @@ struct ModelSamples {
   std::vector<std::pair<Quantity, std::string>> variables{};  ///< of the file, for what is recorded
   std::vector<FrozenSpan> frozen{};
   std::vector<MovingColumn> moving{};
+  FastSeries along_beam{};  ///< airspeed along the laser's beam, m/s, where a rate of it is read
 
   const std::vector<double>* find(Quantity quantity) const;
 };

@@ -1,0 +1,84 @@
+#include "residuals/rate_of_series.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <pcor/numerics/noise.hpp>
+#include <pcor/realtime/rate_filter.hpp>
+#include "numerics/missing.hpp"
+
+namespace pcor::internal {
+namespace {
+
+/// Calls `use` with the number and the rate of every `stride`-th sample.
+template <class Use>
+void each_rate(const RateFilter& filter, const FastSeries& series, const std::vector<double>& time,
+               double step, std::size_t stride, const Use& use) {
+  for (std::size_t record = 0; record < time.size();) {
+    std::size_t next = record + 1;
+    while (next < time.size() && time[next] - time[next - 1] <= 1.25 * step) ++next;
+    const std::size_t first = record * series.in_record;
+    const std::size_t end = next * series.in_record;
+    for (std::size_t i = first; i < end; i += stride)
+      use(i, filter(series.values.data() + i, i - first, end - 1 - i));
+    record = next;
+  }
+}
+
+/// The mean square of values, those beyond six robust deviations counted as if they were there.
+double clipped_variance(const std::vector<double>& values) {
+  if (values.empty()) return 0.0;
+  const double limit = 6.0 * robust_deviation(values);
+  double sum = 0.0;
+  for (const double value : values) sum += std::min(value * value, limit * limit);
+  return sum / static_cast<double>(values.size());
+}
+
+}  // namespace
+
+double shortest_period_of(const FastSeries& series, const std::vector<double>& time, double step) {
+  constexpr double half_octave = 1.4142135623730951;
+  constexpr double longest = 64.0;  // s
+  constexpr double flat = 1.3;
+  const double rate = static_cast<double>(series.in_record) / step;
+  std::vector<double> periods;
+  std::vector<double> variance;
+  std::vector<double> gain;  // of white noise
+  for (double period = 2.0 / rate; period < longest; period *= half_octave) {
+    const RateFilter filter(rate, 0.0, period);
+    std::vector<double> rates;
+    const auto stride = std::max<std::size_t>(1, static_cast<std::size_t>(0.25 * period * rate));
+    each_rate(filter, series, time, step, stride, [&](std::size_t, double value) {
+      if (std::isfinite(value)) rates.push_back(value);
+    });
+    periods.push_back(period);
+    variance.push_back(clipped_variance(rates));
+    gain.push_back(filter.gain());
+  }
+  // The power of each band, as if it were white noise.
+  std::vector<double> power;
+  for (std::size_t k = 0; k + 1 < periods.size(); ++k)
+    power.push_back((variance[k] - variance[k + 1]) / (gain[k] - gain[k + 1]));
+  // Where the spectrum still falls at its end, noise is below all of it.
+  const double noise = power[1] < flat * power[0] ? power[0] : 0.5 * power[0];
+  std::size_t k = 0;
+  while (k + 1 < power.size() && power[k] < 2.0 * noise) ++k;
+  return periods[k];
+}
+
+std::vector<double> rate_of(const FastSeries& series, const std::vector<double>& time, double step,
+                            double shortest_period, double seconds) {
+  const RateFilter filter(static_cast<double>(series.in_record) / step, seconds, shortest_period);
+  std::vector<double> sum(time.size(), 0.0);
+  std::vector<std::size_t> count(time.size(), 0);
+  each_rate(filter, series, time, step, 1, [&](std::size_t sample, double rate) {
+    if (!std::isfinite(rate)) return;
+    sum[sample / series.in_record] += rate;
+    ++count[sample / series.in_record];
+  });
+  for (std::size_t i = 0; i < sum.size(); ++i)
+    sum[i] = 2 * count[i] > series.in_record ? sum[i] / static_cast<double>(count[i]) : nan;
+  return sum;
+}
+
+}  // namespace pcor::internal
