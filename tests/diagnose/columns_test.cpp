@@ -182,7 +182,7 @@ std::set<std::string> expect_differences(const Made& made,
       parameters.insert(parameters.end(), effect.parameters.begin(), effect.parameters.end());
     const std::size_t first = parameters.size() - candidate.effect.parameters.size();
     for (std::size_t k = 0; k < candidate.tested.size(); ++k, ++column) {
-      if (candidate.is_derived()) continue;  // its column is made of one of these
+      if (candidate.is_shared || candidate.memory != 0.0) continue;  // its column is made of one of these
       const Eigen::VectorXd found = made.columns.candidates.col(column).cast<double>();
       const double largest = found.cwiseAbs().maxCoeff();
       if (largest == 0.0) {

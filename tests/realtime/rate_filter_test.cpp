@@ -1,0 +1,186 @@
+#include <pcor/realtime/rate_filter.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <random>
+#include <vector>
+
+namespace {
+
+using pcor::RateFilter;
+using Complex = std::complex<double>;
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+constexpr double rates[] = {1.0, 5.0, 25.0, 50.0};
+constexpr double delays[] = {0.0, 0.05, 0.3, 1.0, 1.5, -1.7};
+
+/// A function of time at the samples of the widest window, 0 s in question.
+template <class Function>
+std::vector<double> around(const RateFilter& filter, double rate, const Function& function) {
+  std::vector<double> samples;
+  const auto before = static_cast<double>(filter.before());
+  for (std::size_t k = 0; k <= filter.before() + filter.after(); ++k)
+    samples.push_back(function((static_cast<double>(k) - before) / rate));
+  return samples;
+}
+
+double rate_of(const RateFilter& filter, const std::vector<double>& samples) {
+  return filter(samples.data() + filter.before(), filter.before(), filter.after());
+}
+
+template <class Function>
+double rate_of(const RateFilter& filter, double rate, const Function& function) {
+  return rate_of(filter, around(filter, rate, function));
+}
+
+/// What becomes of exp(i 2 pi t / period) at 0 s.
+Complex response(const RateFilter& filter, double rate, double period) {
+  return {rate_of(filter, rate, [&](double t) { return std::cos(2.0 * pi * t / period); }),
+          rate_of(filter, rate, [&](double t) { return std::sin(2.0 * pi * t / period); })};
+}
+
+Complex ideal(double delay, double period) {
+  const Complex turn(0.0, 2.0 * pi / period);
+  return delay == 0.0 ? turn : (1.0 - std::exp(-delay * turn)) / delay;
+}
+
+TEST(RateFilter, PassesConstantsAndStraightLines) {
+  for (const double rate : rates) {
+    for (const double delay : delays) {
+      const RateFilter filter(rate, delay);
+      EXPECT_EQ(rate_of(filter, rate, [](double) { return 701.3; }), 0.0);
+      // Rounding of weights of up to 50 per sample, some hundred of them.
+      EXPECT_NEAR(rate_of(filter, rate, [](double t) { return 701.3 - 1.7 * t; }), -1.7, 1e-9);
+    }
+  }
+}
+
+TEST(RateFilter, PassesLinesThroughEveryNarrowerWindow) {
+  for (const double rate : rates) {
+    const RateFilter filter(rate, 0.3);
+    const std::vector<double> line = around(filter, rate, [](double t) { return 3.0 + 2.0 * t; });
+    for (std::size_t within = 0; within <= filter.before(); ++within) {
+      const double found = filter(line.data() + filter.before(), within, within);
+      if (!std::isnan(found)) {
+        EXPECT_NEAR(found, 2.0, 1e-9) << within;
+      }
+    }
+  }
+}
+
+TEST(RateFilter, IsTheIdealResponseAtThePeriodsThatAreLeft) {
+  // Half a zero's width of the Hann window from the cut-off: 1 % of ripple.
+  for (const double rate : rates) {
+    const double shortest = rate == 1.0 ? 3.0 : 1.5;
+    for (const double delay : delays) {
+      const RateFilter filter(rate, delay);
+      for (double period = shortest; period < 40.0; period *= 1.3) {
+        const Complex wanted = ideal(delay, period);
+        EXPECT_LT(std::abs(response(filter, rate, period) - wanted), 0.015 * std::abs(ideal(0.0, period)))
+            << rate << " Hz, delay " << delay << " s, period " << period << " s";
+      }
+    }
+  }
+}
+
+TEST(RateFilter, TakesShortPeriodsAway) {
+  for (const double rate : {5.0, 25.0, 50.0}) {
+    const RateFilter filter(rate);
+    const double half = std::abs(response(filter, rate, 1.0)) / std::abs(ideal(0.0, 1.0));
+    EXPECT_NEAR(half, 0.5, 0.01);
+    for (const double period : {0.7, 0.5})
+      EXPECT_LT(std::abs(response(filter, rate, period)), 0.01 * std::abs(ideal(0.0, period)));
+  }
+}
+
+TEST(RateFilter, UndoesALagOfTheFirstOrder) {
+  // What a lag of tau makes of a sine is known: y = Re(H exp(i w t)), H = 1/(1 + i w tau).
+  for (const double rate : {5.0, 25.0}) {
+    for (const double tau : {0.05, 0.3, 1.0, 8.0}) {
+      for (const double period : {2.0, 5.0, 20.0}) {
+        const double turn = 2.0 * pi / period;
+        const Complex lag = 1.0 / Complex(1.0, turn * tau);
+        const auto lagged = [&](double t) { return std::real(lag * std::exp(Complex(0.0, turn * t + 0.4))); };
+        const RateFilter filter(rate);
+        const double corrected = lagged(0.0) + tau * rate_of(filter, rate, lagged);
+        // 0.2 % of the derivative at these periods.
+        EXPECT_NEAR(corrected, std::cos(0.4), 0.003 * tau * turn * std::abs(lag) + 1e-9);
+      }
+    }
+  }
+}
+
+TEST(RateFilter, UndoesALagOfARamp) {
+  // A ramp from -1 s on, through a lag of tau: t + 1 - tau (1 - exp(-(t + 1)/tau)). Of its corner, periods
+  // under 1 s are not given back: 3 % of tau a second later.
+  constexpr double tau = 0.3;
+  const RateFilter filter(25.0);
+  const auto lagged = [](double t) {
+    return t < -1.0 ? 0.0 : t + 1.0 - tau * (1.0 - std::exp(-(t + 1.0) / tau));
+  };
+  EXPECT_LT(lagged(0.0), 0.72);
+  EXPECT_NEAR(lagged(0.0) + tau * rate_of(filter, 25.0, lagged), 1.0, 0.03 * tau);
+}
+
+TEST(RateFilter, IsTheSameBackwards) {
+  // The samples in the other order have the opposite rate, and a delay is then one of the other sign.
+  std::mt19937_64 engine(7);
+  std::normal_distribution<double> normal;
+  for (const double delay : delays) {
+    const RateFilter filter(25.0, delay);
+    const RateFilter back(25.0, -delay);
+    ASSERT_EQ(filter.before(), back.after());
+    std::vector<double> samples(filter.before() + filter.after() + 1);
+    for (double& each : samples) each = normal(engine);
+    const std::vector<double> reversed(samples.rbegin(), samples.rend());
+    EXPECT_NEAR(rate_of(filter, samples), -rate_of(back, reversed), 1e-9);
+  }
+}
+
+TEST(RateFilter, LeavesLittleNoise) {
+  // The integral of (2 pi f)^2 over the part of the band that is left, cut off sharply at 1 Hz: 0.72 of
+  // 12.5 Hz; the slope of the cut-off adds to it.
+  EXPECT_NEAR(RateFilter(25.0).gain(), std::pow(2.0 * pi, 2) / 3.0 / 12.5, 0.2);
+  std::mt19937_64 engine(5);
+  std::normal_distribution<double> normal;
+  const RateFilter filter(25.0);
+  double squares = 0.0;
+  constexpr int draws = 2000;
+  for (int i = 0; i < draws; ++i) {
+    const double rate = rate_of(filter, 25.0, [&](double) { return normal(engine); });
+    squares += rate * rate;
+  }
+  EXPECT_NEAR(squares / draws / filter.gain(), 1.0, 0.16);  // five deviations of chi-squared
+}
+
+TEST(RateFilter, GoesRoundMissingSamples) {
+  const RateFilter filter(1.0);
+  std::vector<double> line = around(filter, 1.0, [](double t) { return 5.0 - t; });
+  line.front() = missing;
+  EXPECT_NEAR(rate_of(filter, line), -1.0, 1e-12);
+  line[filter.before() - 1] = missing;
+  EXPECT_TRUE(std::isnan(rate_of(filter, line)));
+  line = around(filter, 1.0, [](double t) { return 5.0 - t; });
+  line[filter.before()] = missing;
+  EXPECT_TRUE(std::isnan(rate_of(filter, line)));
+}
+
+TEST(RateFilter, TakesADifferenceOfNeighboursBesideAGap) {
+  const RateFilter filter(1.0);
+  const std::vector<double> samples{1.0, 4.0, 9.0};
+  EXPECT_NEAR(filter(samples.data() + 1, 1, 1), 4.0, 1e-6);
+  EXPECT_TRUE(std::isnan(filter(samples.data(), 0, 2)));
+}
+
+TEST(RateFilter, CutsOffWhereItIsTold) {
+  const RateFilter filter(1.0, 0.0, 10.0);
+  EXPECT_NEAR(std::abs(response(filter, 1.0, 10.0)) / std::abs(ideal(0.0, 10.0)), 0.5, 0.02);
+  EXPECT_NEAR(std::abs(response(filter, 1.0, 20.0)) / std::abs(ideal(0.0, 20.0)), 1.0, 0.01);
+  EXPECT_LT(std::abs(response(filter, 1.0, 5.0)), 0.01 * std::abs(ideal(0.0, 5.0)));
+}
+
+}  // namespace

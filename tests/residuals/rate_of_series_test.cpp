@@ -1,0 +1,120 @@
+#include "residuals/rate_of_series.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <random>
+#include <vector>
+
+namespace {
+
+using pcor::FastSeries;
+using pcor::internal::rate_of;
+using pcor::internal::shortest_period_of;
+
+constexpr double pi = 3.14159265358979323846;
+
+std::vector<double> seconds(std::size_t count) {
+  std::vector<double> time(count);
+  for (std::size_t i = 0; i < count; ++i) time[i] = static_cast<double>(i);
+  return time;
+}
+
+/// A wave of a period of 40 s and 1 unit, and white noise, `in_record` samples a second.
+FastSeries wave(std::size_t records, std::size_t in_record, double noise) {
+  std::mt19937_64 engine(3);
+  std::normal_distribution<double> normal;
+  FastSeries series;
+  series.in_record = in_record;
+  for (std::size_t i = 0; i < records * in_record; ++i) {
+    const double t = (static_cast<double>(i) + 0.5) / static_cast<double>(in_record);
+    series.values.push_back(std::sin(2.0 * pi * t / 40.0) + noise * normal(engine));
+  }
+  return series;
+}
+
+/// Air that wanders: each step is independent, so the spectrum falls with the square of the frequency.
+FastSeries wandering(std::size_t records) {
+  std::mt19937_64 engine(4);
+  std::normal_distribution<double> normal;
+  FastSeries series;
+  for (std::size_t i = 0; i < records; ++i)
+    series.values.push_back((i == 0 ? 0.0 : series.values.back()) + normal(engine));
+  return series;
+}
+
+double rms_of_difference(const std::vector<double>& found, double shift, double factor) {
+  double squares = 0.0;
+  double count = 0.0;
+  for (std::size_t i = 60; i + 60 < found.size(); ++i) {
+    const double t = static_cast<double>(i) + 0.5;
+    const double wanted = factor * std::cos(2.0 * pi * (t - shift) / 40.0);
+    squares += (found[i] - wanted) * (found[i] - wanted);
+    count += 1.0;
+  }
+  return std::sqrt(squares / count);
+}
+
+TEST(ShortestPeriod, IsTheWholeBandOfWhatHasNoNoise) {
+  EXPECT_EQ(shortest_period_of(wandering(4000), seconds(4000), 1.0), 2.0);
+}
+
+TEST(ShortestPeriod, CutsNoiseOff) {
+  // All of the wave is at 40 s; what is shorter is noise. Half an octave to either side is left.
+  const double period = shortest_period_of(wave(4000, 1, 0.3), seconds(4000), 1.0);
+  EXPECT_GT(period, 8.0);
+  EXPECT_LT(period, 40.0);
+}
+
+TEST(ShortestPeriod, FindsNoiseThatIsKnownAtAHighRateOnly) {
+  const double period = shortest_period_of(wave(2000, 25, 1.5), seconds(2000), 1.0);
+  EXPECT_GT(period, 8.0);
+  EXPECT_LT(period, 40.0);
+}
+
+TEST(RateOfSeries, IsTheDerivativeInTheMeanOverARecord) {
+  for (const std::size_t in_record : {std::size_t{1}, std::size_t{5}, std::size_t{25}}) {
+    const std::vector<double> rate = rate_of(wave(400, in_record, 0.0), seconds(400), 1.0, 2.0);
+    // The mean of a cosine of 40 s over a second is 0.1 % less than its middle.
+    EXPECT_LT(rms_of_difference(rate, 0.0, 2.0 * pi / 40.0), 3e-4) << in_record;
+  }
+}
+
+TEST(RateOfSeries, IsTheMeanOverTheSecondsBefore) {
+  for (const double delay : {0.3, 1.0, 2.5, -1.5}) {
+    const std::vector<double> rate = rate_of(wave(400, 1, 0.0), seconds(400), 1.0, 2.0, delay);
+    // (sin(wt) - sin(w(t - s)))/s = 2 sin(ws/2)/s cos(w(t - s/2))
+    const double factor = 2.0 * std::sin(pi * delay / 40.0) / delay;
+    // The interpolation between samples has half a percent of ripple.
+    EXPECT_LT(rms_of_difference(rate, 0.5 * delay, factor), 0.005 * 2.0 * pi / 40.0) << delay;
+  }
+}
+
+TEST(RateOfSeries, HasLessNoiseWithTheNoisesOwnCutOff) {
+  const FastSeries noisy = wave(4000, 1, 0.1);
+  const std::vector<double> time = seconds(4000);
+  const double whole = rms_of_difference(rate_of(noisy, time, 1.0, 2.0), 0.0, 2.0 * pi / 40.0);
+  const double cut = rms_of_difference(rate_of(noisy, time, 1.0, shortest_period_of(noisy, time, 1.0)), 0.0,
+                                       2.0 * pi / 40.0);
+  EXPECT_LT(cut, 0.1 * whole);
+}
+
+TEST(RateOfSeries, BridgesNoGap) {
+  FastSeries series;
+  std::vector<double> time = seconds(60);
+  for (std::size_t i = 0; i < 60; ++i) {
+    series.values.push_back(i < 30 ? static_cast<double>(i) : 1000.0 - static_cast<double>(i));
+    if (i >= 30) time[i] += 100.0;
+  }
+  const std::vector<double> rate = rate_of(series, time, 1.0, 2.0);
+  for (std::size_t i = 0; i < 60; ++i) {
+    if (i == 0 || i == 29 || i == 30 || i == 59) {
+      EXPECT_TRUE(std::isnan(rate[i])) << i;
+    } else {
+      EXPECT_NEAR(rate[i], i < 30 ? 1.0 : -1.0, 1e-9) << i;
+    }
+  }
+}
+
+}  // namespace
