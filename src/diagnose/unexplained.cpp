@@ -157,7 +157,7 @@ struct Tested {
       : test(analysis.bins(), analysis.columns_of(chosen), analysis.residuals(), analysis.noise(), seed) {
     add(all);
     const std::vector<Eigen::MatrixXd> strong = test.strong_structure();
-    if (strong.empty() || p_value() < chance) return;
+    if (strong.empty() || explains_most_beyond_chance()) return;
     // Chance may do as well only because it is told by residuals that hold that structure.
     test = StructureTest(analysis.bins(), analysis.columns_of(chosen), analysis.residuals(), analysis.noise(),
                          seed, strong);
@@ -170,6 +170,15 @@ struct Tested {
       if (test.add(variable.name, variable.pointers(), variable.turn)) variables.push_back(&variable);
       if (variable.fine && test.add_fine(variable.name, variable.pointers())) variables.push_back(&variable);
     }
+  }
+
+  /// Whether that of greatest gain is beyond chance.
+  bool explains_most_beyond_chance() const {
+    const std::vector<Structure>& all = test.structures();
+    const auto most = std::max_element(all.begin(), all.end(), [](const Structure& a, const Structure& b) {
+      return a.gain - a.freedom < b.gain - b.freedom;
+    });
+    return most != all.end() && test.chance_of(most->equivalent) < chance;
   }
 
   double p_value() const {
