@@ -3,12 +3,11 @@
 namespace pcor::internal {
 
 bool DelayLine::leave(const Loop& loop) {
-  if (++runs_ <= delay_) return false;
+  if (++runs_ <= delay_ || left_ == entered_) return false;
   for (Output& output : outputs_) output.values.push_back(output.value_in(loop));
-  const bool incomplete = loop.quality().has(Quality::filter_window_incomplete);
-  if (incomplete) flags_.values[finished_] += static_cast<double>(Quality::filter_window_incomplete);
+  ++left_;
   ++finished_;
-  return incomplete;
+  return true;
 }
 
 void DelayLine::write(FlightWriter& writer, std::size_t rate) {
@@ -19,7 +18,7 @@ void DelayLine::write(FlightWriter& writer, std::size_t rate) {
     output.values.erase(output.values.begin(), output.values.begin() + samples);
   };
   for (Output& output : outputs_) write_one(output);
-  write_one(flags_);
+  if (flags_) write_one(*flags_);
   finished_ -= static_cast<std::size_t>(samples);
   written_records_ += block.count;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,39 +20,44 @@ struct Output {
   double value_in(const Loop& loop) const { return loop.state()[quantity] + offset; }
 };
 
-/// What leaves the loop as late as its filter is: filtered variables, and the quality bits, one of which the
-/// filter sets of the same earlier sample. Brings them back to the samples that they are of.
+/// What leaves the loop later than its sample entered it: brings it back to the samples that it is of.
 class DelayLine {
  public:
-  /// @param delay of the filter, samples
+  /// @param delay in runs of the loop
   explicit DelayLine(std::size_t delay) : delay_(delay) {}
 
-  void add(Output filtered) { outputs_.push_back(std::move(filtered)); }
-  void set_flags(std::size_t number) { flags_.number = number; }
+  void add(Output output) { outputs_.push_back(std::move(output)); }
+  void set_flags(std::size_t number) { flags_ = Output{Quantity::count, 0.0, number, {}}; }
 
-  /// True where samples since the last gap are still in the filter.
-  bool is_running() const { return runs_ > 0; }
   std::size_t delay() const { return delay_; }
+  /// Samples that have entered since the last gap and not left yet.
+  std::size_t inside() const { return entered_ - left_; }
 
-  /// Takes the quality bits of a new sample, as a number and without that of the filter.
-  void enter(double bits) { flags_.values.push_back(bits); }
+  /// A sample enters the loop, which is then run.
+  void enter() { ++entered_; }
 
-  /// Takes what left the filter in the last run of the loop. True where the filter says that it had too
-  /// little of its window.
+  /// The quality bits, as a number, of the next sample of which they are known; it may leave later.
+  void enter_flags(double bits) { flags_->values.push_back(bits); }
+  /// Adds a bit of the sample that left last.
+  void add_flag(double bit) { flags_->values[finished_ - 1] += bit; }
+
+  /// Takes what the last run of the loop gave. False where that is of no sample.
   bool leave(const Loop& loop);
 
-  /// After a gap the filter is empty.
-  void reset() { runs_ = 0; }
+  /// After a gap nothing is in the loop.
+  void reset() { runs_ = entered_ = left_ = 0; }
 
-  /// Writes the whole records of what has left the filter.
+  /// Writes the whole records of what has left.
   void write(FlightWriter& writer, std::size_t rate);
 
  private:
   std::size_t delay_;
   std::vector<Output> outputs_;
-  Output flags_;
-  std::size_t runs_ = 0;      // of the loop since the last gap
-  std::size_t finished_ = 0;  // samples that left the filter and are not written yet
+  std::optional<Output> flags_;
+  std::size_t runs_ = 0;  // since the last gap
+  std::size_t entered_ = 0;
+  std::size_t left_ = 0;
+  std::size_t finished_ = 0;  // samples that left and are not written yet
   std::size_t written_records_ = 0;
 };
 

@@ -97,8 +97,8 @@ class Processing {
   void define_flags(FlightWriter& writer);
   std::size_t define(FlightWriter& writer, const OutputVariable& variable);
   void process_block(RecordBlock block, std::vector<double>& times);
-  void note_sample(std::size_t place);
-  void note_filtered();
+  void note_sample();
+  void take_results();
   void flush();
   std::string temperature_calibration();
 
@@ -110,9 +110,9 @@ class Processing {
   std::optional<Loop> loop_;
   ModelUncertainty uncertainty_;  // of which the results' is found
   std::vector<Input> inputs_;
-  std::vector<Output> outputs_;       // of the sample that is being run
-  std::optional<DelayLine> delayed_;  // and of an earlier one
-  double sample_step_ = 1.0;          // s
+  std::optional<DelayLine> results_;
+  std::optional<DelayLine> filtered_;  // later still; and the quality bits, one of which is the filter's
+  double sample_step_ = 1.0;           // s
   std::map<Quantity, std::string> output_names_;
   ProcessSummary summary_;
 };
@@ -153,7 +153,8 @@ void Processing::choose_rate() {
   uncertainty_ = uncertainty();
   loop_ = Loop::build(chain_, rate, &why, options_.correct_with, uncertainty_);
   if (!loop_) fail_model(why);
-  delayed_.emplace(chain_->has_lams() ? LowPass::delay(rate) : 0);
+  results_.emplace(loop_->delay());
+  filtered_.emplace(loop_->delay() + (chain_->has_lams() ? LowPass::delay(rate) : 0));
   sample_step_ = 1.0 / rate;
   if (!options_.hydrostatic) return;
   loop_->add(std::make_unique<HeightStep>());
@@ -294,9 +295,9 @@ void Processing::define_outputs(FlightWriter& writer) {
     Output output{row.quantity, is_temperature ? -constants::ice_point : 0.0, define(writer, variable)};
     output_names_[row.quantity] = variable.name;
     if (row.is_filtered) {
-      delayed_->add(std::move(output));
+      filtered_->add(std::move(output));
     } else {
-      outputs_.push_back(std::move(output));
+      results_->add(std::move(output));
     }
   }
 }
@@ -328,7 +329,7 @@ void Processing::define_flags(FlightWriter& writer) {
     flags.flags.push_back({static_cast<int>(facts.bit), std::string(facts.name)});
   }
   flags.dependencies = summary_.outputs;
-  delayed_->set_flags(define(writer, flags));
+  filtered_->set_flags(define(writer, flags));
 }
 
 std::size_t Processing::define(FlightWriter& writer, const OutputVariable& variable) {
@@ -355,7 +356,7 @@ std::string Processing::temperature_calibration() {
   return fmt::format("{}", fmt::join(coefficients, " "));
 }
 
-void Processing::note_sample(std::size_t place) {
+void Processing::note_sample() {
   const State<double>& state = loop_->state();
   const double defect = state[Quantity::corrected_static_pressure] - state[Quantity::port_static_pressure];
   if (!is_missing(defect) && !is_missing(state[Quantity::corrected_dynamic_pressure])) {
@@ -377,24 +378,28 @@ void Processing::note_sample(std::size_t place) {
       bits += static_cast<double>(bit);
     }
   }
-  delayed_->enter(bits);
-  for (Output& output : outputs_) output.values[place] = output.value_in(*loop_);
+  filtered_->enter_flags(bits);
 }
 
-void Processing::note_filtered() {
-  if (delayed_->leave(*loop_)) ++summary_.flagged[flagged_place(Quality::filter_window_incomplete)];
+/// Of the last run, which may be those of an earlier sample.
+void Processing::take_results() {
+  if (results_->leave(*loop_)) note_sample();
+  if (!filtered_->leave(*loop_) || !loop_->quality().has(Quality::filter_window_incomplete)) return;
+  filtered_->add_flag(static_cast<double>(Quality::filter_window_incomplete));
+  ++summary_.flagged[flagged_place(Quality::filter_window_incomplete)];
 }
 
-/// Before a gap and at the end: the loop goes on without values until its last sample has left the filter.
+/// Before a gap and at the end: the loop goes on without values until its last sample has left it.
 void Processing::flush() {
-  for (const Input& input : inputs_) loop_->state()[input.quantity] = missing<double>();
-  const double last = loop_->state()[Quantity::time];
-  for (std::size_t i = 1; i <= delayed_->delay(); ++i) {
+  const double last = loop_->last_time();
+  for (std::size_t i = 1; filtered_->inside() > 0; ++i) {
+    for (const Input& input : inputs_) loop_->state()[input.quantity] = missing<double>();
     loop_->run(last + static_cast<double>(i) * sample_step_);
-    note_filtered();
+    take_results();
   }
   loop_->reset();
-  delayed_->reset();
+  results_->reset();
+  filtered_->reset();
 }
 
 void Processing::process_block(RecordBlock block, std::vector<double>& times) {
@@ -403,17 +408,17 @@ void Processing::process_block(RecordBlock block, std::vector<double>& times) {
     input.values.resize(samples);
     flight_.read_at_rate(summary_.rate, input.variable, block, input.conversion, input.values.data());
   }
-  for (Output& output : outputs_) output.values.resize(samples);
   times.resize(samples);
   flight_.read_sample_times(block, summary_.rate, times.data());
   for (std::size_t i = 0; i < samples; ++i) {
     const double time = times[i] - summary_.first_time;
-    if (delayed_->is_running() && loop_->starts_anew(time)) flush();
+    if (filtered_->inside() > 0 && loop_->starts_anew(time)) flush();
     State<double>& state = loop_->state();
     for (const Input& input : inputs_) state[input.quantity] = input.values[i];
+    results_->enter();
+    filtered_->enter();
     loop_->run(time);
-    note_sample(i);
-    note_filtered();
+    take_results();
   }
 }
 
@@ -443,9 +448,9 @@ ProcessSummary Processing::run(const std::filesystem::path& output) {
   std::vector<double> times;
   for (const RecordBlock block : blocks_of(flight_.records())) {
     process_block(block, times);
-    for (const Output& derived : outputs_) writer.write(derived.number, block, derived.values.data());
     if (block.first + block.count == flight_.records()) flush();
-    delayed_->write(writer, static_cast<std::size_t>(summary_.rate));
+    for (const auto line : {&results_, &filtered_})
+      (*line)->write(writer, static_cast<std::size_t>(summary_.rate));
     if (options_.progress) options_.progress(block.first + block.count, flight_.records());
   }
   writer.finish();

@@ -12,8 +12,8 @@ namespace {
 
 /// Calls `use` with the number and the rate of every `stride`-th sample.
 template <class Use>
-void each_rate(const RateFilter& filter, const FastSeries& series, const std::vector<double>& time,
-               double step, std::size_t stride, const Use& use) {
+void each_rate(RateFilter filter, const FastSeries& series, const std::vector<double>& time, double step,
+               std::size_t stride, const Use& use) {
   for (std::size_t record = 0; record < time.size();) {
     std::size_t next = record + 1;
     while (next < time.size() && time[next] - time[next - 1] <= 1.25 * step) ++next;

@@ -108,13 +108,7 @@ TEST(RateOfSeries, BridgesNoGap) {
     if (i >= 30) time[i] += 100.0;
   }
   const std::vector<double> rate = rate_of(series, time, 1.0, 2.0);
-  for (std::size_t i = 0; i < 60; ++i) {
-    if (i == 0 || i == 29 || i == 30 || i == 59) {
-      EXPECT_TRUE(std::isnan(rate[i])) << i;
-    } else {
-      EXPECT_NEAR(rate[i], i < 30 ? 1.0 : -1.0, 1e-9) << i;
-    }
-  }
+  for (std::size_t i = 0; i < 60; ++i) EXPECT_NEAR(rate[i], i < 30 ? 1.0 : -1.0, 1e-9) << i;
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ inline constexpr std::array<QualityFacts, 18> quality_facts{{
     {Quality::tapered, "tapered", "delta-p tapered at low dynamic pressure"},
     {Quality::minimum_applied, "minimum_applied", "delta-p raised to the minimum of the law"},
     {Quality::outside_domain, "outside_domain", "an input lies outside the domain of the law: extrapolated"},
-    {Quality::after_gap, "after_gap", "first sample after a gap: effects of rates of change have none"},
+    {Quality::after_gap, "after_gap", "beside a gap: effects of rates of change have too few neighbours"},
     {Quality::corrected_with_lams, "corrected_with_lams",
      "pressures corrected with LAMS, not with the model"},
     {Quality::defect_exceeds_dynamic_pressure, "defect_exceeds_dynamic_pressure",

@@ -164,7 +164,7 @@ inline constexpr std::array<QuantityFacts, quantity_count> quantity_facts{{
     {"ambient_temperature_rate", "K/s", "rate of change of the ambient temperature",
      Quantity::ambient_temperature_rate},
     {"airspeed_rate", "m/s2",
-     "rate of change of the airspeed, from the measured pressures and the temperature",
+     "rate of change of the airspeed along the laser's beam, by the corrected pressures",
      Quantity::airspeed_rate},
     {"port_static_pressure", "hPa", "static pressure at the port, after effects of transducer and line",
      Quantity::port_static_pressure},

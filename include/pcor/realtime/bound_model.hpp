@@ -87,6 +87,17 @@ class BoundModel {
   Where where_of(std::size_t effect) const { return effects_[effect].where; }
   std::size_t first_parameter_of(std::size_t effect) const { return effects_[effect].first_parameter; }
 
+  /// The time, s, over which the model finds a quantity that remembers (`EffectFacts::memory`): the
+  /// coefficient of the effect that says so, 0 without one.
+  double time_of(Quantity remembered) const {
+    for (const Term& term : effects_) {
+      if (term.effect >= catalogue_size) continue;
+      const Memory& memory = effect_facts[term.effect].memory;
+      if (memory.of == remembered) return parameters_[term.first_parameter + memory.parameter];
+    }
+    return 0.0;
+  }
+
   /// True where the value of the effect is linear in that coefficient of it, and zero where all such are
   /// zero.
   bool is_linear(std::size_t effect, std::size_t parameter) const {

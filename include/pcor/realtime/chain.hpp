@@ -53,7 +53,6 @@ class Chain : public BoundModel {
 
     if (derives(Quantity::dynamic_ratio)) state[Quantity::dynamic_ratio] = q / p;
     if (derives(Quantity::mach)) state[Quantity::mach] = mach_number(p, q, dry_air<S>());
-    if (derives(Quantity::airspeed_rate)) state[Quantity::airspeed_rate] = airspeed_rate(state);
     if (derives(Quantity::vapor_pressure)) {
       state[Quantity::vapor_pressure] = recorded_vapor_pressure(state, p);
     }
@@ -311,36 +310,6 @@ class Chain : public BoundModel {
   template <class S>
   S radome_angle(const RadomeCalibration& radome, Quantity ratio, const State<S>& state) const {
     return radome.needs_mach() ? radome(state[ratio], state[Quantity::mach]) : radome(state[ratio]);
-  }
-
-  // Rate of change of the airspeed, m/s2, from the measured pressures, the temperature and their rates:
-  //
-  //     v^2 = 7 R_d T h,   h = (1 + q/p)^(2/7) - 1 = M^2/5,   T = T_r/(1 + a_r h)
-  //     dv/dt = v/2 (dh/dt / h + dT/dt / T)
-  //
-  // in dry air and without the effects of the model, within some percent. NaN where q is not above zero.
-  // Source: memo eq. 5-7.
-  template <class S>
-  S airspeed_rate(const State<S>& state) const {
-    using std::sqrt;
-    const S p = state[Quantity::static_pressure];
-    const S q = state[Quantity::dynamic_pressure];
-    const S heating = power_less_one(q, p, S(2.0 / 7.0));
-    const S ratio_rate =
-        (state[Quantity::dynamic_pressure_rate] - q / p * state[Quantity::static_pressure_rate]) / p;
-    const S heating_rate = S(2.0 / 7.0) * (S(1.0) + heating) * p / (p + q) * ratio_rate;
-    S temperature = state[Quantity::ambient_temperature];
-    S relative_rate = state[Quantity::ambient_temperature_rate] / temperature;
-    if (derives_temperature()) {
-      const S recovered = state[Quantity::recovery_temperature];
-      const S factor = recovery_(sqrt(S(5.0) * heating));
-      const S warming = S(1.0) + factor * heating;
-      temperature = recovered / warming;
-      relative_rate =
-          state[Quantity::recovery_temperature_rate] / recovered - factor * heating_rate / warming;
-    }
-    const S airspeed = sqrt(S(7.0 * constants::gas_constant_dry_air) * temperature * heating);
-    return S(0.5) * airspeed * (heating_rate / heating + relative_rate);
   }
 
   // True where the dynamic pressure is more than the noise of its sensor.

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include <pcor/realtime/functor.hpp>
+#include <pcor/realtime/look_ahead.hpp>
 #include <pcor/realtime/low_pass.hpp>
-#include <pcor/realtime/rate_of_change.hpp>
 #include <pcor/realtime/result_uncertainty.hpp>
 #include <pcor/realtime/stages.hpp>
 
@@ -45,6 +45,10 @@ class StageFunctor final : public Functor {
 ///     loop.state()[Quantity::static_pressure] = 702.3;   // every recorded quantity of this sample
 ///     loop.run(time);
 ///     use(loop.state()[Quantity::corrected_static_pressure], loop.quality());
+///
+/// A model with effects of rates of change, as lags are, needs later samples to correct one. After `run` the
+/// state then is that of the sample `delay()` runs ago, inputs, time and all; missing until there is one. Of
+/// the last samples before a gap or the end the host gets the results by further runs without values.
 class Loop {
  public:
   /// A loop at `rate` samples in a second. A step of more than one and a half samples is a gap.
@@ -90,15 +94,22 @@ class Loop {
     });
   }
 
-  /// The values of this sample: set what is recorded, run, read what is derived.
+  /// The values of a sample: set what is recorded, run, read what is derived.
   State<double>& state() { return state_; }
   const State<double>& state() const { return state_; }
 
-  /// The quality bits of the last sample.
+  /// The quality bits of the sample that the state is of.
   QualityFlags quality() const { return quality_; }
 
   /// The variables beyond the quantities of the library, by name; number i is at `extra_quantity(i)`.
   const std::vector<std::string>& extra_names() const { return extra_names_; }
+
+  /// How many runs after its own the results of a sample are there: 0 for a model that reads no rate of
+  /// change.
+  std::size_t delay() const noexcept { return look_ahead_ ? look_ahead_->delay() : 0; }
+
+  /// The time of the sample that was run last, s.
+  double last_time() const noexcept { return previous_time_; }
 
   /// Forgets all earlier samples.
   void reset() noexcept { started_ = false; }
@@ -115,10 +126,12 @@ class Loop {
     quality_.clear();
     if (starts_anew(time)) {
       for (const auto& functor : functors_) functor->reset();
+      if (look_ahead_) look_ahead_->reset();
     }
     started_ = true;
     previous_time_ = time;
     state_[Quantity::time] = time;
+    if (look_ahead_ && !look_ahead_->exchange(state_, quality_)) return;
     for (const auto& functor : functors_) functor->compute(state_, quality_);
   }
 
@@ -128,6 +141,7 @@ class Loop {
                                             : extra_names_[extra_number(quantity)];
   }
 
+  std::optional<LookAhead> look_ahead_;
   std::vector<std::unique_ptr<Functor>> functors_;
   std::vector<std::string> extra_names_;
   State<double> state_;
@@ -213,14 +227,7 @@ inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, doubl
   }
   Loop loop(rate);
   for (const std::string& name : chain->extra_names()) loop.add_variable(name);
-  for (const Rate& each : rates) {
-    if (!chain->derives(each.rate)) continue;
-    if (each.quantity == Quantity::ambient_temperature && chain->calibrates_recorded_temperature()) {
-      loop.add(RateOfChange::as_recorded(each.quantity, each.rate));
-    } else {
-      loop.add(std::make_unique<RateOfChange>(each.quantity, each.rate));
-    }
-  }
+  loop.look_ahead_ = LookAhead::build(chain, rate);
   Stages::each([&](auto stage) {
     auto functor = std::make_unique<StageFunctor<decltype(stage)>>(chain, with);
     if (!functor->outputs().empty()) loop.add(std::move(functor));

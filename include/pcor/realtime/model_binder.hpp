@@ -256,7 +256,10 @@ class ModelBinder {
       case Quantity::ambient_temperature_rate:
         return require(Quantity::ambient_temperature, who);
       case Quantity::airspeed_rate:
-        return require_airspeed_rate(who);
+        return require(bound_.has_temperature() && !bound_.derives_temperature()
+                           ? Quantity::ambient_temperature
+                           : Quantity::recovery_temperature,
+                       who);
       case Quantity::vapor_pressure:
         return require_vapor_pressure(who);
       case Quantity::attack_ratio:
@@ -272,12 +275,6 @@ class ModelBinder {
       default:
         return fail_missing(quantity, who);
     }
-  }
-
-  bool require_airspeed_rate(const std::string& who) {
-    const bool ambient = bound_.recorded(Quantity::ambient_temperature);
-    return require(Quantity::static_pressure_rate, who) && require(Quantity::dynamic_pressure_rate, who) &&
-           require(ambient ? Quantity::ambient_temperature_rate : Quantity::recovery_temperature_rate, who);
   }
 
   bool require_vapor_pressure(const std::string& who) {

@@ -122,6 +122,10 @@ class NimbusSystem {
     Host::put(entry, is_fresh() ? static_cast<double>(current()->quality().bits()) : missing<double>());
   }
 
+  /// How many samples ago the values were that are put at the current rate (`Loop::delay`): 0 for a model
+  /// without effects of rates of change. The host moves them back in its files.
+  static std::size_t delay() { return current() ? current()->delay() : 0; }
+
   /// Forgets all earlier samples of both rates, as at the start of a flight.
   static void reset() {
     for (std::optional<Loop>* loop : {&low_, &high_}) {
@@ -145,7 +149,7 @@ class NimbusSystem {
 
   static bool is_fresh() {
     const std::optional<Loop>& loop = current();
-    return loop && loop->state()[Quantity::time] == Host::time();
+    return loop && loop->last_time() == Host::time();
   }
 
   static inline std::vector<Input> inputs_;

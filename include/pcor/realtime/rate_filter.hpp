@@ -27,8 +27,9 @@ namespace pcor {
 ///     at 25 Hz    0.999   1.000   1.001   1.000   0.999   0.998   1.006   0.500   0.000
 ///
 /// A constant gives zero and a straight line its slope. White noise of deviation 1 becomes 1.5 per second at
-/// 1 Hz and 0.94 at 25 Hz, where the difference of neighbours has 35. Where samples are missing, or a flight
-/// begins, the widest window without them is taken, down to one of a single zero.
+/// 1 Hz and 0.94 at 25 Hz, where the difference of neighbours has 35. Over as many missing samples as lie
+/// between two zeros a line is drawn; beyond more of them, and beyond the ends of what is there, the series
+/// goes on as it came, turned by half a turn about its last sample.
 ///
 /// Source: Oppenheim and Schafer, Discrete-Time Signal Processing, ch. 4 and 7.
 class RateFilter {
@@ -39,72 +40,96 @@ class RateFilter {
   /// @param rate samples in a second, above zero and finite @param seconds over which the rate is the mean,
   /// s; those to come where below zero; finite @param shortest_period of which half the amplitude is left, s
   explicit RateFilter(double rate, double seconds = 0.0, double shortest_period = usual_period)
-      : rate_(rate),
-        shift_(std::abs(seconds) * rate < least_shift ? 0.0 : seconds * rate),
-        band_(std::min(1.0, 2.0 / (shortest_period * rate))) {
-    const auto narrowest = static_cast<std::size_t>(std::lround(1.0 / band_));
-    for (auto width = static_cast<std::size_t>(std::lround(zeros / band_)); width >= narrowest; --width)
-      windows_.push_back(window(static_cast<double>(width)));
+      : shift_(std::abs(seconds) * rate < least_shift ? 0.0 : seconds * rate),
+        band_(std::min(1.0, 2.0 / (shortest_period * rate))),
+        bridge_(static_cast<std::size_t>(std::lround(1.0 / band_))) {
+    constexpr double little = 1e-3;  // samples
+    const double width = std::round(zeros / band_);
+    const double late = shift_ == 0.0 ? little : 0.0;
+    const double early = shift_ == 0.0 ? -little : -shift_;
+    const double first = std::min({0.0, std::ceil(late - width), std::ceil(early - width)});
+    const double last = std::max({0.0, std::floor(late + width), std::floor(early + width)});
+    before_ = static_cast<std::size_t>(-first);
+    weights_.assign(static_cast<std::size_t>(last - first) + 1, 0.0);
+    add_value(late, width, rate / (late - early));
+    add_value(early, width, -rate / (late - early));
+    filled_.resize(3 * weights_.size());
   }
 
   /// How many samples before and after one take part in its rate.
-  std::size_t before() const { return windows_.front().before; }
-  std::size_t after() const { return windows_.front().after(); }
+  std::size_t before() const { return before_; }
+  std::size_t after() const { return weights_.size() - 1 - before_; }
 
   /// What becomes of the variance of white noise, per second squared.
-  double gain() const {
-    const std::vector<double>& weights = windows_.front().weights;
-    return std::inner_product(weights.begin(), weights.end(), weights.begin(), 0.0);
-  }
+  double gain() const { return std::inner_product(weights_.begin(), weights_.end(), weights_.begin(), 0.0); }
 
   /// The rate per second at `*sample`, of which `earlier` samples before it and `later` ones after it may be
-  /// read. NaN where too many of those next to it, or itself, are missing.
-  double operator()(const double* sample, std::size_t earlier, std::size_t later) const noexcept {
-    for (const Window& window : windows_) {
-      if (window.before > earlier || window.after() > later) continue;
-      const double* const from = sample - window.before;
-      double sum = 0.0;
-      for (std::size_t k = 0; k < window.weights.size(); ++k) sum += window.weights[k] * (from[k] - *sample);
-      if (is_finite(sum)) return sum;
+  /// read. NaN where it is missing, or has no neighbour.
+  double operator()(const double* sample, std::size_t earlier, std::size_t later) noexcept {
+    if (earlier >= before_ && later >= after()) {
+      const double rate = sum(sample - before_);
+      if (is_finite(rate)) return rate;
     }
-    return missing<double>();
+    return fill(sample, earlier, later) ? sum(filled_.data() + weights_.size()) : missing<double>();
   }
 
  private:
   static constexpr double least_shift = 0.02;  // samples, below which a mean rate is the derivative
 
-  struct Window {
-    std::size_t before = 0;  // the sample
-    std::vector<double> weights{};
-    std::size_t after() const { return weights.size() - 1 - before; }
-  };
-
-  Window window(double width) const {
-    constexpr double little = 1e-3;  // samples
-    const double late = shift_ == 0.0 ? little : 0.0;
-    const double early = shift_ == 0.0 ? -little : -shift_;
-    Window result;
-    const double first = std::min({0.0, std::ceil(late - width), std::ceil(early - width)});
-    const double last = std::max({0.0, std::floor(late + width), std::floor(early + width)});
-    result.before = static_cast<std::size_t>(-first);
-    result.weights.assign(static_cast<std::size_t>(last - first) + 1, 0.0);
-    const double scale = rate_ / (late - early);
-    add_value(late, width, scale, result);
-    add_value(early, width, -scale, result);
+  double sum(const double* first) const noexcept {
+    const double here = first[before_];
+    double result = 0.0;
+    for (std::size_t k = 0; k < weights_.size(); ++k) result += weights_[k] * (first[k] - here);
     return result;
   }
 
+  /// Fills a window where samples are missing. False where there is nothing to fill it with.
+  bool fill(const double* sample, std::size_t earlier, std::size_t later) noexcept {
+    const auto at = [&](std::size_t place) {
+      return sample[static_cast<std::ptrdiff_t>(place) - static_cast<std::ptrdiff_t>(before_)];
+    };
+    if (!is_finite(*sample)) return false;
+    std::size_t first = before_;
+    for (std::size_t k = before_; k-- > before_ - std::min(before_, earlier) && first - k <= bridge_ + 1;) {
+      if (is_finite(at(k))) first = k;
+    }
+    std::size_t last = before_;
+    for (std::size_t k = before_; ++k <= before_ + std::min(after(), later) && k - last <= bridge_ + 1;) {
+      if (is_finite(at(k))) last = k;
+    }
+    if (first == last) return false;
+    double* const filled = filled_.data() + weights_.size();
+    std::size_t known = first;
+    for (std::size_t k = first; k <= last; ++k) {
+      if (!is_finite(at(k))) continue;
+      for (std::size_t between = known; between < k; ++between) {
+        const double part = static_cast<double>(between - known) / static_cast<double>(k - known);
+        filled[between] = at(known) + part * (at(k) - at(known));
+      }
+      filled[k] = at(k);
+      known = k;
+    }
+    // Outwards on both sides, so that what is turned is there.
+    for (std::size_t away = 1; away <= weights_.size(); ++away) {
+      *(filled + first - away) = 2.0 * filled[first] - filled[first + away];
+      filled[last + away] = 2.0 * filled[last] - *(filled + last - away);
+    }
+    return true;
+  }
+
   /// Adds `scale` times the weights of the value at `place`, in samples from the one in question.
-  void add_value(double place, double width, double scale, Window& window) const {
+  void add_value(double place, double width, double scale) {
     constexpr double pi = 180.0 * constants::radians_per_degree;
-    const std::size_t count = window.weights.size();
-    std::vector<double> taper(count);
-    std::vector<double> value(count);
+    std::vector<double> taper(weights_.size());
+    std::vector<double> value(weights_.size());
     std::array<double, 3> moments{};  // of the taper
     double sum = 0.0;
     double first_moment = 0.0;
-    for (std::size_t k = 0; k < count; ++k) {
-      const double from = static_cast<double>(k) - static_cast<double>(window.before) - place;
+    const auto from_place = [&](std::size_t k) {
+      return static_cast<double>(k) - static_cast<double>(before_) - place;
+    };
+    for (std::size_t k = 0; k < weights_.size(); ++k) {
+      const double from = from_place(k);
       if (std::abs(from) >= width + 1.0) continue;
       taper[k] = 0.5 + 0.5 * std::cos(pi * from / (width + 1.0));
       const double phase = pi * band_ * from;
@@ -118,16 +143,16 @@ class RateFilter {
     const double determinant = moments[0] * moments[2] - moments[1] * moments[1];
     const double constant = (moments[2] * (1.0 - sum) + moments[1] * first_moment) / determinant;
     const double slope = -(moments[1] * (1.0 - sum) + moments[0] * first_moment) / determinant;
-    for (std::size_t k = 0; k < count; ++k) {
-      const double from = static_cast<double>(k) - static_cast<double>(window.before) - place;
-      window.weights[k] += scale * (value[k] + (constant + slope * from) * taper[k]);
-    }
+    for (std::size_t k = 0; k < weights_.size(); ++k)
+      weights_[k] += scale * (value[k] + (constant + slope * from_place(k)) * taper[k]);
   }
 
-  double rate_;
-  double shift_;                 // samples
-  double band_;                  // part of the band of the samples that is left
-  std::vector<Window> windows_;  // the widest first
+  double shift_;        // samples
+  double band_;         // part of the band of the samples that is left
+  std::size_t bridge_;  // samples between two zeros
+  std::size_t before_ = 0;
+  std::vector<double> weights_;
+  std::vector<double> filled_;  // a window without missing samples, and as much on either side
 };
 
 }  // namespace pcor

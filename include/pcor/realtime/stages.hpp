@@ -74,7 +74,9 @@ struct MeasuredQuantities {
     for (const Rate& each : rates) {
       if (chain.derives(each.rate)) read.push_back(each.rate);
     }
-    if (chain.needs(Quantity::time)) read.push_back(Quantity::time);
+    for (const Quantity given : {Quantity::airspeed_rate, Quantity::time}) {
+      if (chain.needs(given)) read.push_back(given);
+    }
     return read;
   }
 
@@ -84,7 +86,7 @@ struct MeasuredQuantities {
     written.insert(written.end(), {Quantity::port_static_pressure, Quantity::port_dynamic_pressure});
     for (const Quantity derived :
          {Quantity::dynamic_ratio, Quantity::mach, Quantity::attack_ratio, Quantity::sideslip_ratio,
-          Quantity::attack, Quantity::sideslip, Quantity::vapor_pressure, Quantity::airspeed_rate}) {
+          Quantity::attack, Quantity::sideslip, Quantity::vapor_pressure}) {
       if (chain.derives(derived)) written.push_back(derived);
     }
     return written;

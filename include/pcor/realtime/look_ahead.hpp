@@ -1,0 +1,119 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <pcor/realtime/chain.hpp>
+#include <pcor/realtime/rate_filter.hpp>
+
+namespace pcor {
+
+/// Holds samples back until those after them are there from which their rates of change are found
+/// (`RateFilter`): real time knows no later sample, and a rate without them would be late, or noise.
+///
+/// It belongs to a chain that reads rates. The rates of recorded quantities are derivatives. That of the
+/// airspeed is of the airspeed along the beam of the laser where there is one, by the corrected pressures,
+/// and the mean over the delay of the laser's clock, where the model has one; what lags take from the
+/// pressures themselves is left out of it. After the first use nothing is allocated.
+class LookAhead {
+ public:
+  /// For `chain` at `rate` samples in a second; nothing where it reads no rate of change.
+  static std::optional<LookAhead> build(const std::shared_ptr<const Chain>& chain, double rate) {
+    LookAhead result(chain);
+    for (const Rate& each : rates) {
+      if (chain->derives(each.rate))
+        result.changes_.push_back({each.quantity, each.rate, RateFilter(rate), {}});
+    }
+    if (chain->derives(Quantity::airspeed_rate)) {
+      result.changes_.push_back({Quantity::corrected_airspeed,
+                                 Quantity::airspeed_rate,
+                                 RateFilter(rate, chain->time_of(Quantity::airspeed_rate)),
+                                 {}});
+    }
+    if (result.changes_.empty()) return std::nullopt;
+    result.take_memory();
+    return result;
+  }
+
+  /// How many samples later than it came a sample leaves, at this rate: 6 at 1 Hz, 75 at 25 Hz.
+  std::size_t delay() const { return delay_; }
+
+  /// Forgets all samples.
+  void reset() noexcept {
+    entered_ = 0;
+    for (Change& change : changes_) std::fill(change.values.begin(), change.values.end(), missing<double>());
+  }
+
+  /// Takes a sample and gives the one that came `delay` before it, with its rates of change. False, and all
+  /// is missing, where there is none yet. The bit `after_gap` says that a rate has too few neighbours.
+  bool exchange(State<double>& state, QualityFlags& flags) noexcept {
+    const std::size_t length = before_ + 1 + delay_;
+    for (Change& change : changes_) {
+      // Each value is kept twice, so that the window lies in one piece, the oldest first.
+      const double value = change.of == Quantity::corrected_airspeed ? airspeed_along_beam(state)
+                                                                     : finite_or_missing(state[change.of]);
+      change.values[next_] = change.values[next_ + length] = value;
+    }
+    next_ = (next_ + 1) % length;
+    samples_[entered_ % samples_.size()] = state;
+    ++entered_;
+    if (entered_ <= delay_) {
+      state = State<double>();
+      return false;
+    }
+    state = samples_[(entered_ - 1 - delay_) % samples_.size()];
+    const std::size_t earlier = std::min(entered_ - 1 - delay_, before_);
+    for (Change& change : changes_) {
+      const double* const centre = change.values.data() + next_ + before_;
+      state[change.rate] = change.filter(centre, earlier, delay_);
+      flags.set(is_missing(state[change.rate]) && !is_missing(*centre), Quality::after_gap);
+    }
+    return true;
+  }
+
+ private:
+  /// A quantity and its rate, of the last samples.
+  struct Change {
+    Quantity of;
+    Quantity rate;
+    RateFilter filter;
+    std::vector<double> values;
+  };
+
+  explicit LookAhead(std::shared_ptr<const Chain> chain) : chain_(std::move(chain)) {}
+
+  void take_memory() {
+    for (const Change& change : changes_) {
+      before_ = std::max(before_, change.filter.before());
+      delay_ = std::max(delay_, change.filter.after());
+    }
+    samples_.resize(delay_ + 1);
+    for (Change& change : changes_) change.values.assign(2 * (before_ + 1 + delay_), missing<double>());
+  }
+
+  double airspeed_along_beam(State<double> state) const noexcept {
+    const double* const parameters = chain_->parameters().data();
+    NoQualityFlags flags;
+    for (const Change& change : changes_) state[change.rate] = 0.0;
+    chain_->measure(state, parameters, flags);
+    chain_->correct(state, chain_->static_defect(state, parameters, flags), flags);
+    chain_->air(state, parameters, flags);
+    const double airspeed = state[Quantity::corrected_airspeed];
+    return finite_or_missing(chain_->has_lams() ? airspeed * chain_->cosine_of_beam(state, parameters)
+                                                : airspeed);
+  }
+
+  std::shared_ptr<const Chain> chain_;
+  std::vector<Change> changes_;
+  std::vector<State<double>> samples_;  // the last ones, as they came
+  std::size_t before_ = 0;
+  std::size_t delay_ = 0;
+  std::size_t next_ = 0;     // in the values of the changes
+  std::size_t entered_ = 0;  // samples since the last reset
+};
+
+}  // namespace pcor
