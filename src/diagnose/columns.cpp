@@ -82,9 +82,8 @@ std::vector<Remembered> remembered_by(const CandidateSet& set, const FlightSampl
   double period = 0.0;
   for (const Candidate& candidate : set.candidates) {
     const Quantity quantity = memory_of(candidate.effect).of;
-    if (quantity == Quantity::count || candidate.is_of_reference() || samples.model.find(quantity) == nullptr)
-      continue;
     const FastSeries& speed = samples.model.along_beam;
+    if (quantity == Quantity::count || candidate.is_of_reference() || speed.values.empty()) continue;
     if (period == 0.0) period = shortest_period_of(speed, samples.time, samples.step);
     all.push_back(
         {quantity, candidate.memory, rate_of(speed, samples.time, samples.step, period, candidate.memory)});

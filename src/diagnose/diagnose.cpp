@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include <pcor/effects/catalogue.hpp>
@@ -110,13 +109,6 @@ void drop_untestable(CandidateSet& set, std::vector<FlightColumns>& flights) {
     flight.candidates = Eigen::MatrixXf(flight.candidates(Eigen::all, kept));
 }
 
-/// The sign that physics gives a coefficient. How large it is met is a prior, how large it may be is no
-/// bound.
-Bounds sign_of(const Bounds& bounds) {
-  constexpr double any = std::numeric_limits<double>::infinity();
-  return {bounds.lower == 0.0 ? 0.0 : -any, bounds.upper == 0.0 ? 0.0 : any};
-}
-
 /// The variables that effects of the catalogue read.
 std::set<std::string> inputs_of(const std::vector<Finding>& findings, const ModelFile& model) {
   std::set<std::string> names;
@@ -173,7 +165,7 @@ std::vector<ColumnGroup> groups_of(const ModelFile& model, const std::vector<Can
     group.first = first;
     group.count = as_index(candidate.tested.size());
     for (const CandidateParameter& parameter : candidate.tested) {
-      group.bounds.push_back(sign_of(parameter.bounds));
+      group.bounds.push_back(parameter.bounds);
       group.usual.push_back(parameter.typical);
     }
     first += group.count;

@@ -576,12 +576,14 @@ TEST_F(Process, HydrostaticStepsKnowTheVapour) {
 }
 
 // In a descent at a constant rate a lagging line reads tau dp/dt too low; only the first sample has no rate.
-TEST_F(Process, GivesRatesToEffectsFromTheSampleBefore) {
+// A lag needs samples before and after; each gap ends a series, of which nothing is lost but a sample that is
+// alone.
+TEST_F(Process, GivesRatesToEffectsOnBothSidesOfAGap) {
   {
     test::NetcdfMaker maker(input_);
-    maker.time({100, 101, 102, 103, 203, 204});
-    maker.series("PSFD", "hPa", {700, 701, 702, 703, 800, 801});
-    maker.series("QCF", "hPa", std::vector<double>(6, 60.0));
+    maker.time({100, 101, 102, 103, 203, 204, 304});
+    maker.series("PSFD", "hPa", {700, 701, 702, 703, 800, 801, 900});
+    maker.series("QCF", "hPa", std::vector<double>(7, 60.0));
   }
   ModelFile model = parse_model(R"(
 format = "pcor-model/1"
@@ -597,12 +599,15 @@ parameters = { tau = 0.5 }
 )",
                                 "lag.toml");
   const ProcessSummary summary = process_flight(input_, model, output_);
-  EXPECT_EQ(summary.gaps, 1U);
+  EXPECT_EQ(summary.gaps, 2U);
   const std::vector<double> p = read("PSXC", "hPa");
-  EXPECT_THAT(p, testing::ElementsAre(testing::IsNan(), 701.5, 702.5, 703.5, testing::IsNan(), 801.5));
-  const double after_gap =
+  using testing::DoubleNear;
+  EXPECT_THAT(p, testing::ElementsAre(DoubleNear(700.5, 1e-4), DoubleNear(701.5, 1e-4),
+                                      DoubleNear(702.5, 1e-4), DoubleNear(703.5, 1e-4),
+                                      DoubleNear(800.5, 1e-4), DoubleNear(801.5, 1e-4), testing::IsNan()));
+  const double alone =
       static_cast<double>(Quality::after_gap) + static_cast<double>(Quality::effect_input_missing);
-  EXPECT_THAT(read("PCORFLAG", ""), testing::ElementsAre(after_gap, 0, 0, 0, after_gap, 0));
+  EXPECT_THAT(read("PCORFLAG", ""), testing::ElementsAre(0, 0, 0, 0, 0, 0, alone));
 }
 
 }  // namespace
