@@ -190,7 +190,7 @@ void Analysis::find_noise(const std::vector<std::size_t>& groups, const Eigen::V
         internal::find_noise(part(bins_, first, last), part(columns, first, last), part(left, first, last));
     if (first == 0) drift_gain_ = found.drift_gain;
     likelihood_ += found.likelihood;
-    return with_slower_noise(found.model);
+    return with_slower_noise(found.model);  // the likelihood is that of what the flights tell
   });
   keep_coefficients(groups, estimate);
 }

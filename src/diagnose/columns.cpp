@@ -79,12 +79,13 @@ std::vector<Evaluation> evaluations_of(const CandidateSet& set, std::size_t refe
 /// What the candidates of the own system remember, each over the times that are tried.
 std::vector<Remembered> remembered_by(const CandidateSet& set, const FlightSamples& samples) {
   std::vector<Remembered> all;
-  double period = 0.0;
   for (const Candidate& candidate : set.candidates) {
     const Quantity quantity = memory_of(candidate.effect).of;
     const FastSeries& speed = samples.model.along_beam;
     if (quantity == Quantity::count || candidate.is_of_reference() || speed.values.empty()) continue;
-    if (period == 0.0) period = shortest_period_of(speed, samples.time, samples.step);
+    const double period = speed.shortest_period != 0.0
+                              ? speed.shortest_period
+                              : shortest_period_of(speed, samples.time, samples.step);
     all.push_back(
         {quantity, candidate.memory, rate_of(speed, samples.time, samples.step, period, candidate.memory)});
   }
@@ -223,8 +224,11 @@ class CandidateValues {
     for (const auto& [quantity, series] : inputs_) state[quantity] = series[sample];
     chain_.measure(state, chain_.parameters().data(), flags);
     for (const Evaluation& each : evaluations_) {
-      if (each.remembered != nullptr) state[each.remembered->quantity] = each.remembered->values[sample];
+      const Quantity remembered = each.remembered != nullptr ? each.remembered->quantity : Quantity::count;
+      const double usual = remembered != Quantity::count ? state[remembered] : 0.0;
+      if (remembered != Quantity::count) state[remembered] = each.remembered->values[sample];
       const Jet value = chain_.effect_value(each.effect, state, each.parameters.data());
+      if (remembered != Quantity::count) state[remembered] = usual;
       const double at_place = derivative(each.place);
       for (std::size_t p = 0; p < each.width; ++p)
         columns(as_index(sample), as_index(each.first_column + p)) =

@@ -172,7 +172,7 @@ struct Tested {
     }
   }
 
-  /// Whether that of greatest gain is beyond chance.
+  /// Whether that of greatest gain, for its freedom, is beyond chance.
   bool explains_most_beyond_chance() const {
     const std::vector<Structure>& all = test.structures();
     const auto most = std::max_element(all.begin(), all.end(), [](const Structure& a, const Structure& b) {

@@ -17,8 +17,11 @@ namespace {
 
 /// Of a flight that is kept; of two static systems its samples are kept twice.
 std::size_t bytes_of(const FlightSamples& samples, const Reference& reference) {
-  const std::size_t columns = samples.model.columns.size() + samples.reference.columns.size() + 12;
-  return (reference.model() != nullptr ? 2 : 1) * columns * samples.time.size() * sizeof(double);
+  const ModelSamples& model = samples.model;
+  const std::size_t columns =
+      model.columns.size() + model.moving.size() + samples.reference.columns.size() + 12;
+  const std::size_t copies = reference.model() != nullptr ? 2 : 1;
+  return copies * (columns * samples.time.size() + model.along_beam.values.size()) * sizeof(double);
 }
 
 }  // namespace
@@ -76,12 +79,14 @@ std::vector<FitFlights*> FitFlights::joint() {
 }
 
 bool FitFlights::stays_as_prepared() const {
+  return has_moving_columns() || task_.reference.model() != nullptr ||
+         !task_.reference.is_static_pressure() || !seeing_.empty();
+}
+
+bool FitFlights::has_moving_columns() const {
   const std::vector<ModelEffect>& effects = task_.model.model.effects;
-  const bool moves = std::any_of(effects.begin(), effects.end(), [](const ModelEffect& effect) {
-    return memory_of(effect).of != Quantity::count;
-  });
-  return moves || task_.reference.model() != nullptr || !task_.reference.is_static_pressure() ||
-         !seeing_.empty();
+  return std::any_of(effects.begin(), effects.end(),
+                     [](const ModelEffect& effect) { return memory_of(effect).of != Quantity::count; });
 }
 
 std::shared_ptr<const FlightSamples> FitFlights::samples_of(std::size_t number) const {
@@ -95,7 +100,8 @@ std::shared_ptr<const FlightSamples> FitFlights::samples_of(std::size_t number) 
 std::shared_ptr<FitFlight> FitFlights::made(std::size_t number,
                                             std::shared_ptr<const FlightSamples> samples) {
   if (cache_[number]) return cache_[number];
-  const std::size_t own_bytes = sources_[number].samples ? 0 : bytes_of(*samples, task_.reference);
+  const bool is_given = sources_[number].samples != nullptr && samples->model.moving.empty();
+  const std::size_t own_bytes = is_given ? 0 : bytes_of(*samples, task_.reference);
   auto fit = std::make_shared<FitFlight>(std::move(samples), task_, setup_);
   if (prepared_parameters_.size() > 0) {
     fit->prepare(prepared_parameters_, own(prepared_offsets_, first_offset_[number], *fit));

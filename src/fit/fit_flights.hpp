@@ -169,6 +169,9 @@ class FitFlights {
   /// coefficient.
   bool stays_as_prepared() const;
 
+  /// True where columns hang on a coefficient, and a first solution from far off is none yet.
+  bool has_moving_columns() const;
+
   std::size_t count() const { return sources_.size(); }
 
   /// What a flight is called.

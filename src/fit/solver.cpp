@@ -91,6 +91,14 @@ class Solver {
       measure(false);
       // The solution of a convex loss is unique; from Huber's the others find the minimum of the bulk.
       settles_with(loss == Loss::none ? loss : Loss::huber);
+      // The noise is that of residuals at the solution.
+      constexpr int most = 5;
+      for (int round = 0; round < most && flights_.has_moving_columns(); ++round) {
+        const Eigen::VectorXd before = unknowns_;
+        flights_.prepare(solution_.values, solution_.offsets);
+        settles_with(loss == Loss::none ? loss : Loss::huber);
+        if (stands_still(before)) break;
+      }
     }
     measure(task_.options.drift);
     constexpr int rounds = 10;

@@ -29,7 +29,6 @@ class DelayLine {
   void add(Output output) { outputs_.push_back(std::move(output)); }
   void set_flags(std::size_t number) { flags_ = Output{Quantity::count, 0.0, number, {}}; }
 
-  std::size_t delay() const { return delay_; }
   /// Samples that have entered since the last gap and not left yet.
   std::size_t inside() const { return entered_ - left_; }
 

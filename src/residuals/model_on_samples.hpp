@@ -58,6 +58,15 @@ class ModelOnSamples {
     chain().air(state, parameters, flags);
   }
 
+  /// The airspeed of one sample along the beam, m/s, as `Chain::airspeed_along_beam` has it, by a law that
+  /// takes the rate of this airspeed, which is to be found from it, as zero.
+  double airspeed_along_beam(std::size_t sample, const double* parameters) const {
+    State<double> state;
+    read(sample, parameters, state);
+    state[Quantity::airspeed_rate] = 0.0;
+    return chain().airspeed_along_beam(state, parameters);
+  }
+
   /// The total pressure of one sample at the ports, hPa: static plus dynamic, in which delta-p cancels.
   template <class S>
   S total_pressure(std::size_t sample, const S* parameters) const {

@@ -19,12 +19,7 @@ std::vector<double> airspeed_along_beam(const ModelFile& model, const ModelSampl
   const ModelOnSamples law(model, samples);
   if (parameters == nullptr) parameters = law.parameters().data();
   std::vector<double> speed(samples.find(Quantity::static_pressure)->size());
-  for (std::size_t i = 0; i < speed.size(); ++i) {
-    State<double> state;
-    law.air(i, parameters, state);
-    speed[i] = state[Quantity::corrected_airspeed];
-    if (law.chain().has_lams()) speed[i] *= law.chain().cosine_of_beam(state, parameters);
-  }
+  for (std::size_t i = 0; i < speed.size(); ++i) speed[i] = law.airspeed_along_beam(i, parameters);
   return speed;
 }
 
@@ -49,7 +44,8 @@ void find_moving_columns(const ModelFile& model, const double* parameters, const
     // As recorded at a higher rate it stays that of the model as it was read.
     FastSeries& speed = samples.along_beam;
     if (speed.in_record == 1) speed.values = airspeed_along_beam(model, samples, parameters);
-    const double period = shortest_period_of(speed, time, step);
+    if (speed.shortest_period == 0.0) speed.shortest_period = shortest_period_of(speed, time, step);
+    const double period = speed.shortest_period;
     const std::vector<double> rate = rate_of(speed, time, step, period, at);
     const std::vector<double> above = rate_of(speed, time, step, period, at + little);
     const std::vector<double> below = rate_of(speed, time, step, period, at - little);

@@ -59,6 +59,7 @@ double shortest_period_of(const FastSeries& series, const std::vector<double>& t
   std::vector<double> power;
   for (std::size_t k = 0; k + 1 < periods.size(); ++k)
     power.push_back((variance[k] - variance[k + 1]) / (gain[k] - gain[k + 1]));
+  if (power.size() < 2) return 2.0 / rate;
   // Where the spectrum still falls at its end, noise is below all of it.
   const double noise = power[1] < flat * power[0] ? power[0] : 0.5 * power[0];
   std::size_t k = 0;

@@ -178,14 +178,16 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelFile&
     add(Quantity::time, std::move(since_first));
   }
   const double step = flight.time().step;
-  const auto rate = [&](const FastSeries& series) {
-    return rate_of(series, time, step, shortest_period_of(series, time, step));
+  const auto rate = [&](FastSeries& series) {
+    series.shortest_period = shortest_period_of(series, time, step);
+    return rate_of(series, time, step, series.shortest_period);
   };
   for (const auto& [quantity, its_rate] : rates) {
     if (!chain.derives(its_rate)) continue;
     const auto input = std::find_if(inputs.begin(), inputs.end(),
                                     [of = quantity](const ModelInput& each) { return each.quantity == of; });
-    add(its_rate, rate(read_fast(flight, *input, flight.variable(input->variable).rate)));
+    FastSeries recorded = read_fast(flight, *input, flight.variable(input->variable).rate);
+    add(its_rate, rate(recorded));
   }
   if (chain.derives(Quantity::airspeed_rate)) {
     // Of corrected pressures: in a pitch manoeuvre delta-p changes faster than the dynamic pressure.

@@ -575,7 +575,7 @@ TEST_F(Process, HydrostaticStepsKnowTheVapour) {
   EXPECT_NEAR(read("HYDSTEP", "m/K")[1] / dry, 1.0 + 0.378 * 0.01, 1e-4);
 }
 
-// In a descent at a constant rate a lagging line reads tau dp/dt too low; only the first sample has no rate.
+// In a descent at a constant rate a lagging line reads tau dp/dt too low.
 // A lag needs samples before and after; each gap ends a series, of which nothing is lost but a sample that is
 // alone.
 TEST_F(Process, GivesRatesToEffectsOnBothSidesOfAGap) {

@@ -325,6 +325,18 @@ TEST(Loop, FindsTheRatesThatEffectsNeed) {
   }
 }
 
+TEST(Loop, RefusesAClockThatNoLaserHas) {
+  for (const double seconds : {missing, infinity, 61.0, -1e300}) {
+    Model model = c130();
+    model.effects.push_back({"clock-skew", {seconds}});
+    std::vector<Quantity> roles;
+    for (const auto& [role, value] : level) roles.push_back(role);
+    std::string error;
+    EXPECT_FALSE(Loop::build(model, roles, 25.0, &error).has_value());
+    EXPECT_THAT(error, testing::HasSubstr("between -60 and 60 s"));
+  }
+}
+
 // A lag of 0.3 s in both lines, undone at each rate: what is left of it at periods of 2 s and more.
 TEST(Loop, UndoesLagsAtEveryRate) {
   constexpr double tau = 0.3;

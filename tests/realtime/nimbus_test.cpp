@@ -389,6 +389,15 @@ TEST(NimbusSystem, GivesUncertaintiesAsDifferences) {
   EXPECT_NEAR(static_cast<double>(table.low("ATX_U")), 0.1, 0.005);
 }
 
+TEST(NimbusSystem, PutsNothingBeforeItHasRun) {
+  ASSERT_TRUE(install_both());
+  Table table(raw_names, both_systems());
+  Second = 0.0;
+  FeedBack = low_rate_feedback;
+  table.entry("PCORFLAG").compute(&table.entry("PCORFLAG"));
+  EXPECT_THAT(table.low("PCORFLAG"), IsNan());
+}
+
 TEST(NimbusSystem, NeverPassesOffAnEarlierSampleAsThisOne) {
   ASSERT_TRUE(install_both());
   Table table(raw_names, both_systems());

@@ -73,6 +73,15 @@ TEST(ShortestPeriod, FindsNoiseThatIsKnownAtAHighRateOnly) {
   EXPECT_LT(period, 40.0);
 }
 
+TEST(ShortestPeriod, IsThatOfTwoSamplesWhereTheyAreFarApart) {
+  const FastSeries series = wave(50, 1, 0.1);
+  for (const double step : {16.0, 20.0, 60.0}) {
+    std::vector<double> time = seconds(50);
+    for (double& each : time) each *= step;
+    EXPECT_EQ(shortest_period_of(series, time, step), 2.0 * step);
+  }
+}
+
 TEST(RateOfSeries, IsTheDerivativeInTheMeanOverARecord) {
   for (const std::size_t in_record : {std::size_t{1}, std::size_t{5}, std::size_t{25}}) {
     const std::vector<double> rate = rate_of(wave(400, in_record, 0.0), seconds(400), 1.0, 2.0);

@@ -16,7 +16,8 @@ namespace pcor {
 /// The same formulas as in the loop, within 1e-13 of its values (1e-7 for delta-p from LAMS by approach 2,
 /// which iterates to that). There are no quality bits: what cannot be
 /// found is NaN. Nothing is remembered from one sample to the next, so a model with rates of change needs
-/// them as arrays: `static_pressure_rate`, `dynamic_pressure_rate`.
+/// them as arrays: `static_pressure_rate`, `dynamic_pressure_rate`, and
+/// `airspeed_rate` for the clock of the laser.
 class Batch {
  public:
   /// The values of a recorded quantity, in its unit, one for each sample.

@@ -120,7 +120,7 @@ struct Finding {
   std::vector<Alias> aliases{};      ///< the most likely first
   std::string family{};              ///< what it shares with its other shapes and places, e.g. "lag"
   std::string shape{};               ///< in which it was found; empty: that of the catalogue
-  /// Of the shape what no model file can hold: "with a memory of 4 s", "alike on the other system"; empty
+  /// Of the shape what no model file can hold: "alike on the other system"; empty
   /// where it can hold all of it.
   std::string shape_beyond_model{};
   std::vector<std::string> variants{};  ///< shapes of it that do as well, empty text for the catalogue's

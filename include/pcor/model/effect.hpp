@@ -95,7 +95,7 @@ inline constexpr std::size_t scaling_capacity = 2;
 
 /// A need of an effect that is found over a time, which one of its coefficients says.
 struct Memory {
-  Quantity of = Quantity::count;  ///< nothing is remembered
+  Quantity of = Quantity::count;  ///< airspeed_rate; or nothing is remembered
   std::size_t parameter = 0;      ///< the number of the coefficient, in s
 };
 

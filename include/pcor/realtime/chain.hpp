@@ -186,6 +186,18 @@ class Chain : public BoundModel {
     return beam_cosine(elevation, azimuth, state[Quantity::attack], sideslip);
   }
 
+  /// The airspeed by the corrected pressures along the beam of the laser, m/s; the true airspeed where there
+  /// is none. Of a state as it was recorded, with its rates of change. NaN where an input is missing.
+  template <class S, class P>
+  S airspeed_along_beam(State<S> state, const P* parameters) const {
+    NoQualityFlags flags;
+    measure(state, parameters, flags);
+    correct(state, static_defect(state, parameters, flags), flags);
+    air(state, parameters, flags);
+    const S airspeed = state[Quantity::corrected_airspeed];
+    return has_lams() ? airspeed * cosine_of_beam(state, parameters) : airspeed;
+  }
+
   /// The true airspeed that LAMS measures, m/s: the speed along the beam over the cosine of its angle to the
   /// wind.
   template <class S, class P>

@@ -39,7 +39,8 @@ class LookAhead {
     return result;
   }
 
-  /// How many samples later than it came a sample leaves, at this rate: 6 at 1 Hz, 75 at 25 Hz.
+  /// How many samples later than it came a sample leaves, at this rate: 6 at 1 Hz, 75 at 25 Hz, and by as
+  /// much more as the clock of the laser is early.
   std::size_t delay() const { return delay_; }
 
   /// Forgets all samples.
@@ -70,7 +71,8 @@ class LookAhead {
     for (Change& change : changes_) {
       const double* const centre = change.values.data() + next_ + before_;
       state[change.rate] = change.filter(centre, earlier, delay_);
-      flags.set(is_missing(state[change.rate]) && !is_missing(*centre), Quality::after_gap);
+      const bool is_there = change.of == Quantity::corrected_airspeed || !is_missing(*centre);
+      flags.set(is_missing(state[change.rate]) && is_there, Quality::after_gap);
     }
     return true;
   }
@@ -96,15 +98,8 @@ class LookAhead {
   }
 
   double airspeed_along_beam(State<double> state) const noexcept {
-    const double* const parameters = chain_->parameters().data();
-    NoQualityFlags flags;
     for (const Change& change : changes_) state[change.rate] = 0.0;
-    chain_->measure(state, parameters, flags);
-    chain_->correct(state, chain_->static_defect(state, parameters, flags), flags);
-    chain_->air(state, parameters, flags);
-    const double airspeed = state[Quantity::corrected_airspeed];
-    return finite_or_missing(chain_->has_lams() ? airspeed * chain_->cosine_of_beam(state, parameters)
-                                                : airspeed);
+    return finite_or_missing(chain_->airspeed_along_beam(state, chain_->parameters().data()));
   }
 
   std::shared_ptr<const Chain> chain_;

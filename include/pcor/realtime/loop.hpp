@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <numeric>
@@ -108,7 +109,7 @@ class Loop {
   /// change.
   std::size_t delay() const noexcept { return look_ahead_ ? look_ahead_->delay() : 0; }
 
-  /// The time of the sample that was run last, s.
+  /// The time of the sample that was run last, s; NaN before the first.
   double last_time() const noexcept { return previous_time_; }
 
   /// Forgets all earlier samples.
@@ -147,7 +148,7 @@ class Loop {
   State<double> state_;
   QualityFlags quality_;
   double longest_step_;
-  double previous_time_ = 0.0;
+  double previous_time_ = missing<double>();
   bool started_ = false;
 };
 
@@ -227,6 +228,10 @@ inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, doubl
   }
   Loop loop(rate);
   for (const std::string& name : chain->extra_names()) loop.add_variable(name);
+  constexpr double longest = 60.0;  // s, the bounds of clock-skew
+  if (!(std::abs(chain->time_of(Quantity::airspeed_rate)) <= longest)) {
+    return fail("the coefficient 'seconds' of clock-skew is between -60 and 60 s");
+  }
   loop.look_ahead_ = LookAhead::build(chain, rate);
   Stages::each([&](auto stage) {
     auto functor = std::make_unique<StageFunctor<decltype(stage)>>(chain, with);

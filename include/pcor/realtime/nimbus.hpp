@@ -34,7 +34,7 @@ namespace pcor {
 ///     struct Host {
 ///       using Entry = DERTBL;
 ///       static double get(Entry*, std::size_t input);   // this sample's input; NaN where it is missing
-///       static void put(Entry*, double);                // this sample's output
+///       static void put(Entry*, double);                // the output of the sample `delay()` ago
 ///       static bool high_rate();                        // which of the two rates is being computed
 ///       static double time();                           // of this sample, s; it grows, midnight or not
 ///     };
@@ -123,7 +123,8 @@ class NimbusSystem {
   }
 
   /// How many samples ago the values were that are put at the current rate (`Loop::delay`): 0 for a model
-  /// without effects of rates of change. The host moves them back in its files.
+  /// without effects of rates of change. The host moves them back in its files, and has the last ones before
+  /// a gap and at the end by computing on with missing inputs.
   static std::size_t delay() { return current() ? current()->delay() : 0; }
 
   /// Forgets all earlier samples of both rates, as at the start of a flight.

@@ -18,8 +18,8 @@ namespace pcor {
 ///     R(t) = (x(t) - x(t - s)) / s,  for s = 0 the derivative dx/dt
 ///
 /// x is interpolated by a sinc under a Hann window of six zeros on either side, which takes periods under 1 s
-/// away. tau R is what a first-order lag of tau, and s R what a delay of s, takes from x: exactly, at all
-/// periods that are left. Of the derivative:
+/// away. tau R is what a first-order lag of tau, and s R what a delay of s, takes from x, at the periods that
+/// are left. Of the derivative:
 ///
 ///     period, s   10      4       3       2.5     2.2     2       1.5     1       0.7
 ///     at 1 Hz     1.000   0.999   1.010   0.948   0.543   0       -       -       -
@@ -29,7 +29,8 @@ namespace pcor {
 /// A constant gives zero and a straight line its slope. White noise of deviation 1 becomes 1.5 per second at
 /// 1 Hz and 0.94 at 25 Hz, where the difference of neighbours has 35. Over as many missing samples as lie
 /// between two zeros a line is drawn; beyond more of them, and beyond the ends of what is there, the series
-/// goes on as it came, turned by half a turn about its last sample.
+/// goes on as it came, turned by half a turn about its last sample, but not as far as to where the delay
+/// begins.
 ///
 /// Source: Oppenheim and Schafer, Discrete-Time Signal Processing, ch. 4 and 7.
 class RateFilter {
@@ -47,8 +48,9 @@ class RateFilter {
     const double width = std::round(zeros / band_);
     const double late = shift_ == 0.0 ? little : 0.0;
     const double early = shift_ == 0.0 ? -little : -shift_;
-    const double first = std::min({0.0, std::ceil(late - width), std::ceil(early - width)});
-    const double last = std::max({0.0, std::floor(late + width), std::floor(early + width)});
+    // Where the window ends, on both sides of both places.
+    const double first = std::floor(std::min(0.0, -shift_) - width - 1.0) + 1.0;
+    const double last = std::ceil(std::max(0.0, -shift_) + width + 1.0) - 1.0;
     before_ = static_cast<std::size_t>(-first);
     weights_.assign(static_cast<std::size_t>(last - first) + 1, 0.0);
     add_value(late, width, rate / (late - early));
@@ -64,7 +66,8 @@ class RateFilter {
   double gain() const { return std::inner_product(weights_.begin(), weights_.end(), weights_.begin(), 0.0); }
 
   /// The rate per second at `*sample`, of which `earlier` samples before it and `later` ones after it may be
-  /// read. NaN where it is missing, or has no neighbour.
+  /// read. NaN where no line can be drawn over it, it has no neighbour, or nothing is there `seconds` before
+  /// it.
   double operator()(const double* sample, std::size_t earlier, std::size_t later) noexcept {
     if (earlier >= before_ && later >= after()) {
       const double rate = sum(sample - before_);
@@ -77,10 +80,15 @@ class RateFilter {
   static constexpr double least_shift = 0.02;  // samples, below which a mean rate is the derivative
 
   double sum(const double* first) const noexcept {
+    // Departures from the sample, so that a constant gives zero; four sums, none of which waits for another.
     const double here = first[before_];
-    double result = 0.0;
-    for (std::size_t k = 0; k < weights_.size(); ++k) result += weights_[k] * (first[k] - here);
-    return result;
+    std::array<double, 4> sums{};
+    std::size_t k = 0;
+    for (; k + sums.size() <= weights_.size(); k += sums.size()) {
+      for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += weights_[k + i] * (first[k + i] - here);
+    }
+    for (; k < weights_.size(); ++k) sums[0] += weights_[k] * (first[k] - here);
+    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
   }
 
   /// Fills a window where samples are missing. False where there is nothing to fill it with.
@@ -88,16 +96,25 @@ class RateFilter {
     const auto at = [&](std::size_t place) {
       return sample[static_cast<std::ptrdiff_t>(place) - static_cast<std::ptrdiff_t>(before_)];
     };
-    if (!is_finite(*sample)) return false;
+    // The samples at or next to the one in question, then all on either side up to a long gap.
+    const std::size_t begin = before_ - std::min(before_, earlier);
+    const std::size_t end = before_ + std::min(after(), later);
     std::size_t first = before_;
-    for (std::size_t k = before_; k-- > before_ - std::min(before_, earlier) && first - k <= bridge_ + 1;) {
-      if (is_finite(at(k))) first = k;
-    }
+    while (first > begin && !is_finite(at(first))) --first;
     std::size_t last = before_;
-    for (std::size_t k = before_; ++k <= before_ + std::min(after(), later) && k - last <= bridge_ + 1;) {
-      if (is_finite(at(k))) last = k;
+    while (last < end && !is_finite(at(last))) ++last;
+    if (!is_finite(at(first)) || !is_finite(at(last)) || last - first > bridge_ + 1) return false;
+    for (std::size_t k = first; k > begin && first - (k - 1) <= bridge_ + 1;) {
+      if (is_finite(at(--k))) first = k;
+    }
+    for (std::size_t k = last; k < end && k + 1 - last <= bridge_ + 1;) {
+      if (is_finite(at(++k))) last = k;
     }
     if (first == last) return false;
+    // A value so far beyond what is there would be made up.
+    const double place = static_cast<double>(before_) - shift_;
+    const auto reach = static_cast<double>(bridge_);
+    if (place < static_cast<double>(first) - reach || place > static_cast<double>(last) + reach) return false;
     double* const filled = filled_.data() + weights_.size();
     std::size_t known = first;
     for (std::size_t k = first; k <= last; ++k) {

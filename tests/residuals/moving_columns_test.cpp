@@ -1,0 +1,113 @@
+#include "residuals/moving_columns.hpp"
+
+#include <gtest/gtest.h>
+#include <pcor/fit/refit.hpp>
+#include <pcor/residuals/reference.hpp>
+#include <pcor/residuals/residuals.hpp>
+
+#include <cmath>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "support/short_flight.hpp"
+
+namespace {
+
+using pcor::Flight;
+using pcor::FlightSamples;
+using pcor::ModelFile;
+using pcor::Quantity;
+
+ModelFile with_clock(double seconds) {
+  ModelFile model = pcor::test::laser_model();
+  model.model.effects.push_back({"clock-skew", {seconds}});
+  return model;
+}
+
+std::shared_ptr<FlightSamples> samples_of(const std::filesystem::path& path, const ModelFile& model) {
+  return std::make_shared<FlightSamples>(pcor::read_samples(Flight(path), model, *pcor::lams_reference()));
+}
+
+std::vector<double> parameters_with(const ModelFile& model, double seconds) {
+  std::vector<double> parameters;
+  for (const pcor::ModelEffect& effect : model.model.effects)
+    parameters.insert(parameters.end(), effect.parameters.begin(), effect.parameters.end());
+  parameters.back() = seconds;
+  return parameters;
+}
+
+/// The short flight, its laser late by so much, without noise or with it.
+std::filesystem::path late_flight(const pcor::test::TemporaryDirectory& directory, double seconds,
+                                  bool noise) {
+  std::ifstream file(pcor::test::scenarios / "c130-short.toml");
+  std::stringstream text;
+  text << file.rdbuf() << "\n[[effect]]\nid = \"clock-skew\"\non = \"VLAMS\"\nseconds = " << seconds << "\n";
+  std::ofstream(directory / "late.toml") << text.str();
+  pcor::Scenario scenario = pcor::read_scenario(directory / "late.toml");
+  scenario.noise_on = noise;
+  pcor::simulate_flight(scenario, directory / "late.nc");
+  return directory / "late.nc";
+}
+
+TEST(MovingColumns, ChangeAsTheirSlopeSays) {
+  const ModelFile model = with_clock(0.5);
+  const auto samples = samples_of(pcor::test::short_flight(), model);
+  ASSERT_EQ(samples->model.moving.size(), 1U);
+  EXPECT_EQ(samples->model.moving[0].at, 0.5);
+  const std::vector<double> before = *samples->model.find(Quantity::airspeed_rate);
+  const std::vector<double> slope = samples->model.moving[0].slope;
+  constexpr double step = 0.02;
+  const double* const column = samples->model.find(Quantity::airspeed_rate)->data();
+  pcor::internal::find_moving_columns(model, parameters_with(model, 0.5 + step).data(), samples->time,
+                                      samples->step, samples->model);
+  EXPECT_EQ(samples->model.find(Quantity::airspeed_rate)->data(), column) << "which others point to";
+  double largest = 0.0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (!std::isfinite(before[i]) || !std::isfinite(column[i])) continue;
+    // The curvature over the step: some 1 m/s2 a second squared.
+    EXPECT_NEAR(column[i] - before[i], step * slope[i], 2e-3);
+    largest = std::max(largest, std::abs(slope[i]));
+  }
+  EXPECT_GT(largest, 0.1);
+}
+
+TEST(MovingColumns, LetAFormulaReadTheRateOfTheAirspeed) {
+  ModelFile model = pcor::test::laser_model();
+  pcor::ModelEffect formula;
+  formula.id = "mine";
+  formula.where = pcor::Where::static_defect;
+  formula.formula = "k * airspeed_rate";
+  formula.parameter_names = {"k"};
+  formula.parameters = {0.1};
+  model.model.effects.push_back(formula);
+  const auto samples = samples_of(pcor::test::short_flight(), model);
+  const pcor::Residuals residuals(samples, model, *pcor::lams_reference());
+  const pcor::Residuals without(samples_of(pcor::test::short_flight(), pcor::test::laser_model()),
+                                pcor::test::laser_model(), *pcor::lams_reference());
+  EXPECT_EQ(residuals.mask_counts()[0], without.mask_counts()[0]);
+}
+
+TEST(MovingColumns, FindADelayThatIsNoDerivative) {
+  const pcor::test::TemporaryDirectory directory;
+  const std::filesystem::path flight = late_flight(directory, 1.0, false);
+  const pcor::RefitResult fit = pcor::refit({flight}, with_clock(0.0), {pcor::lams_reference()});
+  // Without noise: means over seconds, shifted by one, are those of another second.
+  EXPECT_NEAR(fit.parameters.back().value, 1.0, 0.01);
+}
+
+TEST(MovingColumns, GiveTheSameDelayFromAnyStart) {
+  const pcor::test::TemporaryDirectory directory;
+  const std::filesystem::path flight = late_flight(directory, 1.0, true);
+  const pcor::FittedParameter first =
+      pcor::refit({flight}, with_clock(0.5), {pcor::lams_reference()}).parameters.back();
+  EXPECT_NEAR(first.value, 1.0, 3.0 * first.standard_error);
+  for (const double start : {-2.0, 2.0, 5.0}) {
+    const pcor::RefitResult fit = pcor::refit({flight}, with_clock(start), {pcor::lams_reference()});
+    EXPECT_NEAR(fit.parameters.back().value, first.value, 0.2 * first.standard_error) << start;
+  }
+}
+
+}  // namespace
