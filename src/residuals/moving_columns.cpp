@@ -46,7 +46,13 @@ void find_moving_columns(const ModelFile& model, const double* parameters, const
     if (speed.in_record == 1) speed.values = airspeed_along_beam(model, samples, parameters);
     if (speed.shortest_period == 0.0) speed.shortest_period = shortest_period_of(speed, time, step);
     const double period = speed.shortest_period;
-    const std::vector<double> rate = rate_of(speed, time, step, period, at);
+    // A fit needs the same samples at every delay: where nothing is known of so long before, beside a gap,
+    // the derivative stands in.
+    const std::vector<double> derivative = rate_of(speed, time, step, period);
+    std::vector<double> rate = rate_of(speed, time, step, period, at);
+    for (std::size_t i = 0; i < rate.size(); ++i) {
+      if (std::isnan(rate[i])) rate[i] = derivative[i];
+    }
     const std::vector<double> above = rate_of(speed, time, step, period, at + little);
     const std::vector<double> below = rate_of(speed, time, step, period, at - little);
     moving->at = at;

@@ -74,6 +74,19 @@ TEST(MovingColumns, ChangeAsTheirSlopeSays) {
   EXPECT_GT(largest, 0.1);
 }
 
+TEST(MovingColumns, HaveTheSameSamplesAtEveryDelay) {
+  const ModelFile model = with_clock(0.0);
+  const auto samples = samples_of(pcor::test::short_flight(), model);
+  const std::vector<double> at_zero = *samples->model.find(Quantity::airspeed_rate);
+  for (const double seconds : {-5.0, 1.4, 30.0}) {
+    pcor::internal::find_moving_columns(model, parameters_with(model, seconds).data(), samples->time,
+                                        samples->step, samples->model);
+    const std::vector<double>& now = *samples->model.find(Quantity::airspeed_rate);
+    for (std::size_t i = 0; i < now.size(); ++i)
+      EXPECT_EQ(std::isnan(now[i]), std::isnan(at_zero[i])) << seconds << ' ' << i;
+  }
+}
+
 TEST(MovingColumns, LetAFormulaReadTheRateOfTheAirspeed) {
   ModelFile model = pcor::test::laser_model();
   pcor::ModelEffect formula;
