@@ -48,9 +48,9 @@ NoiseModel estimate_noise(const std::vector<Binning>& bins, const std::vector<Ei
 FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
                       const std::vector<Eigen::VectorXd>& residuals);
 
-/// The noise as if it went on beyond what the flights tell: each part as large, at least, as the two before it
-/// are in the mean, as it is of 1/f noise. That the slowest parts are not seen in a flight or two does not say
-/// that they are not there.
+/// The noise as if it went on beyond what the flights tell: each part as large, at least, as the two before
+/// it are in the mean, as it is of 1/f noise. That the slowest parts are not seen in a flight or two does not
+/// say that they are not there.
 NoiseModel with_slower_noise(NoiseModel noise);
 
 /// The columns in units of the noise and without its memory: `Whitening` of one flight.
