@@ -273,7 +273,7 @@ std::string shape_beyond_model(const Candidate& candidate) {
 std::string shape_of(const Candidate& candidate) {
   if (!candidate.is_variant) return "";
   if (std::string beyond = shape_beyond_model(candidate); !beyond.empty()) return beyond;
-  if (candidate.memory != 0.0) return fmt::format("over {:g} s", candidate.memory);
+  if (candidate.memory != 0.0) return fmt::format("as the mean rate over {:g} s", candidate.memory);
   const Scaling& scaling = candidate.effect.scaling;
   if (!scaling.is_none())
     return fmt::format("times p^{} q^{}", scaling.static_pressure, scaling.dynamic_pressure);
