@@ -28,7 +28,7 @@ constexpr double unnamed_limit = 0.99;
 constexpr double fit_limit = 1.005;
 constexpr double surely = 2.0;  // standard deviations
 // Less likely rivals have no say in the correction.
-constexpr double least_probability = 0.05;
+constexpr double least_probability = 0.01;
 // Of the noise: differences of the static pressure below this do not matter.
 constexpr double negligible = 0.05;
 
