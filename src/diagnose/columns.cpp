@@ -76,18 +76,15 @@ std::vector<Evaluation> evaluations_of(const CandidateSet& set, std::size_t refe
   return evaluations;
 }
 
-/// What the candidates of the own system remember, each over the times that are tried.
+/// What the candidates of the own system remember over times of their own; what they find over none the
+/// samples have.
 std::vector<Remembered> remembered_by(const CandidateSet& set, const FlightSamples& samples) {
   std::vector<Remembered> all;
+  const FastSeries& speed = samples.model.along_beam;
   for (const Candidate& candidate : set.candidates) {
-    const Quantity quantity = memory_of(candidate.effect).of;
-    const FastSeries& speed = samples.model.along_beam;
-    if (quantity == Quantity::count || candidate.is_of_reference() || speed.values.empty()) continue;
-    const double period = speed.shortest_period != 0.0
-                              ? speed.shortest_period
-                              : shortest_period_of(speed, samples.time, samples.step);
-    all.push_back(
-        {quantity, candidate.memory, rate_of(speed, samples.time, samples.step, period, candidate.memory)});
+    if (candidate.memory == 0.0 || candidate.is_of_reference() || speed.values.empty()) continue;
+    all.push_back({memory_of(candidate.effect).of, candidate.memory,
+                   rate_of(speed, samples.time, samples.step, speed.shortest_period, candidate.memory)});
   }
   return all;
 }

@@ -41,10 +41,7 @@ void find_moving_columns(const ModelFile& model, const double* parameters, const
       moving = samples.moving.insert(moving, {memory.of, effect.id, memory.parameter, 0.0,
                                               std::vector<double>(column->second.size(), 0.0)});
     const double at = parameters[place];
-    // As recorded at a higher rate it stays that of the model as it was read.
-    FastSeries& speed = samples.along_beam;
-    if (speed.in_record == 1) speed.values = airspeed_along_beam(model, samples, parameters);
-    if (speed.shortest_period == 0.0) speed.shortest_period = shortest_period_of(speed, time, step);
+    const FastSeries& speed = samples.along_beam;
     const double period = speed.shortest_period;
     // A fit needs the same samples at every delay: where nothing is known of so long before, beside a gap,
     // the derivative stands in.

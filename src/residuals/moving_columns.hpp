@@ -16,7 +16,8 @@ std::vector<double> airspeed_along_beam(const ModelFile& model, const ModelSampl
                                         const double* parameters = nullptr);
 
 /// Finds the columns that hang on a coefficient of the model, those of the samples that it has there, and how
-/// they change with it. @param parameters of the model @param time of the records, s @param step s
+/// they change with it: from the airspeed along the beam that the samples have. @param parameters of the
+/// model @param time of the records, s @param step s
 void find_moving_columns(const ModelFile& model, const double* parameters, const std::vector<double>& time,
                          double step, ModelSamples& samples);
 

@@ -24,7 +24,7 @@ struct FrozenSpan {
 struct FastSeries {
   std::vector<double> values{};
   std::size_t in_record = 1;
-  double shortest_period = 0.0;  ///< s, to which its rates go; 0: not known yet
+  double shortest_period = 0.0;  ///< s, to which its rates go (`shortest_period_of`)
 };
 
 /// A column that hangs on a coefficient, as the mean rate of the airspeed does on the seconds over which it

@@ -278,7 +278,7 @@ std::shared_ptr<const FlightSamples> Recorder::record(const std::string& name, c
     interval.end += first_time_ + step_;  // the last sample belongs to it
   }
   samples.model = samples_of(model_, instants);
-  samples.model.along_beam.values = samples.motion.airspeed;
+  samples.model.along_beam = {samples.motion.airspeed, 1, 2.0 * step_};
   samples.reference = samples_of(reference_, instants);
   return std::make_shared<const FlightSamples>(std::move(samples));
 }
