@@ -61,6 +61,7 @@ class Shows {
     return std::any_of(table.columns.begin(), table.columns.end(),
                        [this](const std::string& name) { return meet({name}); });
   }
+  bool operator()(const CurvePanel& panel) const { return !panel.curves.empty(); }
   bool operator()(const BarPanel& panel) const {
     return std::any_of(panel.bars.begin(), panel.bars.end(),
                        [](const ReportBar& bar) { return std::isfinite(bar.value); });

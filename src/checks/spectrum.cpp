@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <unsupported/Eigen/FFT>
 
 #include <pcor/numerics/line_fit.hpp>
 #include <pcor/numerics/noise.hpp>
@@ -11,6 +10,7 @@
 #include "checks/flown.hpp"
 #include "checks/leg_pair.hpp"
 #include "numerics/missing.hpp"
+#include "numerics/windowed_transform.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -68,20 +68,7 @@ struct Spectrum {
 
 /// One-sided periodogram of a segment without its line, through Hann's window. Sums to the variance.
 std::vector<double> periodogram(const double* values, double step) {
-  std::vector<double> times(segment_length);
-  for (std::size_t i = 0; i < segment_length; ++i) times[i] = static_cast<double>(i);
-  const LineFit line = ordinary_fit(times, std::vector<double>(values, values + segment_length));
-  std::vector<double> windowed(segment_length);
-  double power = 0.0;
-  for (std::size_t i = 0; i < segment_length; ++i) {
-    const double window =
-        0.5 - 0.5 * std::cos(2.0 * pi * (static_cast<double>(i) + 0.5) / static_cast<double>(segment_length));
-    windowed[i] = window * (values[i] - line.offset - line.slope * times[i]);
-    power += window * window;
-  }
-  Eigen::FFT<double> transform;
-  std::vector<std::complex<double>> amplitudes;
-  transform.fwd(amplitudes, windowed);
+  const auto [amplitudes, power] = windowed_transform(values, segment_length);
   std::vector<double> density(segment_length / 2);
   for (std::size_t k = 0; k < density.size(); ++k) {
     const double sides = k + 1 == segment_length / 2 ? 1.0 : 2.0;

@@ -87,7 +87,8 @@ std::vector<Candidate> variants_of(const Candidate& candidate, const std::vector
   if (candidate.effect.is_formula()) return variants;
   const EffectFacts& facts = effect_facts[effect_named(candidate.effect.id)];
   for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
-    if (!facts.parameters[i].shape) continue;
+    const bool remembers = facts.memory.of != Quantity::count && facts.memory.parameter == i;
+    if (!facts.parameters[i].shape || remembers) continue;
     for (const double value : tried_values(facts, facts.parameters[i], flights)) {
       if (value == candidate.effect.parameters[i]) continue;
       Candidate& variant = variants.emplace_back(candidate);
@@ -159,7 +160,6 @@ bool is_built_alike(Where where) {
 /// Puts behind each candidate those that no chain has beside it: in tubes and lines the same on both systems,
 /// and with its need as found over other times.
 void add_derived_ones(CandidateSet& set, bool two_systems) {
-  constexpr std::array<double, 10> times{0.5, -0.5, 1.0, -1.0, 1.5, -1.5, 2.0, -2.0, 4.0, -4.0};  // s
   std::vector<Candidate> all;
   for (const Candidate& candidate : set.candidates) {
     const auto derive = [&all, &candidate]() -> Candidate& {
@@ -170,8 +170,15 @@ void add_derived_ones(CandidateSet& set, bool two_systems) {
     all.push_back(candidate);
     if (candidate.effect.is_formula()) continue;
     if (two_systems && is_built_alike(where_of(candidate.effect))) derive().is_shared = true;
-    if (memory_of(candidate.effect).of == Quantity::count) continue;
-    for (const double time : times) derive().memory = time;
+    const EffectFacts& facts = effect_facts[effect_named(candidate.effect.id)];
+    if (facts.memory.of == Quantity::count) continue;
+    const ParameterFacts& over = facts.parameters[facts.memory.parameter];
+    for (const double time : over.tried) {
+      if (time == 0.0) break;
+      Candidate& derived = derive();
+      derived.memory = time;
+      if (over.shape) derived.effect.parameters[facts.memory.parameter] = time;
+    }
   }
   set.candidates = std::move(all);
 }

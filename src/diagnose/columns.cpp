@@ -16,7 +16,6 @@
 #include "numerics/triangular_factor.hpp"
 #include "residuals/masks.hpp"
 #include "residuals/moving_columns.hpp"
-#include "residuals/rate_of_series.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -80,11 +79,12 @@ std::vector<Evaluation> evaluations_of(const CandidateSet& set, std::size_t refe
 /// samples have.
 std::vector<Remembered> remembered_by(const CandidateSet& set, const FlightSamples& samples) {
   std::vector<Remembered> all;
-  const FastSeries& speed = samples.model.along_beam;
   for (const Candidate& candidate : set.candidates) {
-    if (candidate.memory == 0.0 || candidate.is_of_reference() || speed.values.empty()) continue;
-    all.push_back({memory_of(candidate.effect).of, candidate.memory,
-                   rate_of(speed, samples.time, samples.step, speed.shortest_period, candidate.memory)});
+    if (candidate.memory == 0.0 || candidate.is_of_reference()) continue;
+    const Quantity quantity = memory_of(candidate.effect).of;
+    std::vector<double> values =
+        remembered(quantity, samples.model, samples.time, samples.step, candidate.memory);
+    if (!values.empty()) all.push_back({quantity, candidate.memory, std::move(values)});
   }
   return all;
 }

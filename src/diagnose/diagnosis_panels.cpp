@@ -9,6 +9,7 @@
 #include <pcor/words/utc.hpp>
 
 #include "diagnose/finding_page.hpp"
+#include "numerics/cross_spectrum.hpp"
 
 namespace pcor::internal::report {
 namespace {
@@ -27,6 +28,7 @@ std::string column_of(Quantity quantity) {
       {Quantity::sideslip_ratio, Quantity::sideslip},
       {Quantity::sideslip_differential_pressure, Quantity::sideslip},
       {Quantity::static_pressure_rate, Quantity::vertical_speed},
+      {Quantity::wetness, Quantity::liquid_water},
       {Quantity::dynamic_ratio, Quantity::mach},
       {Quantity::corrected_mach, Quantity::mach},
       {Quantity::port_static_pressure, Quantity::static_pressure},
@@ -84,6 +86,12 @@ std::vector<std::string> inputs_of(const ModelEffect& effect) {
   std::stable_partition(inputs.begin(), inputs.end(),
                         [](const std::string& name) { return name != pressure; });
   return inputs;
+}
+
+bool reads_laser(const Diagnosis& diagnosis) {
+  return std::any_of(diagnosis.flights.begin(), diagnosis.flights.end(), [](const FlightDiagnosis& flight) {
+    return flight.samples != nullptr && flight.samples->model.find(Quantity::lams_airspeed) != nullptr;
+  });
 }
 
 std::string cell(double value, int decimals) {
@@ -146,6 +154,62 @@ void DiagnosisPanels::add_binned(std::string title, std::string caption, std::ve
   panel.axis = "residual";
   panel.samples_per_independent = memory_;
   add(std::move(panel));
+}
+
+void DiagnosisPanels::add_responses(const std::vector<std::string>& residuals, bool by_dynamic_pressure) {
+  const ReportColumn* const p = column_named(report_.columns, pressure);
+  const ReportColumn* const m = column_named(report_.columns, mach);
+  if (p == nullptr || m == nullptr || used_.empty()) return;
+  CurvePanel coherence{
+      "Coherence of model and reference",
+      "How much of what changes in one is in the other, period by period; 1 is all. Low where "
+      "noise is all there is.",
+      {},
+      "period",
+      "coherence",
+      "s",
+      "",
+      true};
+  CurvePanel delay{
+      "Delay of the model behind the reference",
+      "Of waves of each period, with standard errors. Above zero the model is late. A delay that is "
+      "the same at all periods is that of a clock; one that is less at short periods is that of a "
+      "line or a filter.",
+      {},
+      "period",
+      "delay",
+      "s",
+      "s",
+      true};
+  CurvePanel step{"Step response",
+                  "What the model shows when the reference steps from 0 to 1 at time zero: a step that is "
+                  "shifted is a delay, one that is approached slowly a lag.",
+                  {},
+                  "time",
+                  "response",
+                  "s"};
+  const double sample = used_.front().samples->step;
+  for (const std::string& name : residuals) {
+    const ReportColumn* const residual = column_named(report_.columns, name);
+    if (residual == nullptr) continue;
+    std::vector<double> of_model = p->values;
+    std::vector<double> of_reference = p->values;
+    for (std::size_t i = 0; i < of_model.size(); ++i) {
+      if (by_dynamic_pressure) of_model[i] *= std::pow(1.0 + 0.2 * m->values[i] * m->values[i], 3.5) - 1.0;
+      of_reference[i] = of_model[i] + (by_dynamic_pressure ? -1.0 : 1.0) * residual->values[i];
+    }
+    const std::string label = residual->title.substr(residual->title.find_first_of(' ') + 1);
+    CrossSpectrum found = cross_spectrum(of_model, of_reference, report_.time, sample);
+    if (found.period.empty()) continue;
+    coherence.curves.push_back({label, found.period, std::move(found.coherence)});
+    delay.curves.push_back(
+        {residual->title, found.period, std::move(found.delay), std::move(found.delay_error)});
+    step.curves.push_back({label, std::move(found.time), std::move(found.step)});
+  }
+  if (coherence.curves.empty()) return;
+  add(std::move(coherence));
+  add(std::move(delay));
+  add(std::move(step));
 }
 
 void DiagnosisPanels::add_plane(std::string title, std::string caption, const std::string& colour) {

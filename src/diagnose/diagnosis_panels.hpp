@@ -35,6 +35,9 @@ Series one_of(const std::vector<Series>& all, std::size_t number);
 /// What an effect depends on, by the names of columns, the pressure last: most effects grow with it.
 std::vector<std::string> inputs_of(const ModelEffect& effect);
 
+/// Whether the reference of the flights is a laser.
+bool reads_laser(const Diagnosis& diagnosis);
+
 /// Empty for what is no number.
 std::string cell(double value, int decimals);
 
@@ -85,6 +88,10 @@ class DiagnosisPanels {
   /// Residuals against the variables, those of `first` that there are before the others.
   void add_binned(std::string title, std::string caption, std::vector<std::string> y,
                   const std::vector<std::string>& first);
+
+  /// How the model's pressure follows the reference's: coherence, delay and step response, of each residual
+  /// column. `by_dynamic_pressure` where the reference is a laser; else by static pressure.
+  void add_responses(const std::vector<std::string>& residuals, bool by_dynamic_pressure);
 
   void add_plane(std::string title, std::string caption, const std::string& colour);
 

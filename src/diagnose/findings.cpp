@@ -12,6 +12,7 @@
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
+#include "residuals/moving_columns.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -273,7 +274,8 @@ std::string shape_beyond_model(const Candidate& candidate) {
 std::string shape_of(const Candidate& candidate) {
   if (!candidate.is_variant) return "";
   if (std::string beyond = shape_beyond_model(candidate); !beyond.empty()) return beyond;
-  if (candidate.memory != 0.0) return fmt::format("as the mean rate over {:g} s", candidate.memory);
+  if (candidate.memory != 0.0 && memory_of(candidate.effect).of == Quantity::airspeed_rate)
+    return fmt::format("as the mean rate over {:g} s", candidate.memory);
   const Scaling& scaling = candidate.effect.scaling;
   if (!scaling.is_none())
     return fmt::format("times p^{} q^{}", scaling.static_pressure, scaling.dynamic_pressure);

@@ -115,8 +115,9 @@ void FitFlight::prepare(const Eigen::VectorXd& parameters, const Eigen::VectorXd
     const Eigen::VectorXd own = own_parameters(residuals_, *task_, parameters);
     // As recorded at a higher rate the airspeed stays that of the model as it was read.
     FastSeries& speed = moving_->model.along_beam;
-    if (speed.in_record == 1) speed.values = airspeed_along_beam(task_->model, moving_->model, own.data());
-    find_moving_columns(task_->model, own.data(), flight.time, flight.step, moving_->model);
+    if (speed.in_record == 1 && !speed.values.empty())
+      speed.values = airspeed_along_beam(task_->model, moving_->model, own.data());
+    find_moving_columns(task_->model.model, own.data(), flight.time, flight.step, moving_->model);
   }
   std::vector<double> residual(kept_.size());
   for (std::size_t first = 0; first < kept_.size(); first += samples_per_chunk) {

@@ -31,6 +31,9 @@ void add_parameters(std::vector<FitParameter>& parameters, const ModelFile& file
       parameter.neutral = facts.parameters[p].neutral;
       parameter.typical = std::abs(facts.parameters[p].typical);
       parameter.manoeuvre = facts.manoeuvre;
+      if (facts.memory.of == Quantity::count || facts.memory.parameter != p) continue;
+      const auto& tried = facts.parameters[p].tried;
+      parameter.tried.assign(tried.begin(), std::find(tried.begin(), tried.end(), 0.0));
     }
   }
 }

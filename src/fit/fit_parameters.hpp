@@ -18,6 +18,7 @@ struct FitParameter {
   double neutral = 0.0;  ///< with which the effect does nothing
   double typical = 0.0;  ///< size; zero where the catalogue has none
   std::string_view manoeuvre{};
+  std::vector<double> tried{};  ///< of a time over which a need is found: other ones that nature may have
   Bounds bounds{};
   bool fixed = false;
 };

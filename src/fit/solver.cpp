@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include <pcor/words/error.hpp>
 #include "fit/global_search.hpp"
@@ -87,6 +90,7 @@ class Solver {
     const Loss loss = task_.options.loss;
     // Where the noise is that of others, this is a stage that begins at a solution.
     if (!flights_.shares_noise()) {
+      choose_times();
       linear_step(nullptr);
       measure(false);
       // The solution of a convex loss is unique; from Huber's the others find the minimum of the bulk.
@@ -121,6 +125,41 @@ class Solver {
   void spread() {
     solution_.values(wanted_) = unknowns_.head(fitted_);
     solution_.offsets = unknowns_.tail(unknowns_.size() - fitted_);
+  }
+
+  /// Of each time over which a need is found the start from which the others leave least: the sum of squares
+  /// has several minima in it, as a wave has that is shifted by more than its length.
+  void choose_times() {
+    for (Eigen::Index k = 0; k < fitted_; ++k) {
+      std::vector<double> times = task_.parameters[wanted_[static_cast<std::size_t>(k)]].tried;
+      if (times.empty()) continue;
+      times.insert(times.begin(), unknowns_[k]);
+      const Eigen::VectorXd start = unknowns_;
+      const auto [lower, upper] = std::pair(lower_[k], upper_[k]);
+      Eigen::VectorXd best = start;
+      double least = infinity;
+      std::unique_ptr<ceres::LossFunction> huber;
+      for (const double time : times) {
+        if (time < lower || time > upper) continue;
+        unknowns_ = start;
+        unknowns_[k] = lower_[k] = upper_[k] = time;
+        spread();
+        flights_.prepare(solution_.values, solution_.offsets);
+        linear_step(nullptr);
+        // Outliers have no say.
+        if (!huber) {
+          find_deviation();
+          huber = loss_function(Loss::huber, solution_.deviation);
+        }
+        const double cost = flights_.reduce(solution_.values, solution_.offsets, huber.get()).cost;
+        if (cost < least) best = unknowns_;
+        least = std::min(least, cost);
+      }
+      std::tie(lower_[k], upper_[k]) = std::pair(lower, upper);
+      unknowns_ = best;
+      spread();
+      flights_.prepare(solution_.values, solution_.offsets);
+    }
   }
 
   void measure(bool drift) {

@@ -221,6 +221,7 @@ Report improvement_report(const Improvement& improvement, const ModelFile& start
   add_ladder_in_time(panels, improvement);
   add_residual_panels(panels, rungs.size() < 2 ? rungs : std::vector{rungs.front(), rungs.back()});
   for (std::size_t i = 1; i < steps.size(); ++i) add_rung(panels, improvement, i);
+  panels.add_responses(rungs.size() < 2 ? rungs : std::vector{rungs.front(), rungs.back()}, reads_laser(top));
   if (!rungs.empty()) add_unexplained(panels, top, rungs.back());
   add_tables(panels, top);
   return std::move(report);

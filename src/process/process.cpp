@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include <pcor/effects/catalogue.hpp>
 #include <pcor/flight/flight_writer.hpp>
 #include <pcor/physics/air_data.hpp>
 #include <pcor/physics/standard_atmosphere.hpp>
@@ -22,6 +23,7 @@
 #include "laws/output_table.hpp"
 #include "process/copied_variables.hpp"
 #include "process/delay_line.hpp"
+#include "roles/fast_series.hpp"
 #include "roles/model_inputs.hpp"
 
 namespace pcor {
@@ -83,8 +85,11 @@ class Processing {
   }
 
   void choose_roles();
+  void choose_chain();
   void choose_inputs();
   void choose_rate();
+  ShortestPeriods choose_periods();
+  void leave_out_noise(Quantity rate, const SignalBand& band);
   ModelUncertainty uncertainty();
   void note_uncertainty();
   bool states(std::initializer_list<Where> places, std::initializer_list<Quantity> roles) const;
@@ -103,7 +108,7 @@ class Processing {
   std::string temperature_calibration();
 
   Flight flight_;
-  const ModelFile& file_;
+  ModelFile file_;
   const ProcessOptions& options_;
   std::vector<Quantity> roles_;
   std::shared_ptr<const Chain> chain_;
@@ -132,6 +137,10 @@ void Processing::choose_roles() {
     }
     roles_.push_back(role);
   }
+  choose_chain();
+}
+
+void Processing::choose_chain() {
   BindingError why;
   std::optional<Chain> chain = Chain::build(file_.model, roles_, &why);
   if (!chain) fail_model(why.message());
@@ -151,7 +160,8 @@ void Processing::choose_rate() {
   std::string why;
   const double rate = summary_.rate / flight_.time().step;
   uncertainty_ = uncertainty();
-  loop_ = Loop::build(chain_, rate, &why, options_.correct_with, uncertainty_);
+  const ShortestPeriods periods = choose_periods();
+  loop_ = Loop::build(chain_, rate, &why, options_.correct_with, uncertainty_, periods);
   if (!loop_) fail_model(why);
   results_.emplace(loop_->delay());
   filtered_.emplace(loop_->delay() + (chain_->has_lams() ? LowPass::delay(rate) : 0));
@@ -159,6 +169,49 @@ void Processing::choose_rate() {
   if (!options_.hydrostatic) return;
   loop_->add(std::make_unique<HeightStep>());
   if (!loop_->order(&why)) fail_model(why);
+}
+
+/// Rates of change go as far as what is recorded is signal.
+ShortestPeriods Processing::choose_periods() {
+  ShortestPeriods periods;
+  std::vector<double> time;
+  for (const auto& [quantity, rate] : rates) {
+    if (!chain_->derives(rate)) continue;
+    if (time.empty()) {
+      time.resize(flight_.records());
+      for (const RecordBlock block : blocks_of(flight_.records()))
+        flight_.read_sample_times(block, 1, time.data() + block.first);
+    }
+    const auto input = std::find_if(inputs_.begin(), inputs_.end(),
+                                    [of = quantity](const Input& each) { return each.quantity == of; });
+    const FastSeries series = read_fast(flight_, *input, flight_.variable(input->variable).rate);
+    const SignalBand band = signal_band_of(series, time, flight_.time().step);
+    periods.emplace_back(rate, std::max(RateFilter::usual_period, band.shortest_period));
+    leave_out_noise(rate, band);
+  }
+  return periods;
+}
+
+/// What adds more noise to a result than it takes error away is not applied.
+void Processing::leave_out_noise(Quantity rate, const SignalBand& band) {
+  const double signal = band.rate_variance - band.rate_noise;
+  if (!(band.rate_noise > signal)) return;
+  for (ModelEffect& effect : file_.model.effects) {
+    if (effect.is_formula()) continue;
+    const EffectFacts& facts = effect_facts[effect_named(effect.id)];
+    const bool reads = std::find(facts.needs.begin(), facts.needs.end(), rate) != facts.needs.end();
+    double& time = effect.parameters[0];
+    if (!reads || time == facts.parameters[0].neutral) continue;
+    const std::string_view unit = facts_of(facts.where).unit;
+    note(
+        "{} of {:g} s is not applied: on this flight it would add noise of {:.2g} {} and take an error of "
+        "{:.2g} "
+        "{} away",
+        effect.id, time, std::abs(time) * std::sqrt(band.rate_noise), unit,
+        std::abs(time) * std::sqrt(std::max(0.0, signal)), unit);
+    time = facts.parameters[0].neutral;
+  }
+  choose_chain();
 }
 
 /// What is stated of the model, as far as it is asked for; notes what is not. @throws Error if nothing is

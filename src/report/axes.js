@@ -152,6 +152,14 @@ function horizontalAxis(pen, box, x, {from, to}, label, theme) {
   horizontalTicks(pen, box, placed, label, theme);
 }
 
+// The grid and the numbers of a horizontal axis of logarithms.
+function logarithmicAxis(pen, box, x, {from, to}, label, theme) {
+  const all = [];
+  for (let power = 10 ** Math.floor(Math.log10(from)); power <= to; power *= 10)
+    for (const factor of [1, 2, 5]) if (factor * power >= from && factor * power <= to) all.push(factor * power);
+  horizontalTicks(pen, box, all.map((value) => ({at: x(Math.log(value)), label: String(Number(value.toPrecision(1)))})), label, theme);
+}
+
 // Lines along the left and the bottom of the plot, and along zero.
 function frame(pen, box, theme, zero) {
   const base = Math.round(box.y + box.height) + 0.5;

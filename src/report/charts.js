@@ -336,4 +336,42 @@ function drawBars(pen, width, height, item, samples, theme) {
   };
 }
 
-const pictures = {time: drawTime, binned: drawBinned, plane: drawPlane, pair: drawPair, bars: drawBars};
+function drawCurves(pen, width, height, item, samples, theme) {
+  const named = (words, unit) => unit ? `${words} (${unit})` : words;
+  const curves = item.curves.map(({label, x, y, error}, c) => ({
+    label, colour: theme.series[c % theme.series.length],
+    points: x.map((value, i) => ({x: value, y: y[i] ?? NaN, error: error[i] ?? 0})).filter((point) => Number.isFinite(point.y)),
+  }));
+  const shown = curves.flatMap(({points}) => points);
+  cover(pen, width, height, theme);
+  const box = plotBox(width, height, {top: legend(pen, curves, margin, width - 14, theme)});
+  const across = {from: Math.min(...shown.map((point) => point.x)), to: Math.max(...shown.map((point) => point.x))};
+  const up = limits(shown.flatMap(({y, error}) => [y - error, y + error]));
+  const along = item.logX ? Math.log : (value) => value;
+  const place = scale(along(across.from), along(across.to), box.x, box.x + box.width);
+  const x = (value) => place(along(value));
+  const y = scale(up.from, up.to, box.y + box.height, box.y);
+  verticalAxis(pen, box, y, up, named(item.axis, item.unit), theme);
+  const axis = item.logX ? logarithmicAxis : horizontalAxis;
+  axis(pen, box, place, across, named(item.xAxis, item.xUnit), theme);
+  frame(pen, box, theme, y(0));
+  pen.clip(box, () => curves.forEach(({points, colour}) => {
+    pen.lines(points.filter(({error}) => error > 0).map((point) =>
+      [x(point.x), y(point.y - point.error), x(point.x), y(point.y + point.error)]), colour, 1);
+    pen.lines([points.flatMap((point) => [x(point.x), y(point.y)])], colour, 1.75);
+    pen.dots(points.flatMap((point) => [x(point.x), y(point.y)]), 4, colour);
+  }));
+  tellBeyond(pen, box, up.beyond, theme);
+  return {
+    points: shown.length,
+    plot: box,
+    alternative: `${item.axis} against ${item.xAxis}: ${listText(curves.map(({label}) => label))}`,
+    table: {
+      headers: ['Curve', named(item.xAxis, item.xUnit), named(item.axis, item.unit)],
+      rows: curves.flatMap(({label, points}) =>
+        points.map((point) => [label, brief(point.x), point.error ? withError(point.y, point.error) : brief(point.y)])),
+    },
+  };
+}
+
+const pictures = {time: drawTime, binned: drawBinned, plane: drawPlane, pair: drawPair, bars: drawBars, curves: drawCurves};

@@ -94,6 +94,23 @@ struct CheckItem {
       fail_empty(panel.title);
   }
 
+  void operator()(const CurvePanel& panel) const {
+    std::size_t shown = 0;
+    for (const ReportCurve& curve : panel.curves) {
+      if (curve.x.size() != curve.y.size() || (!curve.error.empty() && curve.error.size() != curve.x.size()))
+        fail("curve '" + curve.label + "' of panel '" + panel.title + "' has " +
+             std::to_string(curve.x.size()) + " places, " + std::to_string(curve.y.size()) + " values and " +
+             std::to_string(curve.error.size()) + " errors; give as many of each");
+      for (std::size_t i = 0; i < curve.x.size(); ++i) {
+        if (panel.log_x && !(curve.x[i] > 0.0))
+          fail("curve '" + curve.label + "' of panel '" + panel.title +
+               "' has a place at or below zero on a logarithmic axis; leave it out");
+        if (std::isfinite(curve.y[i])) ++shown;
+      }
+    }
+    if (shown == 0) fail_empty(panel.title);
+  }
+
   void operator()(const ReportTable& table) const {
     if (table.rows.empty()) fail("table '" + table.title + "' has no rows; leave it out");
     for (const auto& row : table.rows)

@@ -121,6 +121,13 @@ struct ItemJson {
       bars.push_back({{"label", bar.label}, {"value", bar.value}, {"error", bar.error}});
     return {{"title", panel.title}, {"bars", bars}, {"axis", panel.axis}, {"unit", panel.unit}};
   }
+  json operator()(const CurvePanel& panel) const {
+    json curves = json::array();
+    for (const ReportCurve& curve : panel.curves)
+      curves.push_back({{"label", curve.label}, {"x", curve.x}, {"y", curve.y}, {"error", curve.error}});
+    return {{"title", panel.title},  {"curves", curves},   {"xAxis", panel.x_axis}, {"axis", panel.axis},
+            {"xUnit", panel.x_unit}, {"unit", panel.unit}, {"logX", panel.log_x}};
+  }
   json operator()(const ReportTable&) const { return json::object(); }
   json operator()(const ReportText&) const { return json::object(); }
 };
@@ -128,7 +135,8 @@ struct ItemJson {
 }  // namespace
 
 const char* kind_of(const ReportItem& item) {
-  constexpr const char* kinds[] = {"time", "binned", "plane", "pair", "regimes", "bars", "table", "text"};
+  constexpr const char* kinds[] = {"time", "binned", "plane", "pair", "regimes",
+                                   "bars", "curves", "table", "text"};
   static_assert(std::size(kinds) == std::variant_size_v<ReportItem>);
   return kinds[item.index()];
 }

@@ -102,7 +102,8 @@ struct ItemBody {
 
 bool takes_half(const ReportItem& item) {
   return std::holds_alternative<BinnedPanel>(item) || std::holds_alternative<PlanePanel>(item) ||
-         std::holds_alternative<PairPanel>(item) || std::holds_alternative<BarPanel>(item);
+         std::holds_alternative<PairPanel>(item) || std::holds_alternative<BarPanel>(item) ||
+         std::holds_alternative<CurvePanel>(item);
 }
 
 // Pictures that are not over time stand in pairs; one that is left over takes the whole width.

@@ -78,7 +78,7 @@ function selfTest(report) {
   panels.forEach((panel, i) => {
     const {title, kind} = panel.item;
     const part = half[i] / before[i];
-    if (kind === 'bars') expect(part === 1, `'${title}' follows a selection that is not of it`);
+    if (kind === 'bars' || kind === 'curves') expect(part === 1, `'${title}' follows a selection that is not of it`);
     else if (before[i] > few)
       expect(part > 0.25 && part < 0.75, `selecting half leaves '${title}' ${half[i]} of ${before[i]} points`);
     expect(pixelsHalf[i] > Math.min(half[i], 20), `'${title}' is blank with half of the samples`);

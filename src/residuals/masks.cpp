@@ -151,7 +151,7 @@ std::vector<Mask> find_masks(const MaskedResidual& residual, const MaskOptions& 
   }
   residual.reference.mark_not_believed(masks, samples.motion.airspeed, options);
   mark_bursts(residual, masks);
-  const std::vector<ModelEffect>& effects = residual.model.effects();
+  const std::vector<ModelEffect>& effects = residual.model.model().effects;
   const bool describes_flaps = std::any_of(effects.begin(), effects.end(), [&](const ModelEffect& effect) {
     return reads_flaps(effect, samples.flaps_variable);
   });

@@ -1,5 +1,6 @@
 #include "residuals/model_on_samples.hpp"
 
+#include <algorithm>
 #include <iterator>
 
 namespace pcor::internal {
@@ -36,6 +37,26 @@ ModelOnSamples::ModelOnSamples(const ModelFile& file, const ModelSamples& sample
       first += effect.parameters.size();
     }
   }
+}
+
+std::vector<Batch::Input> ModelOnSamples::gathered(const std::size_t* samples, std::size_t count,
+                                                   const double* parameters,
+                                                   std::vector<double>& store) const {
+  std::vector<Batch::Input> inputs = internal::gathered(columns_, samples, count, store);
+  for (const Moving& each : moving_) {
+    const double change = parameters[each.parameter] - each.column->at;
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+      if (columns_[c].quantity != each.column->quantity) continue;
+      for (std::size_t i = 0; i < count; ++i) store[c * count + i] += each.column->slope[samples[i]] * change;
+    }
+  }
+  return inputs;
+}
+
+bool ModelOnSamples::stands_at(const double* parameters) const {
+  return std::all_of(moving_.begin(), moving_.end(), [parameters](const Moving& each) {
+    return parameters[each.parameter] == each.column->at;
+  });
 }
 
 std::vector<bool> ModelOnSamples::linear() const {

@@ -30,7 +30,11 @@ class ModelOnSamples {
   const Batch& batch() const { return batch_; }
   const Chain& chain() const { return batch_.chain(); }
   const std::vector<Batch::Input>& columns() const { return columns_; }
-  const std::vector<ModelEffect>& effects() const { return model_.effects; }
+  const Model& model() const { return model_; }
+
+  /// The columns at some places, gathered one after another into `store`.
+  std::vector<Batch::Input> gathered(const std::size_t* samples, std::size_t count, const double* parameters,
+                                     std::vector<double>& store) const;
 
   /// As the file has them.
   const std::vector<double>& parameters() const { return chain().parameters(); }
@@ -88,6 +92,9 @@ class ModelOnSamples {
   /// The derivatives of delta-p of a block by linear parameters, hPa per unit.
   void differentiate_linear(const std::vector<Batch::Input>& inputs, std::size_t count,
                             const double* parameters, const std::vector<LinearColumn>& wanted) const;
+
+  /// True where the columns that hang on coefficients were found at these.
+  bool stands_at(const double* parameters) const;
 
   bool is_missing_needed(std::size_t sample) const;
   bool is_missing_any(std::size_t sample) const;

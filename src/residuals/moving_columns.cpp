@@ -4,14 +4,26 @@
 #include <cmath>
 
 #include <pcor/effects/catalogue.hpp>
+#include <pcor/realtime/wetness.hpp>
 
 #include "residuals/model_on_samples.hpp"
-#include "residuals/rate_of_series.hpp"
+#include "roles/fast_series.hpp"
 
 namespace pcor::internal {
 Memory memory_of(const ModelEffect& effect) {
   const std::size_t known = effect_named(effect.id);
   return known < catalogue_size ? effect_facts[known].memory : Memory{};
+}
+
+std::vector<double> wetness_of(const std::vector<double>& liquid_water, const std::vector<double>& time,
+                               double step, double drying) {
+  Wetness wetness(1.0 / step, std::max(0.0, drying));
+  std::vector<double> values(liquid_water.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i > 0 && time[i] - time[i - 1] > 1.25 * step) wetness.reset();
+    values[i] = wetness(liquid_water[i]);
+  }
+  return values;
 }
 
 std::vector<double> airspeed_along_beam(const ModelFile& model, const ModelSamples& samples,
@@ -23,11 +35,22 @@ std::vector<double> airspeed_along_beam(const ModelFile& model, const ModelSampl
   return speed;
 }
 
-void find_moving_columns(const ModelFile& model, const double* parameters, const std::vector<double>& time,
+std::vector<double> remembered(Quantity quantity, const ModelSamples& samples,
+                               const std::vector<double>& time, double step, double seconds) {
+  if (quantity == Quantity::wetness) {
+    const std::vector<double>* const water = samples.find(Quantity::liquid_water);
+    return water == nullptr ? std::vector<double>() : wetness_of(*water, time, step, seconds);
+  }
+  const FastSeries& speed = samples.along_beam;
+  if (speed.values.empty()) return {};
+  return rate_of(speed, time, step, speed.shortest_period, seconds);
+}
+
+void find_moving_columns(const Model& model, const double* parameters, const std::vector<double>& time,
                          double step, ModelSamples& samples) {
   constexpr double little = 0.05;  // s
   std::size_t first = 0;
-  for (const ModelEffect& effect : model.model.effects) {
+  for (const ModelEffect& effect : model.effects) {
     const Memory memory = memory_of(effect);
     const std::size_t place = first + memory.parameter;
     first += effect.parameters.size();
@@ -41,25 +64,34 @@ void find_moving_columns(const ModelFile& model, const double* parameters, const
       moving = samples.moving.insert(moving, {memory.of, effect.id, memory.parameter, 0.0,
                                               std::vector<double>(column->second.size(), 0.0)});
     const double at = parameters[place];
-    const FastSeries& speed = samples.along_beam;
-    const double period = speed.shortest_period;
-    // A fit needs the same samples at every delay: where nothing is known of so long before, beside a gap,
-    // the derivative stands in.
-    const std::vector<double> derivative = rate_of(speed, time, step, period);
-    std::vector<double> rate = rate_of(speed, time, step, period, at);
-    for (std::size_t i = 0; i < rate.size(); ++i) {
-      if (std::isnan(rate[i])) rate[i] = derivative[i];
+    const auto over = [&](double seconds) { return remembered(memory.of, samples, time, step, seconds); };
+    std::vector<double> values = over(at);
+    if (memory.of == Quantity::airspeed_rate) {
+      // A fit needs the same samples at every delay: where nothing is known of so long before, beside a gap,
+      // the derivative stands in.
+      const std::vector<double> derivative = over(0.0);
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        if (std::isnan(values[i])) values[i] = derivative[i];
+      }
     }
-    const std::vector<double> above = rate_of(speed, time, step, period, at + little);
-    const std::vector<double> below = rate_of(speed, time, step, period, at - little);
+    const std::vector<double> above = over(at + little);
+    const std::vector<double> below = over(at - little);
     moving->at = at;
-    for (std::size_t i = 0; i < rate.size(); ++i) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
       const double slope = (above[i] - below[i]) / (2.0 * little);
       moving->slope[i] = std::isfinite(slope) ? slope : 0.0;  // beside a gap
     }
     // In place: what reads the column keeps its address.
-    std::copy(rate.begin(), rate.end(), column->second.begin());
+    std::copy(values.begin(), values.end(), column->second.begin());
   }
+}
+
+ColumnsAt::ColumnsAt(const ModelOnSamples& model, const FlightSamples& samples, const double* parameters)
+    : inputs_(model.columns()) {
+  if (model.stands_at(parameters)) return;
+  moved_ = samples.model;
+  find_moving_columns(model.model(), parameters, samples.time, samples.step, moved_);
+  for (Batch::Input& input : inputs_) input.values = moved_.find(input.quantity)->data();
 }
 
 }  // namespace pcor::internal

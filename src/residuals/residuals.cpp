@@ -10,6 +10,7 @@
 #include "numerics/missing.hpp"
 #include "residuals/masks.hpp"
 #include "residuals/model_on_samples.hpp"
+#include "residuals/moving_columns.hpp"
 #include "residuals/reference_on_samples.hpp"
 
 namespace pcor {
@@ -107,7 +108,8 @@ std::vector<double> Residuals::values(const double* parameters) const {
   std::vector<double> result(size());
   std::vector<std::size_t> all(size());
   std::iota(all.begin(), all.end(), 0);
-  own.reference->residuals({own.model.columns(), own.reference_columns, all.data(), size()}, parameters,
+  const ColumnsAt columns(own.model, *own.samples, parameters);
+  own.reference->residuals({columns.inputs(), own.reference_columns, all.data(), size()}, parameters,
                            result.data());
   return result;
 }
@@ -118,7 +120,7 @@ void Residuals::evaluate(const std::size_t* samples, std::size_t count, const do
   const Implementation& own = *implementation_;
   std::vector<double> store;
   std::vector<double> reference_store;
-  const std::vector<Batch::Input> inputs = gathered(own.model.columns(), samples, count, store);
+  const std::vector<Batch::Input> inputs = own.model.gathered(samples, count, parameters, store);
   const std::vector<Batch::Input> reference_inputs =
       gathered(own.reference_columns, samples, count, reference_store);
   own.reference->residuals({inputs, reference_inputs, samples, count}, parameters, residual);
@@ -219,7 +221,8 @@ std::vector<double> Residuals::quantity(Quantity quantity, const double* paramet
   const Implementation& own = *implementation_;
   std::vector<double> result(size(), nan);
   if (!own.model.batch().finds(quantity)) return result;
-  own.model.batch().run(own.model.columns(), {{quantity, result.data()}}, size(), parameters);
+  const ColumnsAt columns(own.model, *own.samples, parameters);
+  own.model.batch().run(columns.inputs(), {{quantity, result.data()}}, size(), parameters);
   return result;
 }
 

@@ -16,7 +16,7 @@
 #include "residuals/flaps_by_lift.hpp"
 #include "residuals/frozen.hpp"
 #include "residuals/moving_columns.hpp"
-#include "residuals/rate_of_series.hpp"
+#include "roles/fast_series.hpp"
 #include "roles/model_inputs.hpp"
 #include "roles/recorded_series.hpp"
 
@@ -111,16 +111,6 @@ void read_flaps(const Flight& flight, const ModelFile& model, double least_airsp
                 times, 100.0 * lift->deficit, 100.0 * lift->deviation));
 }
 
-FastSeries read_fast(const Flight& flight, const ModelInput& input, int rate) {
-  FastSeries series;
-  series.in_record = static_cast<std::size_t>(rate);
-  series.values.resize(flight.records() * series.in_record);
-  for (const RecordBlock block : blocks_of(flight.records()))
-    flight.read_at_rate(rate, input.variable, block, input.conversion,
-                        series.values.data() + block.first * series.in_record);
-  return series;
-}
-
 /// What is recorded, at some rate.
 ModelSamples read_inputs(const Flight& flight, const std::vector<ModelInput>& inputs, int rate) {
   ModelSamples samples;
@@ -179,7 +169,7 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelFile&
   }
   const double step = flight.time().step;
   const auto rate = [&](FastSeries& series) {
-    series.shortest_period = shortest_period_of(series, time, step);
+    series.shortest_period = signal_band_of(series, time, step).shortest_period;
     return rate_of(series, time, step, series.shortest_period);
   };
   for (const auto& [quantity, its_rate] : rates) {
@@ -189,12 +179,16 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelFile&
     FastSeries recorded = read_fast(flight, *input, flight.variable(input->variable).rate);
     add(its_rate, rate(recorded));
   }
+  if (chain.derives(Quantity::wetness)) {
+    add(Quantity::wetness,
+        wetness_of(*samples.find(Quantity::liquid_water), time, step, chain.time_of(Quantity::wetness)));
+  }
   if (chain.derives(Quantity::airspeed_rate)) {
     // Of corrected pressures: in a pitch manoeuvre delta-p changes faster than the dynamic pressure.
     samples.along_beam = read_along_beam(flight, model, inputs, samples);
     add(Quantity::airspeed_rate, rate(samples.along_beam));
-    find_moving_columns(model, chain.parameters().data(), time, step, samples);
   }
+  find_moving_columns(model.model, chain.parameters().data(), time, step, samples);
   return samples;
 }
 

@@ -71,7 +71,8 @@ Swing swing_of(Quantity quantity) {
                                                 {Quantity::static_pressure_rate, {0.1, 1.0}},
                                                 {Quantity::dynamic_pressure_rate, {0.1, 1.0}},
                                                 {Quantity::recovery_temperature_rate, {0.01, 0.1}},
-                                                {Quantity::airspeed_rate, {0.05, 0.5}}};
+                                                {Quantity::airspeed_rate, {0.05, 0.5}},
+                                                {Quantity::wetness, {0.5, 0.5}}};
   const auto found = swings.find(quantity);
   return found == swings.end() ? Swing{0.5, 2.0} : found->second;
 }
@@ -84,7 +85,7 @@ FlightSamples made_flight(const std::vector<Quantity>& roles, double laser_noise
   std::vector<Quantity> recorded = roles;
   for (const Quantity further :
        {Quantity::time, Quantity::static_pressure_rate, Quantity::dynamic_pressure_rate,
-        Quantity::recovery_temperature_rate, Quantity::airspeed_rate})
+        Quantity::recovery_temperature_rate, Quantity::airspeed_rate, Quantity::wetness})
     recorded.push_back(further);
   for (std::size_t i = 0; i < count; ++i) samples.time.push_back(1321560000.0 + static_cast<double>(i));
   samples.motion.time = samples.time;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <random>
 #include <string>
 #include <vector>
@@ -608,6 +609,73 @@ parameters = { tau = 0.5 }
   const double alone =
       static_cast<double>(Quality::after_gap) + static_cast<double>(Quality::effect_input_missing);
   EXPECT_THAT(read("PCORFLAG", ""), testing::ElementsAre(0, 0, 0, 0, 0, 0, alone));
+}
+
+// A heated thermometer of a usual noise in a climb through air without turbulence.
+class NoisyLag : public Process {
+ protected:
+  // @param climb of the temperature, K/s, in the second half of the flight
+  ProcessSummary run(double climb, double noise) {
+    constexpr std::size_t records = 3000;
+    std::mt19937 generator(5);
+    std::normal_distribution<double> normal(0.0, noise);
+    std::vector<double> temperature(records);
+    for (std::size_t i = 0; i < records; ++i)
+      temperature[i] = 270.0 + climb * std::max(0.0, static_cast<double>(i) - 1500.0) + normal(generator);
+    {
+      test::NetcdfMaker maker(input_);
+      maker.time(test::sequence(100, records));
+      maker.series("PSFD", "hPa", std::vector<double>(records, 700.0));
+      maker.series("QCF", "hPa", std::vector<double>(records, 60.0));
+      maker.series("TTRR", "K", temperature);
+    }
+    const ModelFile model = parse_model(R"(
+format = "pcor-model/1"
+name = "lag"
+[variables]
+static_pressure = "PSFD"
+dynamic_pressure = "QCF"
+recovery_temperature = "TTRR"
+[humidity]
+moist = false
+[[effect]]
+id = "temp-lag"
+parameters = { tau = 8.0 }
+)",
+                                        "lag.toml");
+    return process_flight(input_, model, output_);
+  }
+};
+
+// The noise of neighbours in the result, K.
+double scatter(const std::vector<double>& values, std::size_t first, std::size_t count) {
+  double sum = 0.0;
+  for (std::size_t i = first; i < first + count; ++i) sum += std::pow(values[i] - values[i - 1], 2);
+  return std::sqrt(0.5 * sum / static_cast<double>(count));
+}
+
+TEST_F(NoisyLag, IsUndoneWhereThereIsMoreSignalThanNoise) {
+  constexpr double noise = 0.02;
+  const ProcessSummary summary = run(-0.06, noise);
+  EXPECT_THAT(summary.notes, Not(Contains(HasSubstr("not applied"))));
+  const std::vector<double> corrected = read("ATX", "K");
+  const std::vector<double> recorded = read("TTRR", "K");
+  const auto ratio = [&](std::size_t first) {
+    return std::accumulate(&corrected[first], &corrected[first] + 1000, 0.0) /
+           std::accumulate(&recorded[first], &recorded[first] + 1000, 0.0);
+  };
+  // Tau times the rate of the recorded temperature, whose mean there is 222 K; noise averages out.
+  EXPECT_NEAR((ratio(1800) / ratio(200) - 1.0) * (270.0 - 0.06 * 799.5), 8.0 * -0.06, 0.01);
+  // With all periods above 1 s it would be 8 s times 1.5 per second: twelve times as much.
+  EXPECT_LT(scatter(corrected, 100, 1000), 2.0 * noise);
+}
+
+TEST_F(NoisyLag, IsLeftWhereItWouldAddMoreNoiseThanItTakesErrorAway) {
+  constexpr double noise = 0.1;
+  const ProcessSummary summary = run(0.0, noise);
+  EXPECT_THAT(summary.notes,
+              Contains(HasSubstr("temp-lag of 8 s is not applied: on this flight it would add")));
+  EXPECT_LT(scatter(read("ATX", "K"), 100, 1000), 1.05 * noise);
 }
 
 }  // namespace

@@ -337,6 +337,39 @@ TEST(Loop, RefusesAClockThatNoLaserHas) {
   }
 }
 
+TEST(Loop, DriesAThermometerAfterACloud) {
+  Model model = c130();
+  model.effects.push_back({"temp-wetting", {-2.0, 10.0}});
+  for (const double rate : {1.0, 25.0}) {
+    const Sample dry = with(level, {{Quantity::liquid_water, 0.0}});
+    Loop loop = build(model, dry, rate);
+    EXPECT_EQ(loop.delay(), 0U) << "what was before is enough";
+    run(loop, dry, 0.0);
+    const double air = loop.state()[Quantity::ambient_temperature];
+    int i = 1;
+    for (; i < 20 * rate; ++i) run(loop, with(level, {{Quantity::liquid_water, 0.4}}), i / rate);
+    EXPECT_GT(loop.state()[Quantity::ambient_temperature], air + 1.7) << "by 2 K at the thermometer";
+    for (; i < 30 * rate; ++i) run(loop, dry, i / rate);
+    const double left = (loop.state()[Quantity::ambient_temperature] - air) / 2.0;
+    // exp(-1), the mean over the last sample; recovery makes it a few percent less.
+    EXPECT_NEAR(left, std::exp(-1.0), 0.04);
+    run(loop, dry, i / rate + 100.0);
+    EXPECT_EQ(loop.state()[Quantity::ambient_temperature], air)
+        << "after a gap nothing is known of the cloud";
+    run(loop, with(level, {{Quantity::liquid_water, missing}}), i / rate + 100.0 + 1.0 / rate);
+    EXPECT_TRUE(std::isnan(loop.state()[Quantity::ambient_temperature]));
+    EXPECT_TRUE(loop.quality().has(Quality::temperature_missing));
+  }
+  for (const double drying : {missing, infinity, -1.0, 601.0}) {
+    model.effects.back().parameters = {-2.0, drying};
+    std::vector<Quantity> roles{Quantity::liquid_water};
+    for (const auto& [role, value] : level) roles.push_back(role);
+    std::string error;
+    EXPECT_FALSE(Loop::build(model, roles, 25.0, &error).has_value());
+    EXPECT_THAT(error, testing::HasSubstr("between 0 and 600 s"));
+  }
+}
+
 // A lag of 0.3 s in both lines, undone at each rate: what is left of it at periods of 2 s and more.
 TEST(Loop, UndoesLagsAtEveryRate) {
   constexpr double tau = 0.3;

@@ -65,6 +65,7 @@ void expect_true_words(const Correction& correction) {
   }
   for (const Rate& each : rates) before[each.rate] = 0.01;
   before[Quantity::airspeed_rate] = 0.4;
+  before[Quantity::wetness] = 0.6;
   before[Quantity::time] = 100.0;
   std::size_t number = 0;
   Stages::each([&](auto stage) {

@@ -23,7 +23,7 @@ from pathlib import Path
 SAMPLE_REPORT = Path(sys.argv[1]).resolve()
 SOURCE = Path(sys.argv[2]).resolve()
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-PANELS = 6
+PANELS = 7
 
 
 def run(*command):

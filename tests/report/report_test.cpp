@@ -131,10 +131,15 @@ TEST(Report, EscapesEveryText) {
   report.facts = {{bad, bad}};
   report.intervals = {{bad, start, start + 1}};
   report.flight_names = {bad};
-  report.items = {TimePanel{bad, bad, {bad}, bad},       BinnedPanel{bad, bad, {bad}, {"c1"}},
-                  PlanePanel{bad, bad, bad, "c1", bad},  PairPanel{bad, bad, bad, "c1", {{1, 0, bad}}},
-                  RegimeTable{bad, bad, {bad}},          BarPanel{bad, bad, {{bad, 1}}, bad, bad},
-                  ReportTable{bad, bad, {bad}, {{bad}}}, ReportText{bad, {bad}}};
+  report.items = {TimePanel{bad, bad, {bad}, bad},
+                  BinnedPanel{bad, bad, {bad}, {"c1"}},
+                  PlanePanel{bad, bad, bad, "c1", bad},
+                  PairPanel{bad, bad, bad, "c1", {{1, 0, bad}}},
+                  RegimeTable{bad, bad, {bad}},
+                  BarPanel{bad, bad, {{bad, 1}}, bad, bad},
+                  CurvePanel{bad, bad, {{bad, {1, 2}, {1, 2}}}, bad, bad, bad, bad},
+                  ReportTable{bad, bad, {bad}, {{bad}}},
+                  ReportText{bad, {bad}}};
   const std::string html = report_html(report);
   EXPECT_THAT(html, Not(HasSubstr("</script><script>\"")));
   EXPECT_THAT(html, HasSubstr("<h1>&lt;/script&gt;&lt;script&gt;&quot;&#39;&amp;é"));
@@ -161,6 +166,16 @@ TEST(Report, RefusesTwoColumnsOfOneName) {
   EXPECT_THAT(reason(report), HasSubstr("two columns are named 'c0'"));
 }
 
+TEST(Report, RefusesCurvesThatCannotBeDrawn) {
+  Report report = report_of(3, 1);
+  report.items = {CurvePanel{"Curves", "", {{"a", {1, 2}, {1}}}, "x", "y"}};
+  EXPECT_THAT(reason(report), HasSubstr("curve 'a' of panel 'Curves' has 2 places, 1 values"));
+  report.items = {CurvePanel{"Curves", "", {{"a", {1, 2}, {1, 2}, {1}}}, "x", "y"}};
+  EXPECT_THAT(reason(report), HasSubstr("1 errors"));
+  report.items = {CurvePanel{"Curves", "", {{"a", {0, 2}, {1, 2}}}, "x", "y", "", "", true}};
+  EXPECT_THAT(reason(report), HasSubstr("at or below zero on a logarithmic axis"));
+}
+
 TEST(Report, RefusesAnEmptyPanel) {
   Report report = report_of(4, 2);
   report.columns[0].values = {nan, nan, 1, 2};
@@ -172,7 +187,8 @@ TEST(Report, RefusesAnEmptyPanel) {
                                       PlanePanel{"Empty", "", "c0", "c0", "c1"},
                                       PairPanel{"Empty", "", "c0", "c1"},
                                       RegimeTable{"Empty", "", {}},
-                                      BarPanel{"Empty", "", {{"bar", nan}}}};
+                                      BarPanel{"Empty", "", {{"bar", nan}}},
+                                      CurvePanel{"Empty", "", {{"curve", {1}, {nan}}}, "x", "y"}};
   for (const ReportItem& item : empty) {
     report.items = {item};
     EXPECT_THAT(reason(report), HasSubstr("panel 'Empty' would be empty")) << item.index();

@@ -36,6 +36,8 @@ inline InputRange input_range(pcor::Quantity quantity) {
       return {0, 200};
     case Quantity::liquid_water:
       return {0, 0.2};
+    case Quantity::wetness:
+      return {0, 1};
     case Quantity::transducer_temperature:
       return {270, 320};
     case Quantity::cabin_pressure:

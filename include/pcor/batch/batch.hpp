@@ -17,7 +17,7 @@ namespace pcor {
 /// which iterates to that). There are no quality bits: what cannot be
 /// found is NaN. Nothing is remembered from one sample to the next, so a model with rates of change needs
 /// them as arrays: `static_pressure_rate`, `dynamic_pressure_rate`, and
-/// `airspeed_rate` for the clock of the laser.
+/// `airspeed_rate` for the clock of the laser, and `wetness` for the thermometer in cloud.
 class Batch {
  public:
   /// The values of a recorded quantity, in its unit, one for each sample.

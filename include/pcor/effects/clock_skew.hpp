@@ -12,7 +12,8 @@ struct ClockSkew {
     facts.family = "clock";
     facts.where = Where::beam_speed;
     facts.formula = "seconds * airspeed_rate";
-    facts.parameters[0] = {"seconds", "s", 0.0, -60.0, 60.0, 0.5};
+    facts.parameters[0] = {"seconds", "s", 0.0,   -60.0,
+                           60.0,      0.5, false, {0.5, -0.5, 1.0, -1.0, 1.5, -1.5, 2.0, -2.0, 4.0, -4.0}};
     facts.needs = {Quantity::airspeed_rate, Quantity::count, Quantity::count, Quantity::count};
     facts.memory = {Quantity::airspeed_rate, 0};
     facts.size = "0.08 to 2 s between the clocks of one aircraft: 0.27 to 0.5 hPa/s in a speed run";

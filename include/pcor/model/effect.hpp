@@ -86,7 +86,10 @@ struct ParameterFacts {
   /// True where it only shapes the effect, as the Mach number from which the effect acts does. It is neutral
   /// at its typical value, and the effect is absent, whatever the shape, when all others are neutral.
   bool shape = false;
-  std::array<double, 4> tried{};  ///< of a shape: other values that nature may have, and 0 behind them
+  /// Other values that nature may have, and 0 behind them: of a shape, and of a time over which a need is
+  /// found
+  /// (`EffectFacts::memory`). A diagnosis tries them all, a fit begins at the best of them.
+  std::array<double, 10> tried{};
 };
 
 inline constexpr std::size_t parameter_capacity = 3;
@@ -95,7 +98,7 @@ inline constexpr std::size_t scaling_capacity = 2;
 
 /// A need of an effect that is found over a time, which one of its coefficients says.
 struct Memory {
-  Quantity of = Quantity::count;  ///< airspeed_rate; or nothing is remembered
+  Quantity of = Quantity::count;  ///< airspeed_rate or wetness; or nothing is remembered
   std::size_t parameter = 0;      ///< the number of the coefficient, in s
 };
 

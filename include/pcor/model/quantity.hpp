@@ -52,6 +52,7 @@ enum class Quantity : std::uint8_t {
   recovery_temperature_rate,
   ambient_temperature_rate,
   airspeed_rate,
+  wetness,
   port_static_pressure,
   port_dynamic_pressure,
 
@@ -166,6 +167,8 @@ inline constexpr std::array<QuantityFacts, quantity_count> quantity_facts{{
     {"airspeed_rate", "m/s2",
      "rate of change of the airspeed along the laser's beam, by the corrected pressures",
      Quantity::airspeed_rate},
+    {"wetness", "1", "how wet the thermometer is: 1 in cloud, then less as it dries (temp-wetting)",
+     Quantity::wetness},
     {"port_static_pressure", "hPa", "static pressure at the port, after effects of transducer and line",
      Quantity::port_static_pressure},
     {"port_dynamic_pressure", "hPa", "dynamic pressure at the ports, after effects of transducer and line",

@@ -12,6 +12,10 @@
 
 namespace pcor {
 
+/// The shortest periods, s, that some rates of change have, by their noise; others have
+/// `RateFilter::usual_period`.
+using ShortestPeriods = std::vector<std::pair<Quantity, double>>;
+
 /// Holds samples back until those after them are there from which their rates of change are found
 /// (`RateFilter`): real time knows no later sample, and a rate without them would be late, or noise.
 ///
@@ -22,11 +26,19 @@ namespace pcor {
 class LookAhead {
  public:
   /// For `chain` at `rate` samples in a second; nothing where it reads no rate of change.
-  static std::optional<LookAhead> build(const std::shared_ptr<const Chain>& chain, double rate) {
+  static std::optional<LookAhead> build(const std::shared_ptr<const Chain>& chain, double rate,
+                                        const ShortestPeriods& periods = {}) {
+    const auto period_of = [&periods](Quantity quantity) {
+      for (const auto& [each, period] : periods) {
+        if (each == quantity) return period;
+      }
+      return RateFilter::usual_period;
+    };
     LookAhead result(chain);
     for (const Rate& each : rates) {
       if (chain->derives(each.rate))
-        result.changes_.push_back({each.quantity, each.rate, RateFilter(rate), {}});
+        result.changes_.push_back(
+            {each.quantity, each.rate, RateFilter(rate, 0.0, period_of(each.rate)), {}});
     }
     if (chain->derives(Quantity::airspeed_rate)) {
       result.changes_.push_back({Quantity::corrected_airspeed,
@@ -39,8 +51,9 @@ class LookAhead {
     return result;
   }
 
-  /// How many samples later than it came a sample leaves, at this rate: 6 at 1 Hz, 75 at 25 Hz, and by as
-  /// much more as the clock of the laser is early.
+  /// How many samples later than it came a sample leaves, at this rate: 6 at 1 Hz, 75 at 25 Hz, by as much
+  /// more as the clock of the laser is early, and three of its shortest periods where these are longer than
+  /// usual.
   std::size_t delay() const { return delay_; }
 
   /// Forgets all samples.

@@ -16,6 +16,7 @@
 #include <pcor/realtime/low_pass.hpp>
 #include <pcor/realtime/result_uncertainty.hpp>
 #include <pcor/realtime/stages.hpp>
+#include <pcor/realtime/wetness.hpp>
 
 namespace pcor {
 
@@ -63,10 +64,12 @@ class Loop {
                                    std::string* error, CorrectWith with = CorrectWith::model,
                                    const ModelUncertainty& uncertainty = {});
 
-  /// The same for a chain that is built already.
+  /// The same for a chain that is built already, whose rates of change have no periods shorter than
+  /// `periods`; the delay grows with these.
   static std::optional<Loop> build(std::shared_ptr<const Chain> chain, double rate, std::string* error,
                                    CorrectWith with = CorrectWith::model,
-                                   const ModelUncertainty& uncertainty = {});
+                                   const ModelUncertainty& uncertainty = {},
+                                   const ShortestPeriods& periods = {});
 
   /// The place of the variable `name` for functors of the user's own: the one it has already, as a quantity
   /// of the library or in a formula, else a new one. Nothing where the room is used up.
@@ -128,10 +131,12 @@ class Loop {
     if (starts_anew(time)) {
       for (const auto& functor : functors_) functor->reset();
       if (look_ahead_) look_ahead_->reset();
+      if (wetness_) wetness_->reset();
     }
     started_ = true;
     previous_time_ = time;
     state_[Quantity::time] = time;
+    if (wetness_) state_[Quantity::wetness] = (*wetness_)(state_[Quantity::liquid_water]);
     if (look_ahead_ && !look_ahead_->exchange(state_, quality_)) return;
     for (const auto& functor : functors_) functor->compute(state_, quality_);
   }
@@ -143,6 +148,7 @@ class Loop {
   }
 
   std::optional<LookAhead> look_ahead_;
+  std::optional<Wetness> wetness_;
   std::vector<std::unique_ptr<Functor>> functors_;
   std::vector<std::string> extra_names_;
   State<double> state_;
@@ -217,7 +223,8 @@ inline std::optional<Loop> Loop::build(const Model& model, const std::vector<Qua
 }
 
 inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, double rate, std::string* error,
-                                       CorrectWith with, const ModelUncertainty& uncertainty) {
+                                       CorrectWith with, const ModelUncertainty& uncertainty,
+                                       const ShortestPeriods& periods) {
   const auto fail = [error](const char* why) {
     if (error != nullptr) *error = why;
     return std::nullopt;
@@ -232,7 +239,13 @@ inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, doubl
   if (!(std::abs(chain->time_of(Quantity::airspeed_rate)) <= longest)) {
     return fail("the coefficient 'seconds' of clock-skew is between -60 and 60 s");
   }
-  loop.look_ahead_ = LookAhead::build(chain, rate);
+  if (chain->derives(Quantity::wetness)) {
+    const double drying = chain->time_of(Quantity::wetness);
+    if (!(drying >= 0.0 && drying <= Wetness::longest))
+      return fail("the coefficient 'drying' of temp-wetting is between 0 and 600 s");
+    loop.wetness_.emplace(rate, drying);
+  }
+  loop.look_ahead_ = LookAhead::build(chain, rate, periods);
   Stages::each([&](auto stage) {
     auto functor = std::make_unique<StageFunctor<decltype(stage)>>(chain, with);
     if (!functor->outputs().empty()) loop.add(std::move(functor));

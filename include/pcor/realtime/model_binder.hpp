@@ -260,6 +260,8 @@ class ModelBinder {
                            ? Quantity::ambient_temperature
                            : Quantity::recovery_temperature,
                        who);
+      case Quantity::wetness:
+        return require(Quantity::liquid_water, who);
       case Quantity::vapor_pressure:
         return require_vapor_pressure(who);
       case Quantity::attack_ratio:

@@ -74,7 +74,7 @@ struct MeasuredQuantities {
     for (const Rate& each : rates) {
       if (chain.derives(each.rate)) read.push_back(each.rate);
     }
-    for (const Quantity given : {Quantity::airspeed_rate, Quantity::time}) {
+    for (const Quantity given : {Quantity::airspeed_rate, Quantity::wetness, Quantity::time}) {
       if (chain.needs(given)) read.push_back(given);
     }
     return read;
@@ -112,6 +112,8 @@ struct MeasuredQuantities {
         return joined({of(Quantity::mach),
                        known(chain, {chain.derives_temperature() ? Quantity::recovery_temperature
                                                                  : Quantity::ambient_temperature})});
+      case Quantity::wetness:
+        return {Quantity::liquid_water};
       case Quantity::vapor_pressure:
         return joined(
             {{Quantity::static_pressure}, known(chain, {Quantity::dew_point, Quantity::frost_point})});

@@ -96,6 +96,26 @@ struct BarPanel {
   std::string unit{};
 };
 
+/// A curve of numbers that do not belong to samples, with their standard errors.
+struct ReportCurve {
+  std::string label;
+  std::vector<double> x;
+  std::vector<double> y;        ///< as many as of x; NaN for none
+  std::vector<double> error{};  ///< of y; as many, or none
+};
+
+/// Curves, as spectra are; x above zero where its axis is logarithmic.
+struct CurvePanel {
+  std::string title;
+  std::string caption;
+  std::vector<ReportCurve> curves;
+  std::string x_axis;
+  std::string axis;
+  std::string x_unit{};
+  std::string unit{};
+  bool log_x = false;
+};
+
 /// A table of words and numbers; cells that are numbers are aligned.
 struct ReportTable {
   std::string title;
@@ -110,7 +130,7 @@ struct ReportText {
 };
 
 using ReportItem = std::variant<TimePanel, BinnedPanel, PlanePanel, PairPanel, RegimeTable, BarPanel,
-                                ReportTable, ReportText>;
+                                CurvePanel, ReportTable, ReportText>;
 
 /// What a report says, in the order in which the reader meets it: the title, the summary, the facts, the
 /// items. All texts are plain text in UTF-8.

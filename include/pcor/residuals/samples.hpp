@@ -4,6 +4,7 @@
 #include <pcor/laws/model_file.hpp>
 #include <pcor/regimes/regimes.hpp>
 #include <pcor/residuals/masks.hpp>
+#include <pcor/roles/fast_series.hpp>
 
 #include <string>
 #include <utility>
@@ -18,13 +19,6 @@ struct FrozenSpan {
   Quantity quantity = Quantity::count;
   std::size_t first = 0;  ///< sample
   std::size_t count = 0;
-};
-
-/// A series at the rate of its sensor: some samples in each record.
-struct FastSeries {
-  std::vector<double> values{};
-  std::size_t in_record = 1;
-  double shortest_period = 0.0;  ///< s, to which its rates go (`shortest_period_of`)
 };
 
 /// A column that hangs on a coefficient, as the mean rate of the airspeed does on the seconds over which it

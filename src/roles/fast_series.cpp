@@ -1,4 +1,4 @@
-#include "residuals/rate_of_series.hpp"
+#include "roles/fast_series.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -36,7 +36,17 @@ double clipped_variance(const std::vector<double>& values) {
 
 }  // namespace
 
-double shortest_period_of(const FastSeries& series, const std::vector<double>& time, double step) {
+FastSeries read_fast(const Flight& flight, const ModelInput& input, int rate) {
+  FastSeries series;
+  series.in_record = static_cast<std::size_t>(rate);
+  series.values.resize(flight.records() * series.in_record);
+  for (const RecordBlock block : blocks_of(flight.records()))
+    flight.read_at_rate(rate, input.variable, block, input.conversion,
+                        series.values.data() + block.first * series.in_record);
+  return series;
+}
+
+SignalBand signal_band_of(const FastSeries& series, const std::vector<double>& time, double step) {
   constexpr double half_octave = 1.4142135623730951;
   constexpr double longest = 64.0;  // s
   constexpr double flat = 1.3;
@@ -59,12 +69,12 @@ double shortest_period_of(const FastSeries& series, const std::vector<double>& t
   std::vector<double> power;
   for (std::size_t k = 0; k + 1 < periods.size(); ++k)
     power.push_back((variance[k] - variance[k + 1]) / (gain[k] - gain[k + 1]));
-  if (power.size() < 2) return 2.0 / rate;
+  if (power.size() < 2) return {2.0 / rate, variance.empty() ? 0.0 : variance[0], 0.0};
   // Where the spectrum still falls at its end, noise is below all of it.
   const double noise = power[1] < flat * power[0] ? power[0] : 0.5 * power[0];
   std::size_t k = 0;
   while (k + 1 < power.size() && power[k] < 2.0 * noise) ++k;
-  return periods[k];
+  return {periods[k], variance[k], std::min(variance[k], noise * gain[k])};
 }
 
 std::vector<double> rate_of(const FastSeries& series, const std::vector<double>& time, double step,

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cmath>
+
+#include <pcor/effects/in_cloud.hpp>
+#include <pcor/physics/scalar.hpp>
+
+namespace pcor {
+
+/// How wet a probe is, from 0, dry, to 1, sample by sample: in cloud it gets wet within seconds, after it
+/// dries.
+///
+///     tau dw/dt = c - w     c = 1 in cloud, else 0;   tau = 1 s in cloud, the time of drying outside
+///
+/// The result is the mean of w over the sample, exact where all of the sample is in cloud or none of it, so
+/// that all rates give the same. Before the first sample the probe was long where that is. A missing liquid
+/// water content gives NaN, and the probe dries meanwhile.
+class Wetness {
+ public:
+  static constexpr double wetting = 1.0;    ///< s, estimate
+  static constexpr double longest = 600.0;  ///< s, of drying
+
+  /// @param rate samples in a second, above zero @param drying time constant, s, 0 to `longest`
+  Wetness(double rate, double drying) : wet_(1.0 / rate, wetting), dry_(1.0 / rate, drying) {}
+
+  /// Forgets all samples.
+  void reset() noexcept { wetness_ = missing<double>(); }
+
+  /// @param liquid_water g/m3
+  double operator()(double liquid_water) noexcept {
+    const double cloud = effects::in_cloud(liquid_water);
+    const double towards = cloud > 0.0 ? 1.0 : 0.0;
+    const Answer& answer = cloud > 0.0 ? wet_ : dry_;
+    if (is_missing(wetness_)) wetness_ = towards;
+    const double away = wetness_ - towards;
+    wetness_ = towards + away * answer.left;
+    return is_missing(cloud) ? cloud : towards + away * answer.mean;
+  }
+
+ private:
+  /// Of a distance from the end, what is left after a sample and on average over it.
+  struct Answer {
+    Answer(double step, double tau)
+        : left(tau > 0.0 ? std::exp(-step / tau) : 0.0), mean(tau / step * (1.0 - left)) {}
+    double left;
+    double mean;
+  };
+
+  Answer wet_;
+  Answer dry_;
+  double wetness_ = missing<double>();
+};
+
+}  // namespace pcor
