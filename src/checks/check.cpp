@@ -50,7 +50,7 @@ struct Systems {
 Systems systems_of(const Flight& flight, const PressurePair& of_model) {
   Systems systems;
   std::vector<PressurePair> pairs = measured_pairs(flight);
-  const std::vector<PressurePair>& processed = processed_pressures();
+  const std::vector<PressurePair>& processed = family_of(flight).processed;
   const bool corrected = std::any_of(processed.begin(), processed.end(), [&](const PressurePair& pair) {
     return pair.static_pressure == of_model.static_pressure;
   });

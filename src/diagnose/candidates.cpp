@@ -32,14 +32,17 @@ bool is_recorded(const std::vector<const Flight*>& flights, const std::string& v
 /// Names the usual variables of the roles that the model leaves open. The flow angles stay as they are where
 /// the model computes them from the radome.
 void name_usual_variables(ModelFile& file, const std::vector<const Flight*>& flights) {
+  const AircraftFamily& family =
+      flights.empty() ? aircraft_families().front() : family_of(file, *flights.front());
   for (std::size_t i = 0; i < role_count; ++i) {
     const auto role = static_cast<Quantity>(i);
     if (file.variables.count(role) != 0) continue;
     if (role == Quantity::attack && file.model.attack_radome.is_calibrated()) continue;
     if (role == Quantity::sideslip && file.model.sideslip_radome.is_calibrated()) continue;
-    for (const std::string& variable : usual_variables(role)) {
+    for (const std::string& variable : usual_variables(family, role)) {
       if (!is_recorded(flights, variable, role)) continue;
       file.variables[role] = variable;
+      if (std::string unit = family.unit_of(variable); !unit.empty()) file.units[role] = std::move(unit);
       break;
     }
   }

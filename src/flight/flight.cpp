@@ -79,12 +79,6 @@ Variable describe(const FlightFile& file, int id, int time_dimension) {
   return variable;
 }
 
-bool is_same(const UnitConversion& a, const UnitConversion& b) {
-  constexpr double rounding = 1e-9;
-  return std::abs(a.scale() - b.scale()) <= rounding * std::abs(a.scale()) &&
-         std::abs(a.offset() - b.offset()) <= rounding * std::abs(a.offset());
-}
-
 // Of an even number of values the lower of the middle two. Changes the order of the values.
 double median(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
@@ -342,18 +336,7 @@ UnitConversion Flight::conversion(const std::string& name, const std::string& wa
         fmt::format("{}: the unit \"{}\" that the model states for {} ({}) is not known or does not convert "
                     "to {}; correct unit.{} in the [units] of the model",
                     path().string(), stated, name, role, wanted, role));
-  const UnitConversion conversion = UnitConversion::between(stated, wanted, {name, path().string(), role});
-  const bool file_says_otherwise =
-      is_known_unit(own) &&
-      !(is_convertible(own, wanted) && is_same(UnitConversion::between(own, wanted, {}), conversion));
-  if (file_says_otherwise)
-    throw Error(
-        Error::Code::unit,
-        fmt::format(
-            "{}: {} has the unit \"{}\", and the model states \"{}\"; remove unit.{} from the [units] of the "
-            "model, or correct the units attribute of the file if that is wrong",
-            path().string(), name, own, stated, role));
-  return conversion;
+  return UnitConversion::between(stated, wanted, {name, path().string(), role});
 }
 
 void Flight::require_values(const std::string& name) const {

@@ -108,7 +108,11 @@ ModelEffect neutral_effect(std::string_view id) {
 }
 
 ModelFile read_model(const fs::path& path) {
-  return parse_model(text_of_file(path, "a model file"), path.string());
+  ModelFile file = parse_model(text_of_file(path, "a model file"), path.string());
+  // The names of an aircraft in a file of its own lie beside the model.
+  if (const fs::path roles = file.roles_from; roles.extension() == ".toml" && roles.is_relative())
+    file.roles_from = (path.parent_path() / roles).string();
+  return file;
 }
 
 std::string write_model(const ModelFile& file) {

@@ -102,6 +102,7 @@ class Reader final : TomlReader {
          {{"format", [](const Entry&) {}},
           {"name", [&](const Entry& entry) { file_.model.name = text(entry); }},
           {"aircraft", [&](const Entry& entry) { file_.model.aircraft = text(entry); }},
+          {"roles", [&](const Entry& entry) { file_.roles_from = text(entry); }},
           {"variables", keep},
           {"units", keep},
           {"output", keep},
@@ -148,7 +149,9 @@ class Reader final : TomlReader {
     }
   }
 
+  // A model without pressures takes those of the flight's aircraft.
   void require_pressures(Place place) const {
+    if (!names_pressures()) return;
     for (const Quantity quantity : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
       if (file_.variables.count(quantity) != 0) continue;
       const std::string_view name = facts_of(quantity).name;
@@ -156,14 +159,19 @@ class Reader final : TomlReader {
     }
   }
 
+  bool names_pressures() const {
+    return file_.variables.count(Quantity::static_pressure) != 0 ||
+           file_.variables.count(Quantity::dynamic_pressure) != 0;
+  }
+
   // What the variables say together. The place of an error is that of the later one.
   void check_variables() const {
-    const std::string& variable = file_.variables.at(Quantity::static_pressure);
-    if (variable == file_.variables.at(Quantity::dynamic_pressure)) {
+    if (names_pressures() &&
+        file_.variables.at(Quantity::static_pressure) == file_.variables.at(Quantity::dynamic_pressure)) {
       fail(std::max(variable_places_.at(Quantity::static_pressure),
                     variable_places_.at(Quantity::dynamic_pressure)),
            fmt::format("'static_pressure' and 'dynamic_pressure' are both {}; give each its own variable",
-                       in_quotes(variable)));
+                       in_quotes(file_.variables.at(Quantity::static_pressure))));
     }
     give_one({Quantity::vapor_pressure, Quantity::dew_point, Quantity::frost_point}, "the humidity");
     if (file_.model.lams.approach != LamsApproach::with_temperature) {

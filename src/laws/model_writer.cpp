@@ -101,6 +101,7 @@ class Writer {
     line("format", text(model_format));
     line_unless_empty("name", file.model.name);
     line_unless_empty("aircraft", file.model.aircraft);
+    line_unless_empty("roles", file.roles_from);
   }
 
   void write_roles(std::string_view title, const std::map<Quantity, std::string>& values) {

@@ -30,22 +30,24 @@ void name_coordinates(const Flight& flight, const ModelFile& model, FileDescript
     usual.insert(usual.begin(), {flight.attribute(attribute), given});
     return first_series(flight, usual);
   };
+  const AircraftFamily& family = family_of(model, flight);
   description.latitude = coordinate("latitude_coordinate", variable_of(model, Quantity::latitude),
-                                    usual_variables(Quantity::latitude));
-  description.longitude = coordinate("longitude_coordinate", "", usual_series("longitude").names);
+                                    usual_variables(family, Quantity::latitude));
+  description.longitude = coordinate("longitude_coordinate", "", family.names_of("longitude"));
   description.altitude =
-      coordinate("zaxis_coordinate", variable_of(model, Quantity::altitude), usual_heights());
+      coordinate("zaxis_coordinate", variable_of(model, Quantity::altitude), usual_heights(family));
 }
 
 Names flown_variables(const Flight& flight, const ModelFile& model) {
+  const AircraftFamily& family = family_of(model, flight);
   Names flown;
   for (const Quantity role : flown_quantities) {
-    Names names = role == Quantity::altitude ? usual_heights() : usual_variables(role);
+    Names names = role == Quantity::altitude ? usual_heights(family) : usual_variables(family, role);
     names.insert(names.begin(), variable_of(model, role));
     flown.push_back(first_series(flight, names));
   }
   for (const char* velocity : {"ground_speed_east", "ground_speed_north"})
-    flown.push_back(first_series(flight, usual_series(velocity).names));
+    flown.push_back(first_series(flight, family.names_of(velocity)));
   return flown;
 }
 

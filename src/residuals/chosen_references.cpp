@@ -70,7 +70,7 @@ class Choice {
 
   /// Of the first known pair that all flights have; that of the avionics, PS_A, is filtered and late.
   void take_total_pressure() {
-    for (const PressurePair& pair : measured_pressures()) {
+    for (const PressurePair& pair : family_of(model_, flights_.front()).measured) {
       const bool all_have = std::all_of(flights_.begin(), flights_.end(), [&](const Flight& flight) {
         return has_other_pair(flight, model_, pair);
       });

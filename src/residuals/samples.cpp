@@ -59,7 +59,7 @@ FlightMotion read_motion(const Flight& flight, const ModelFile& model, const Fli
   motion.time = samples.time;
   motion.airspeed = measured_airspeed(samples.model);
   motion.altitude = read(Quantity::altitude);
-  if (motion.altitude.empty()) motion.altitude = read_usual(flight, usual_series("other_altitude")).values;
+  if (motion.altitude.empty()) motion.altitude = read_usual(flight, "other_altitude").values;
   motion.vertical_speed = read(Quantity::vertical_speed);
   motion.roll = read(Quantity::roll);
   motion.pitch = read(Quantity::pitch);

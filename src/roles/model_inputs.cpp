@@ -3,20 +3,50 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include <pcor/words/error.hpp>
 #include <pcor/words/suggest.hpp>
 #include <pcor/words/utc.hpp>
+#include "roles/usual_variables.hpp"
+#include "words/quoting.hpp"
 
 namespace pcor::internal {
+namespace {
+
+bool is_same(const UnitConversion& a, const UnitConversion& b) {
+  constexpr double rounding = 1e-9;
+  return std::abs(a.scale() - b.scale()) <= rounding * std::abs(a.scale()) &&
+         std::abs(a.offset() - b.offset()) <= rounding * std::abs(a.offset());
+}
+
+/// The unit that a model states takes the place of the file's, which may be wrong; but so may be the model's.
+void note_other_unit(const VariableInfo& variable, const QuantityFacts& role, const std::string& stated,
+                     std::vector<std::string>& notes) {
+  const std::string unit(role.unit);
+  if (stated.empty() || !is_known_unit(variable.units) || !is_convertible(stated, unit)) return;
+  const bool same =
+      is_convertible(variable.units, unit) &&
+      is_same(UnitConversion::between(variable.units, unit, {}), UnitConversion::between(stated, unit, {}));
+  if (!same) {
+    notes.push_back(
+        fmt::format("{} is taken as {}, as the model or the aircraft's data state; the file says {}",
+                    variable.name, in_quotes(stated), in_quotes(variable.units)));
+  }
+}
+
+}  // namespace
 
 std::vector<ModelInput> model_inputs(const Flight& flight, const ModelFile& file, const Chain& chain,
                                      const std::vector<Quantity>& roles, std::vector<std::string>& notes) {
+  const AircraftFamily& family = family_of(file, flight);
   const auto conversion_of = [&](Quantity role) {
     const QuantityFacts& facts = facts_of(role);
+    const std::string& variable = file.variables.at(role);
     const auto stated = file.units.find(role);
-    return flight.conversion(file.variables.at(role), std::string(facts.unit), std::string(facts.name),
-                             stated == file.units.end() ? std::string() : stated->second);
+    const std::string unit = stated == file.units.end() ? family.unit_of(variable) : stated->second;
+    if (flight.has(variable)) note_other_unit(flight.variable(variable), facts, unit, notes);
+    return flight.conversion(variable, std::string(facts.unit), std::string(facts.name), unit);
   };
   std::vector<ModelInput> inputs;
   const auto always = {Quantity::recovery_temperature, Quantity::ambient_temperature,

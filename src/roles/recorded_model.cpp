@@ -14,7 +14,7 @@ bool has_role(const Flight& flight, const std::string& variable, Quantity role) 
 
 /// Gives the model the first of the usual variables that has values; false where none has.
 bool add_usual(const Flight& flight, Quantity role, ModelFile& model) {
-  const std::vector<std::string>& names = usual_series(facts_of(role).name).names;
+  const std::vector<std::string> names = family_of(flight).names_of(facts_of(role).name);
   const auto found = std::find_if(names.begin(), names.end(),
                                   [&](const std::string& name) { return has_role(flight, name, role); });
   if (found == names.end()) return false;
@@ -23,7 +23,7 @@ bool add_usual(const Flight& flight, Quantity role, ModelFile& model) {
 }
 
 void add_thermometer(const Flight& flight, ModelFile& model) {
-  for (const Thermometer& thermometer : usual_thermometers()) {
+  for (const Thermometer& thermometer : family_of(flight).thermometers) {
     if (!has_role(flight, thermometer.variable, Quantity::recovery_temperature)) continue;
     model.variables[Quantity::recovery_temperature] = thermometer.variable;
     model.model.recovery = published_recovery_factor(thermometer.recovery)->law;
@@ -43,7 +43,7 @@ std::vector<PressurePair> pairs_in(const Flight& flight, const std::vector<Press
 }  // namespace
 
 std::vector<PressurePair> measured_pairs(const Flight& flight) {
-  return pairs_in(flight, measured_pressures());
+  return pairs_in(flight, family_of(flight).measured);
 }
 
 ModelFile model_of(const PressurePair& pair) {
@@ -55,7 +55,7 @@ ModelFile model_of(const PressurePair& pair) {
 }
 
 std::optional<ModelFile> recorded_model(const Flight& flight) {
-  std::vector<PressurePair> pairs = pairs_in(flight, processed_pressures());
+  std::vector<PressurePair> pairs = pairs_in(flight, family_of(flight).processed);
   if (pairs.empty()) pairs = measured_pairs(flight);
   if (pairs.empty()) return std::nullopt;
   ModelFile model = model_of(pairs.front());

@@ -9,13 +9,14 @@
 
 namespace pcor::internal {
 
-/// Those of `measured_pressures` that the flight has, in that order.
+/// The pairs of pressures as measured that the flight has, the likeliest first.
 std::vector<PressurePair> measured_pairs(const Flight& flight);
 
 /// The model that stands in where none is given: the pressures that the flight's own processing corrected
 /// (PSXC, QCXC), else its reference (PSX, QCX), else the first of the pairs as measured, with its ambient
 /// temperature (ATX), else a recovery temperature with the recovery factor of its thermometer (see
-/// `usual_thermometers`). Nothing is added to them. Absent where the flight has no pair with values.
+/// `AircraftFamily::thermometers`). Nothing is added to them. Absent where the flight has no pair with
+/// values.
 std::optional<ModelFile> recorded_model(const Flight& flight);
 
 /// A model of a pair as it is measured: nothing is added.

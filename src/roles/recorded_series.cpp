@@ -39,30 +39,36 @@ std::vector<double> read_values(const Flight& flight, const std::string& variabl
   return values;
 }
 
-RecordedSeries read_usual(const Flight& flight, const UsualVariables& usual) {
+RecordedSeries read_usual(const Flight& flight, std::string_view name) {
+  const AircraftFamily& family = family_of(flight);
   RecordedSeries series;
-  for (const std::string& name : usual.names) try_variable(flight, name, "", usual.series.unit, series);
+  for (const std::string& variable : family.names_of(name))
+    try_variable(flight, variable, family.unit_of(variable), series_named(name)->unit, series);
   return series;
 }
 
 RecordedSeries read_role(const Flight& flight, const ModelFile& model, Quantity role) {
   const std::string_view unit = facts_of(role).unit;
+  const AircraftFamily& family = family_of(model, flight);
   RecordedSeries series;
   const auto given = model.variables.find(role);
   if (given != model.variables.end()) {
     const auto stated = model.units.find(role);
-    try_variable(flight, given->second, stated == model.units.end() ? "" : stated->second, unit, series);
+    try_variable(flight, given->second,
+                 stated == model.units.end() ? family.unit_of(given->second) : stated->second, unit, series);
   }
-  for (const std::string& name : usual_variables(role)) {
-    if (given == model.variables.end() || name != given->second) try_variable(flight, name, "", unit, series);
+  for (const std::string& name : usual_variables(family, role)) {
+    if (given == model.variables.end() || name != given->second)
+      try_variable(flight, name, family.unit_of(name), unit, series);
   }
   return series;
 }
 
-bool has_values(const Flight& flight, const std::string& variable, const std::string& unit) {
+bool has_values(const Flight& flight, const std::string& variable, const std::string& unit,
+                const std::string& stated) {
   if (!flight.has(variable) || !flight.variable(variable).is_series) return false;
   try {
-    flight.conversion(variable, unit);
+    flight.conversion(variable, unit, "", stated);
     flight.require_values(variable);
   } catch (const Error& error) {
     if (error.code() == Error::Code::file) throw;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <pcor/flight/flight.hpp>
@@ -20,13 +21,15 @@ struct RecordedSeries {
 std::vector<double> read_values(const Flight& flight, const std::string& variable,
                                 const UnitConversion& conversion);
 
-/// The first of the usual variables that is there, has values and a unit that fits.
-RecordedSeries read_usual(const Flight& flight, const UsualVariables& usual);
+/// The first of the usual variables of a series that is there, has values and a unit that fits.
+/// @param name of the series (`series_named`)
+RecordedSeries read_usual(const Flight& flight, std::string_view name);
 
 /// The series of a role: the model's variable in the unit that the model states, else the usual one.
 RecordedSeries read_role(const Flight& flight, const ModelFile& model, Quantity role);
 
-/// Whether a flight has values of a variable whose unit fits.
-bool has_values(const Flight& flight, const std::string& variable, const std::string& unit);
+/// Whether a flight has values of a variable whose unit, the one stated or else its own, fits.
+bool has_values(const Flight& flight, const std::string& variable, const std::string& unit,
+                const std::string& stated = "");
 
 }  // namespace pcor::internal

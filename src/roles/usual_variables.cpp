@@ -1,95 +1,65 @@
 #include "roles/usual_variables.hpp"
 
 #include <algorithm>
-#include <stdexcept>
+#include <array>
 
 namespace pcor::internal {
 namespace {
 
-using Names = std::vector<std::string>;
+constexpr std::array<QuantityFacts, 4> extra_series{{
+    {"other_altitude", "m", "altitude of an inertial system or of the pressure, up positive"},
+    {"longitude", "deg", "longitude, east positive"},
+    {"ground_speed_east", "m/s", "ground speed, east positive"},
+    {"ground_speed_north", "m/s", "ground speed, north positive"},
+}};
 
-const std::vector<UsualVariables>& all_usual_variables() {
-  static const std::vector<UsualVariables> all{
-      {facts_of(Quantity::ambient_temperature), {"ATX", "AT_A"}, true},
-      {facts_of(Quantity::vapor_pressure), {"EDPC", "EWX"}, true},
-      {facts_of(Quantity::dew_point), {"DPXC"}, true},
-      {facts_of(Quantity::radome_dynamic_pressure), {"QCR"}},
-      {facts_of(Quantity::attack_differential_pressure), {"ADIFR"}},
-      {facts_of(Quantity::sideslip_differential_pressure), {"BDIFR"}},
-      {facts_of(Quantity::attack), {"ATTACK", "AKRD"}},
-      {facts_of(Quantity::sideslip), {"SSLIP", "SSRD"}},
-      {facts_of(Quantity::true_airspeed), {"TASX", "TAS"}},
-      {facts_of(Quantity::altitude), {"GGALT", "GGALTC", "ALTV"}},
-      {{"other_altitude", "m", "altitude of an inertial system or of the pressure, up positive"},
-       {"ALTX", "ALT", "PALT"}},
-      {facts_of(Quantity::vertical_speed), {"GGVSPD", "VSPD"}},
-      {facts_of(Quantity::latitude), {"GGLAT", "LATC", "LAT"}},
-      {{"longitude", "deg", "longitude, east positive"}, {"GGLON", "LONC", "LON"}},
-      {facts_of(Quantity::pitch), {"PITCH"}},
-      {facts_of(Quantity::roll), {"ROLL"}},
-      {facts_of(Quantity::heading), {"THDG"}},
-      {facts_of(Quantity::ground_speed), {"GGSPD", "GSF"}},
-      {facts_of(Quantity::ground_track), {"GGTRK", "TKAT"}},
-      {{"ground_speed_east", "m/s", "ground speed, east positive"}, {"GGVEW", "VEWC", "VEW"}},
-      {{"ground_speed_north", "m/s", "ground speed, north positive"}, {"GGVNS", "VNSC", "VNS"}},
-      {facts_of(Quantity::normal_acceleration), {"BNORMA"}},
-      {facts_of(Quantity::longitudinal_acceleration), {"BLONGA", "BLONA"}},
-      {facts_of(Quantity::height_above_ground), {"HGM232", "RALT", "HGME", "HGM"}},
-      {facts_of(Quantity::flaps), {"FLAPS"}},
-      {facts_of(Quantity::liquid_water), {"PLWCC", "PLWCD", "PLWC", "PLWC1"}},
-      {facts_of(Quantity::transducer_temperature), {"TBAY"}},
-      {facts_of(Quantity::cabin_pressure), {"PCAB"}},
-      {facts_of(Quantity::date), {"Time", "time", "time_offset"}},
-  };
-  return all;
+// Several instruments measure it, so that the choice is a part of the model.
+bool is_chosen_by_model(Quantity role) {
+  return role == Quantity::ambient_temperature || role == Quantity::vapor_pressure ||
+         role == Quantity::dew_point || role == Quantity::lams_airspeed;
 }
 
-const UsualVariables* find(std::string_view name) {
-  const std::vector<UsualVariables>& all = all_usual_variables();
-  const auto found = std::find_if(all.begin(), all.end(),
-                                  [name](const UsualVariables& each) { return each.series.name == name; });
-  return found == all.end() ? nullptr : &*found;
+void append(std::vector<std::string>& names, const std::vector<std::string>& more) {
+  for (const std::string& name : more) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
 }
 
 }  // namespace
 
-const UsualVariables& usual_series(std::string_view name) {
-  const UsualVariables* const found = find(name);
-  if (found == nullptr) throw std::out_of_range("no series " + std::string(name));
-  return *found;
+const QuantityFacts* series_named(std::string_view name) {
+  for (const QuantityFacts& facts : extra_series) {
+    if (facts.name == name) return &facts;
+  }
+  const Quantity role = quantity_named(name);
+  return role == Quantity::count || !is_role(role) ? nullptr : &facts_of(role);
 }
 
-Names usual_variables(Quantity role) {
-  const UsualVariables* const found = find(facts_of(role).name);
-  return found == nullptr || found->chosen_by_model ? Names{} : found->names;
-}
-
-Names usual_heights() {
-  Names names = usual_variables(Quantity::altitude);
-  const Names& others = usual_series("other_altitude").names;
-  names.insert(names.end(), others.begin(), others.end());
+std::vector<std::string> names_of_series() {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < role_count; ++i) names.emplace_back(facts_of(static_cast<Quantity>(i)).name);
+  for (const QuantityFacts& facts : extra_series) names.emplace_back(facts.name);
   return names;
 }
 
-const std::vector<PressurePair>& measured_pressures() {
-  static const std::vector<PressurePair> pairs{
-      {"PSFD", "QCF"}, {"PSFRD", "QCFR"}, {"PSF", "QCF"}, {"PS_A", "QC_A"}};
-  return pairs;
+const AircraftFamily& family_of(const ModelFile& model, const Flight& flight) {
+  return model.roles_from.empty() ? family_of(flight) : family_named(model.roles_from);
 }
 
-const std::vector<PressurePair>& processed_pressures() {
-  static const std::vector<PressurePair> pairs{{"PSXC", "QCXC"}, {"PSX", "QCX"}};
-  return pairs;
+std::vector<std::string> usual_variables(const AircraftFamily& family, Quantity role) {
+  return is_chosen_by_model(role) ? std::vector<std::string>() : family.names_of(facts_of(role).name);
 }
 
-const std::vector<Thermometer>& usual_thermometers() {
-  static const std::vector<Thermometer> thermometers{
-      {"TTX", "rosemount-boom-2004"},      {"TTRR", "rosemount-boom-2004"}, {"TTRL", "rosemount-boom-2004"},
-      {"RTF1", "rosemount-unheated-2014"}, {"RTX", "rosemount-boom-2004"},  {"TTHR1", "harco-heated-2022"},
-      {"TTHR2", "harco-heated-2022"},      {"TTHL1", "harco-heated-2022"},  {"TTHL2", "harco-heated-2022"},
-      {"RTH1", "harco-heated-2022"},       {"RTH2", "harco-heated-2022"},   {"TTWH", "rosemount-deiced-2004"},
-  };
-  return thermometers;
+std::vector<std::string> usual_variables(Quantity role) {
+  std::vector<std::string> names;
+  for (const AircraftFamily& family : aircraft_families()) append(names, usual_variables(family, role));
+  return names;
+}
+
+std::vector<std::string> usual_heights(const AircraftFamily& family) {
+  std::vector<std::string> names = usual_variables(family, Quantity::altitude);
+  append(names, family.names_of("other_altitude"));
+  return names;
 }
 
 }  // namespace pcor::internal

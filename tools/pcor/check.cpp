@@ -10,6 +10,7 @@
 
 #include <pcor/laws/model_file.hpp>
 #include "comparison.hpp"
+#include "model_of_flight.hpp"
 #include "progress.hpp"
 
 namespace pcor::tool {
@@ -176,7 +177,8 @@ void run(const Options& options) {
   require_writable(options.common.report);
   JsonResult json(options.common);
   std::optional<ModelFile> model;
-  if (!options.model.empty()) model = read_model(options.model);
+  if (!options.model.empty())
+    model = read_model_for(options.model, flight_paths(options.flights), options.common);
   CheckOptions check_options;
   check_options.mask = mask_options(options.flights);
   check_options.time_stamp = time_stamp(options.flights);

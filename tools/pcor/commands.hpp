@@ -7,11 +7,11 @@
 namespace pcor::tool {
 
 /// The sub-commands, each in a file of its own, in the order of the work.
-AddCommand add_compare, add_refit, add_diagnose, add_effects, add_add, add_improve, add_check, add_process,
-    add_temperature, add_simulate;
+AddCommand add_inspect, add_compare, add_refit, add_diagnose, add_effects, add_add, add_improve, add_check,
+    add_process, add_temperature, add_simulate;
 
-inline constexpr std::array commands{&add_compare,     &add_refit,   &add_diagnose, &add_effects,
-                                     &add_add,         &add_improve, &add_check,    &add_process,
-                                     &add_temperature, &add_simulate};
+inline constexpr std::array commands{&add_inspect, &add_compare,     &add_refit,   &add_diagnose,
+                                     &add_effects, &add_add,         &add_improve, &add_check,
+                                     &add_process, &add_temperature, &add_simulate};
 
 }  // namespace pcor::tool

@@ -10,6 +10,7 @@
 #include <pcor/compare/comparison_report.hpp>
 #include <pcor/words/utc.hpp>
 #include "comparison.hpp"
+#include "model_of_flight.hpp"
 #include "progress.hpp"
 
 namespace pcor::tool {
@@ -223,7 +224,7 @@ void run(const Options& options) {
   std::vector<Contender> contenders;
   ChosenReferences references;  // of all models, as the text tells them
   for (const std::string& path : options.models) {
-    const ModelFile model = read_model(path);
+    const ModelFile model = read_model_for(path, flight_paths(options.comparison), options.common);
     const ChosenReferences own =
         read_references(options.comparison.references, model, flight_paths(options.comparison));
     add_references(references, own);

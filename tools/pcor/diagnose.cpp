@@ -12,6 +12,7 @@
 #include <pcor/words/utc.hpp>
 #include "comparison.hpp"
 #include "diagnosis.hpp"
+#include "model_of_flight.hpp"
 #include "progress.hpp"
 #include "shaped_effect.hpp"
 
@@ -184,7 +185,7 @@ void run(const Options& options) {
   refuse_overwriting({options.common.json, options.common.report}, inputs);
   require_writable(options.common.report);
   JsonResult json(options.common);
-  const ModelFile model = read_model(options.model);
+  const ModelFile model = read_model_for(options.model, flight_paths(options.comparison), options.common);
   const ChosenReferences references = references_to_fit(options.comparison, model);
   DiagnoseOptions diagnose_with;
   diagnose_with.mask = mask_options(options.comparison);

@@ -12,6 +12,7 @@
 #include <pcor/improve/improvement_report.hpp>
 #include "comparison.hpp"
 #include "diagnosis.hpp"
+#include "model_of_flight.hpp"
 #include "progress.hpp"
 #include "refusal.hpp"
 
@@ -141,7 +142,7 @@ void run(const Options& options) {
   refuse_overwriting({options.output, options.common.json, options.common.report}, inputs);
   for (const std::string& output : {options.output, options.common.report}) require_writable(output);
   JsonResult json(options.common);
-  const ModelFile model = read_model(options.model);
+  const ModelFile model = read_model_for(options.model, flight_paths(options.comparison), options.common);
   const ChosenReferences references = references_to_fit(options.comparison, model, options.holdout);
   ImproveOptions improve_with = improve_options(options, model);
   Improvement improvement;

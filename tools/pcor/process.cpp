@@ -8,6 +8,7 @@
 
 #include <pcor/words/utc.hpp>
 #include "command.hpp"
+#include "model_of_flight.hpp"
 #include "progress.hpp"
 
 namespace pcor::tool {
@@ -112,7 +113,7 @@ UncertaintyPart part_named(const std::string& name) {
 void run(const Options& options) {
   refuse_overwriting({options.output, options.common.json}, {options.input, options.model});
   JsonResult json(options.common);
-  const ModelFile model = read_model(options.model);
+  const ModelFile model = read_model_for(options.model, {options.input}, options.common);
   ProcessOptions process;
   process.correct_with = options.correct_with == "lams" ? CorrectWith::lams : CorrectWith::model;
   process.time_stamp = options.time_stamp == "middle" ? TimeStamp::middle : TimeStamp::begin;

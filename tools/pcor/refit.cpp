@@ -11,6 +11,7 @@
 #include <pcor/fit/refit_report.hpp>
 #include <pcor/words/error.hpp>
 #include "comparison.hpp"
+#include "model_of_flight.hpp"
 #include "progress.hpp"
 #include "refusal.hpp"
 
@@ -269,7 +270,7 @@ void run(const Options& options) {
   for (const std::string& output : {options.output, options.reference_output, options.common.report})
     require_writable(output);
   JsonResult json(options.common);
-  const ModelFile model = read_model(options.model);
+  const ModelFile model = read_model_for(options.model, flight_paths(options.comparison), options.common);
   const ChosenReferences references = references_to_fit(options.comparison, model, options.holdout);
   RefitOptions refit_with = refit_options(options);
   RefitResult result;

@@ -10,6 +10,7 @@
 
 #include <pcor/words/error.hpp>
 #include "comparison.hpp"
+#include "model_of_flight.hpp"
 #include "progress.hpp"
 #include "refusal.hpp"
 
@@ -233,7 +234,7 @@ void run(const Options& options) {
   if (!options.iterate && !options.comparison.references.empty())
     throw Error("--reference is what --iterate fits the pressures to; give both or none");
   JsonResult json(options.common);
-  const ModelFile model = read_model(options.model);
+  const ModelFile model = read_model_for(options.model, flight_paths(options.comparison), options.common);
   TemperatureOptions with = temperature_options(options);
   TemperatureResult result;
   CalibrationInTurn in_turn;

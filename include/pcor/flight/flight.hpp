@@ -122,11 +122,11 @@ class Flight {
   /// The conversion of a variable's values to the unit `wanted`.
   ///
   /// `role` is what the model file calls the variable, for the message. `stated`, if not empty, is the unit
-  /// that the model file states; it counts where the file states none, or one that is not known.
+  /// that the model file states; it takes the place of the file's own.
   ///
-  /// @throws Error as UnitConversion::between, or if the file's unit is known and is not the one stated, or
-  /// if the variable is absent: with a role, the message has the names that begin and look like it among the
-  /// time series whose unit fits, or else up to six of these time series.
+  /// @throws Error as UnitConversion::between, or if the variable is absent: with a role, the message has the
+  /// names that begin and look like it among the time series whose unit fits, or else up to six of these time
+  /// series.
   UnitConversion conversion(const std::string& name, const std::string& wanted, const std::string& role = "",
                             const std::string& stated = "") const;
 

@@ -75,6 +75,9 @@ struct ModelFile {
   Model model;
 
   std::map<Quantity, std::string> variables{};  ///< the netCDF variable of each role that is used
+  /// Whose names complete the variables: a known aircraft, "faam-core", or a file that ends in .toml. Empty:
+  /// by the flight's own attributes.
+  std::string roles_from{};
   std::map<Quantity, std::string> units{};      ///< units of roles that the model states itself
   std::map<std::string, std::string> output{};  ///< new names of results, by their standard names
   std::string recovery_factor_name{};           ///< of a published law; empty where the file has numbers

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pcor/flight/flight.hpp>
+#include <pcor/laws/model_file.hpp>
+#include <pcor/regimes/regimes.hpp>
+#include <pcor/residuals/samples.hpp>
+
+namespace pcor {
+
+/// The variable that would play a role.
+struct InspectedRole {
+  std::string role;         ///< "vertical_speed"; also of a series that no model reads, as "longitude"
+  std::string variable;     ///< "VELD_GIN"
+  std::string unit;         ///< as the file says, or the data of its aircraft where these know better
+  bool is_turned = false;   ///< its sign is turned to be that of the role
+  int rate = 1;             ///< samples in a record
+  double present = 0.0;     ///< the part of the samples that have a value
+  std::string trap{};       ///< what a user of it should know; may be empty
+  bool is_verified = true;  ///< the name is in a public document of the aircraft
+  std::vector<std::string> others{};  ///< further variables that could play it
+};
+
+/// A role that no variable plays, and what cannot be done without it.
+struct MissingRole {
+  std::string role;
+  std::string description;
+  std::vector<std::string> looked_for;  ///< names of variables
+  std::string cost;                     ///< a sentence without its end; empty where nothing needs it
+  std::vector<std::string> effects;     ///< of the catalogue, which cannot be fitted or diagnosed
+};
+
+/// A law of a model file, and how it goes with a flight.
+struct InspectedLaw {
+  std::filesystem::path path;
+  std::string name;
+  bool has_variables = false;  ///< the flight records the pressures that it corrects
+  bool is_in_time = false;     ///< the flight is within the time for which the law is stated to hold
+};
+
+/// What a flight holds.
+struct Inspection {
+  std::string path;
+  std::string aircraft{};
+  std::string project{};
+  std::string flight{};
+  std::string institution{};
+  std::string family{};  ///< whose names were looked for: "faam-core"
+  std::string family_title{};
+  std::vector<std::string> alike{};  ///< the families whose files it is like; several are doubt, none a guess
+  TimeAxis time{};
+  std::size_t records = 0;
+  std::map<int, std::size_t> rates{};  ///< how many variables have so many samples in a record
+  std::vector<InspectedRole> roles{};
+  std::vector<MissingRole> missing{};
+  std::vector<FrozenSpan>
+      frozen{};  ///< sensors that stand still in flight, for longer than their noise allows
+  std::vector<Interval> intervals{};  ///< what was flown; empty without pressures
+  std::vector<InspectedLaw> laws{};   ///< for this aircraft, those that fit first
+  std::vector<std::string> notes{};
+  std::optional<ModelFile>
+      model{};  ///< ready to run: the roles, and terms that a refit finds; none without pressures
+  std::shared_ptr<const FlightSamples> samples{};  ///< what pictures are made of; null without pressures
+};
+
+/// Looks at a flight: what it is, which variable plays which role, what is missing and what that costs, what
+/// was flown, which of the `laws` (model files) are for it. A file of `laws` that cannot be read is a note.
+/// @throws Error if the flight cannot be read
+Inspection inspect_flight(const std::filesystem::path& path,
+                          const std::vector<std::filesystem::path>& laws = {},
+                          TimeStamp time_stamp = TimeStamp::begin);
+
+}  // namespace pcor

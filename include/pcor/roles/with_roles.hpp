@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <pcor/flight/flight.hpp>
+#include <pcor/laws/model_file.hpp>
+
+namespace pcor {
+
+/// The model with the variables that it leaves open, by the names that the flight's aircraft has for them:
+/// those of `ModelFile::roles_from`, else of the aircraft that the flight's attributes and variables tell.
+///
+/// A model that names its static and its dynamic pressure is complete, and returned as it is. Else its
+/// pressures are the first pair as measured that has values; every further role is the first of its names
+/// that has values, in the unit, and with the sign, that the aircraft's data state; the temperature is a
+/// recovery temperature where one is recorded, with the recovery factor of its thermometer unless the model
+/// states one, else that of the air. Adds to `notes` what was chosen, and what a user of these variables
+/// should know, a sentence each.
+/// @throws Error if the flight has no pair of pressures that is known, or is like the files of several
+/// aircraft; the message says what to write into the model.
+ModelFile with_roles(const ModelFile& model, const Flight& flight, std::vector<std::string>& notes);
+
+}  // namespace pcor

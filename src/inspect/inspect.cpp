@@ -1,0 +1,262 @@
+#include <pcor/inspect/inspect.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/residuals/reference.hpp>
+#include <pcor/roles/with_roles.hpp>
+#include <pcor/words/error.hpp>
+#include <pcor/words/utc.hpp>
+#include "roles/recorded_series.hpp"
+#include "roles/usual_variables.hpp"
+
+namespace pcor {
+
+using namespace internal;
+
+namespace {
+
+/// What cannot be done without a series, beside the effects that need it.
+struct Cost {
+  std::string_view series;
+  std::string_view text;
+};
+
+constexpr std::array<Cost, 14> costs{{
+    {"recovery_temperature",
+     "no airspeed and no delta-p from LAMS, unless the temperature of the air is recorded"},
+    {"dew_point", "the air is taken as dry, unless the vapour pressure is recorded"},
+    {"lams_airspeed", "delta-p cannot be measured; a second system, heights or winds have to stand in"},
+    {"attack", "the angle of the laser's beam to the wind is not known, and pitch manoeuvres need the pitch"},
+    {"altitude",
+     "climbs, layers and the hydrostatic temperature fit are left out, unless another height is recorded"},
+    {"vertical_speed", "it is found from the altitude"},
+    {"pitch", "pitch manoeuvres are found by the angle of attack, if that is recorded"},
+    {"roll", "turns, circles and reverse headings are not looked for"},
+    {"heading",
+     "circles, reverse headings and yaw manoeuvres are found by the ground track, if that is recorded"},
+    {"ground_speed", "winds cannot be compared on reverse headings and circles"},
+    {"ground_track", "winds cannot be compared, unless the ground speed is recorded by components"},
+    {"flaps", "samples with flaps out are found by the lift alone"},
+    {"liquid_water", "clouds are not looked for"},
+    {"latitude", "gravity is that of middle latitudes, and the slope of isobars is not known"},
+}};
+
+std::string cost_of(std::string_view series) {
+  const auto found =
+      std::find_if(costs.begin(), costs.end(), [&](const Cost& cost) { return cost.series == series; });
+  return found == costs.end() ? std::string() : std::string(found->text);
+}
+
+std::vector<std::string> effects_that_need(Quantity role) {
+  std::vector<std::string> effects;
+  for (const EffectFacts& facts : effect_facts) {
+    const auto end = facts.needs.begin() + static_cast<std::ptrdiff_t>(facts.need_count());
+    const bool by_rate =
+        role == Quantity::liquid_water && std::find(facts.needs.begin(), end, Quantity::wetness) != end;
+    if (by_rate || std::find(facts.needs.begin(), end, role) != end) effects.emplace_back(facts.id);
+  }
+  return effects;
+}
+
+/// One flight that is looked at.
+class Look {
+ public:
+  Look(const std::filesystem::path& path, TimeStamp time_stamp)
+      : flight_(path, time_stamp), family_(family_of(flight_)) {
+    result_.path = path.string();
+  }
+
+  Inspection run(const std::vector<std::filesystem::path>& laws) {
+    identify();
+    find_model();
+    find_roles();
+    look_at_samples();
+    find_laws(laws);
+    return std::move(result_);
+  }
+
+ private:
+  void identify() {
+    result_.aircraft = flight_.aircraft();
+    result_.project = flight_.project();
+    result_.flight = flight_.flight_number();
+    for (const char* name : {"institution", "Institution", "Source", "source"}) {
+      if (result_.institution.empty()) result_.institution = flight_.attribute(name);
+    }
+    result_.family = family_.name;
+    result_.family_title = family_.title;
+    for (const AircraftFamily* family : families_like(flight_)) result_.alike.push_back(family->name);
+    result_.time = flight_.time();
+    result_.records = flight_.records();
+    for (const std::string& name : flight_.variables()) {
+      const VariableInfo& info = flight_.variable(name);
+      if (info.is_series) ++result_.rates[info.rate];
+    }
+  }
+
+  /// Of a doubtful flight the first family stands.
+  void find_model() {
+    ModelFile model;
+    model.roles_from = family_.name;
+    model.model.aircraft = result_.aircraft;
+    model.model.name =
+        fmt::format("{} as recorded", result_.aircraft.empty() ? family_.title : result_.aircraft);
+    try {
+      std::vector<std::string> notes;
+      model = with_roles(model, flight_, notes);
+    } catch (const Error& error) {
+      if (error.code() == Error::Code::file) throw;
+      result_.notes.emplace_back(error.what());
+      return;
+    }
+    const auto has = [&model](Quantity role) { return model.variables.count(role) != 0; };
+    model.model.effects = {neutral_effect("static-constant"), neutral_effect("static-qp")};
+    if (has(Quantity::radome_dynamic_pressure) && has(Quantity::attack_differential_pressure)) {
+      model.model.effects.push_back(neutral_effect("static-alpha"));
+    } else if (has(Quantity::attack)) {
+      model.model.effects.push_back(neutral_effect("static-attack"));
+    }
+    model.law.source = "no law yet: all terms are zero until a refit finds them";
+    result_.model = std::move(model);
+  }
+
+  /// The part of a series that has values.
+  double present(const std::string& variable) const {
+    const int rate = flight_.variable(variable).rate;
+    std::size_t there = 0;
+    std::vector<double> values;
+    for (const RecordBlock block : blocks_of(flight_.records())) {
+      values.resize(block.count * static_cast<std::size_t>(rate));
+      flight_.read(variable, block, UnitConversion(), values.data());
+      there += static_cast<std::size_t>(
+          std::count_if(values.begin(), values.end(), [](double x) { return std::isfinite(x); }));
+    }
+    return static_cast<double>(there) /
+           static_cast<double>(flight_.records() * static_cast<std::size_t>(rate));
+  }
+
+  std::vector<std::string> names_of(const std::string& series) const {
+    std::vector<std::string> names = family_.names_of(series);
+    const auto add = [&names](const std::string& name) {
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    };
+    for (const PressurePair& pair : family_.measured) {
+      if (series == facts_of(Quantity::static_pressure).name) add(pair.static_pressure);
+      if (series == facts_of(Quantity::dynamic_pressure).name) add(pair.dynamic_pressure);
+    }
+    if (series == facts_of(Quantity::recovery_temperature).name) {
+      for (const Thermometer& thermometer : family_.thermometers) add(thermometer.variable);
+    }
+    return names;
+  }
+
+  void find_roles() {
+    for (const std::string& series : names_of_series()) {
+      const QuantityFacts& facts = *series_named(series);
+      const std::vector<std::string> names = names_of(series);
+      std::vector<std::string> found;
+      for (const std::string& name : names) {
+        if (has_values(flight_, name, std::string(facts.unit), family_.unit_of(name))) found.push_back(name);
+      }
+      if (found.empty()) {
+        add_missing(facts, names);
+      } else {
+        add_role(series, found);
+      }
+    }
+  }
+
+  void add_role(const std::string& series, const std::vector<std::string>& found) {
+    InspectedRole& role = result_.roles.emplace_back();
+    role.role = series;
+    role.variable = found.front();
+    const std::string stated = family_.unit_of(role.variable);
+    role.unit = stated.empty() ? flight_.variable(role.variable).units : stated;
+    role.is_turned =
+        UnitConversion::between(role.unit, std::string(series_named(series)->unit), {}).scale() < 0.0;
+    role.rate = flight_.variable(role.variable).rate;
+    role.present = present(role.variable);
+    const auto trap = family_.traps.find(role.variable);
+    if (trap != family_.traps.end()) role.trap = trap->second;
+    role.is_verified = std::find(family_.unverified.begin(), family_.unverified.end(), role.variable) ==
+                       family_.unverified.end();
+    role.others.assign(found.begin() + 1, found.end());
+  }
+
+  void add_missing(const QuantityFacts& facts, const std::vector<std::string>& names) {
+    MissingRole missing{
+        std::string(facts.name), std::string(facts.description), names, cost_of(facts.name), {}};
+    const Quantity role = quantity_named(facts.name);
+    if (role == Quantity::mach) return;  // laws find it from the pressures
+    if (role != Quantity::count) missing.effects = effects_that_need(role);
+    if (!missing.cost.empty() || !missing.effects.empty() || !names.empty())
+      result_.missing.push_back(std::move(missing));
+  }
+
+  void look_at_samples() {
+    if (!result_.model) return;
+    const std::string pressure = result_.model->variables.at(Quantity::static_pressure);
+    try {
+      const auto samples = std::make_shared<FlightSamples>(
+          read_samples(flight_, *result_.model, *pressure_reference(pressure), MaskOptions()));
+      result_.frozen = samples->model.frozen;
+      result_.intervals = samples->intervals;
+      for (const std::string& note : samples->notes) result_.notes.push_back(note);
+      result_.samples = samples;
+    } catch (const Error& error) {
+      if (error.code() == Error::Code::file) throw;
+      result_.notes.emplace_back(error.what());
+    }
+  }
+
+  void find_laws(const std::vector<std::filesystem::path>& paths) {
+    const std::string date = utc_text(result_.time.first, "%Y-%m-%d");
+    for (const std::filesystem::path& path : paths) {
+      try {
+        const ModelFile file = read_model(path);
+        if (!is_of_this_aircraft(file.model.aircraft)) continue;
+        InspectedLaw law{path, file.model.name, false, false};
+        const auto has = [&](Quantity role) {
+          const auto variable = file.variables.find(role);
+          return variable != file.variables.end() && flight_.has(variable->second);
+        };
+        law.has_variables = has(Quantity::static_pressure) && has(Quantity::dynamic_pressure);
+        law.is_in_time = (file.law.valid_from.empty() || file.law.valid_from <= date) &&
+                         (file.law.valid_to.empty() || date <= file.law.valid_to);
+        result_.laws.push_back(std::move(law));
+      } catch (const Error& error) {
+        result_.notes.emplace_back(error.what());
+      }
+    }
+    std::stable_sort(result_.laws.begin(), result_.laws.end(),
+                     [](const InspectedLaw& a, const InspectedLaw& b) {
+                       return a.has_variables + a.is_in_time > b.has_variables + b.is_in_time;
+                     });
+  }
+
+  /// By the registration, which stands in both: "C-130 N130AR" and "N130AR".
+  bool is_of_this_aircraft(const std::string& aircraft) const {
+    if (aircraft.empty() || result_.aircraft.empty()) return false;
+    return aircraft.find(result_.aircraft) != std::string::npos ||
+           result_.aircraft.find(aircraft) != std::string::npos;
+  }
+
+  Flight flight_;
+  const AircraftFamily& family_;
+  Inspection result_;
+};
+
+}  // namespace
+
+Inspection inspect_flight(const std::filesystem::path& path, const std::vector<std::filesystem::path>& laws,
+                          TimeStamp time_stamp) {
+  return Look(path, time_stamp).run(laws);
+}
+
+}  // namespace pcor

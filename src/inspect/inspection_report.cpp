@@ -1,0 +1,138 @@
+#include <pcor/inspect/inspection_report.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include <pcor/words/utc.hpp>
+#include "roles/recorded_series.hpp"
+
+namespace pcor {
+
+using namespace internal;
+
+namespace {
+
+using Series = std::vector<double>;
+
+/// The series of the flights that have samples, one after another.
+class FlightColumns {
+ public:
+  FlightColumns(Report& report, const std::vector<Inspection>& flights)
+      : report_(report), flights_(flights) {}
+
+  void add(const char* name, const char* title, const char* unit,
+           const std::function<Series(const Inspection&)>& of) {
+    Series values;
+    for (const Inspection& flight : flights_) {
+      if (!flight.samples) continue;
+      Series part = of(flight);
+      part.resize(flight.samples->time.size(), std::nan(""));
+      values.insert(values.end(), part.begin(), part.end());
+    }
+    if (std::none_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); })) return;
+    report_.columns.push_back({name, title, unit, std::move(values)});
+  }
+
+  bool has(const std::string& name) const {
+    return std::any_of(report_.columns.begin(), report_.columns.end(),
+                       [&](const ReportColumn& column) { return column.name == name; });
+  }
+
+  void add_time(const char* title, const char* caption, std::initializer_list<const char*> names) {
+    std::vector<std::string> there;
+    for (const char* name : names) {
+      if (has(name)) there.emplace_back(name);
+    }
+    if (!there.empty()) report_.items.push_back(TimePanel{title, caption, std::move(there)});
+  }
+
+ private:
+  Report& report_;
+  const std::vector<Inspection>& flights_;
+};
+
+std::string percent(double part) { return fmt::format("{:.1f} %", 100.0 * part); }
+
+ReportTable roles_of(const Inspection& flight) {
+  ReportTable table;
+  table.title = "Roles of " + std::filesystem::path(flight.path).filename().string();
+  table.caption = "Which variable plays which role, by the names of " + flight.family_title + ".";
+  table.headers = {"role", "variable", "unit", "sign", "samples in a record", "present", "remarks"};
+  for (const InspectedRole& role : flight.roles) {
+    std::string remarks = role.trap;
+    if (!role.is_verified)
+      remarks += std::string(remarks.empty() ? "" : "; ") + "no public document has the name";
+    table.rows.push_back({role.role, role.variable, role.unit, role.is_turned ? "turned" : "as in the file",
+                          std::to_string(role.rate), percent(role.present), remarks});
+  }
+  return table;
+}
+
+ReportTable missing_of(const Inspection& flight) {
+  ReportTable table;
+  table.title = "What is missing in " + std::filesystem::path(flight.path).filename().string();
+  table.caption = "Roles that no variable plays, and what cannot be done without them.";
+  table.headers = {"role", "what it is", "names looked for", "what cannot be done", "effects that need it"};
+  for (const MissingRole& role : flight.missing) {
+    table.rows.push_back({role.role, role.description, fmt::format("{}", fmt::join(role.looked_for, ", ")),
+                          role.cost, fmt::format("{}", fmt::join(role.effects, ", "))});
+  }
+  return table;
+}
+
+}  // namespace
+
+Report inspection_report(const std::vector<Inspection>& flights) {
+  Report report;
+  report.title = flights.size() == 1 ? "What the flight holds" : "What the flights hold";
+  for (const Inspection& flight : flights) {
+    report.facts.emplace_back("Flight", fmt::format("{}, {} to {} UTC, {} records, {} gaps", flight.path,
+                                                    utc_text(flight.time.first), utc_text(flight.time.last),
+                                                    flight.records, flight.time.gap_count));
+    report.facts.emplace_back("Aircraft", flight.aircraft.empty() ? "not said" : flight.aircraft);
+    report.facts.emplace_back("Names of", flight.family_title);
+    for (const std::string& note : flight.notes) report.facts.emplace_back("Note", note);
+    if (!flight.samples) continue;
+    report.flight_starts.push_back(report.time.size());
+    report.flight_names.push_back(flight.samples->name);
+    report.time.insert(report.time.end(), flight.samples->time.begin(), flight.samples->time.end());
+    for (const Interval& interval : flight.intervals)
+      report.intervals.push_back({std::string(facts_of(interval.regime).name), interval.begin, interval.end});
+  }
+  report.facts.emplace_back("Program", "pcor " PCOR_VERSION);
+  if (!report.time.empty()) {
+    FlightColumns columns(report, flights);
+    const auto recorded = [](const char* series) {
+      return [series](const Inspection& flight) { return read_usual(Flight(flight.path), series).values; };
+    };
+    columns.add("altitude", "altitude", "m", [](const Inspection& f) { return f.samples->motion.altitude; });
+    columns.add("airspeed", "true airspeed", "m/s",
+                [](const Inspection& f) { return f.samples->motion.airspeed; });
+    columns.add("ground_speed", "ground speed", "m/s",
+                [](const Inspection& f) { return f.samples->motion.ground_speed; });
+    columns.add("pitch", "pitch", "deg", [](const Inspection& f) { return f.samples->motion.pitch; });
+    columns.add("roll", "roll", "deg", [](const Inspection& f) { return f.samples->motion.roll; });
+    columns.add("latitude", "latitude", "deg", recorded("latitude"));
+    columns.add("longitude", "longitude", "deg", recorded("longitude"));
+    columns.add_time("Height",
+                     "Altitude in time; regimes are shaded. Drag over a time range, or choose a regime, and "
+                     "every picture shows its samples alone.",
+                     {"altitude"});
+    columns.add_time("Speed", "True airspeed and speed over the ground.", {"airspeed", "ground_speed"});
+    columns.add_time("Attitude", "Pitch and roll.", {"pitch", "roll"});
+    if (columns.has("latitude") && columns.has("longitude") && columns.has("altitude"))
+      report.items.push_back(PlanePanel{"Track", "The track over the ground, by its height.", "longitude",
+                                        "latitude", "altitude", false, false});
+  }
+  for (const Inspection& flight : flights) {
+    if (!flight.roles.empty()) report.items.push_back(roles_of(flight));
+    if (!flight.missing.empty()) report.items.push_back(missing_of(flight));
+  }
+  return report;
+}
+
+}  // namespace pcor

@@ -1,0 +1,208 @@
+#include "roles/aircraft_family.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <deque>
+#include <mutex>
+#include <optional>
+
+#include <pcor/words/error.hpp>
+#include <pcor/words/suggest.hpp>
+#include "laws/model_names.hpp"
+#include "roles/aircraft_data.hpp"
+#include "roles/usual_variables.hpp"
+#include "words/text_file.hpp"
+#include "words/toml_reader.hpp"
+
+namespace pcor::internal {
+namespace {
+
+constexpr std::string_view format = "pcor-aircraft/1";
+
+class Reader final : TomlReader {
+ public:
+  explicit Reader(std::string_view name) : TomlReader(name) {}
+
+  AircraftFamily read(std::string_view text_of_file) {
+    const toml::table root = parse(text_of_file);
+    format_of(root, "aircraft files", format);
+    each(root, "",
+         {{"format", [](const Entry&) {}},
+          {"name", [&](const Entry& entry) { family_.name = text(entry); }},
+          {"title", [&](const Entry& entry) { family_.title = text(entry); }},
+          {"source", [&](const Entry& entry) { family_.source = text(entry); }},
+          {"unverified", [&](const Entry& entry) { family_.unverified = texts(entry); }},
+          {"recognised", [&](const Entry& entry) { read_recognised(entry); }},
+          {"pressures", [&](const Entry& entry) { read_pressures(entry); }},
+          {"series", [&](const Entry& entry) { read_series(entry); }},
+          {"thermometer", [&](const Entry& entry) { read_thermometers(entry); }},
+          {"units", [&](const Entry& entry) { family_.units = texts_by_name(entry); }},
+          {"traps", [&](const Entry& entry) { family_.traps = texts_by_name(entry); }}});
+    for (const auto& [what, value] : {std::pair("name", &family_.name), {"title", &family_.title}}) {
+      if (value->empty())
+        fail(Place{1, 1}, fmt::format("the aircraft has no {}; add {} = \"...\"", what, what));
+    }
+    return std::move(family_);
+  }
+
+ private:
+  std::vector<std::string> texts(const Entry& entry) const { return texts(array(entry, "a list of texts")); }
+
+  std::vector<std::string> texts(const toml::array& list) const {
+    std::vector<std::string> all;
+    for (const toml::node& node : list)
+      all.push_back(as<std::string>(node, "a text in quotes is wanted here"));
+    return all;
+  }
+
+  std::map<std::string, std::string> texts_by_name(const Entry& section) const {
+    std::map<std::string, std::string> all;
+    for (const Entry& entry : entries_of(table(section), "[" + section.key + "]"))
+      all[entry.key] = text(entry);
+    return all;
+  }
+
+  // Lists of two texts.
+  std::vector<std::pair<std::string, std::string>> pairs(const Entry& entry) const {
+    std::vector<std::pair<std::string, std::string>> all;
+    for (const toml::node& node : array(entry, "a list of pairs, [[\"A\", \"B\"]]")) {
+      const std::vector<std::string> two =
+          texts(as<toml::array>(node, "a pair [\"A\", \"B\"] is wanted here"));
+      if (two.size() != 2) fail(node, "a pair has two texts; give it as [\"A\", \"B\"]");
+      all.emplace_back(two[0], two[1]);
+    }
+    return all;
+  }
+
+  void read_recognised(const Entry& section) {
+    each(table(section), "[recognised]",
+         {{"attributes", [&](const Entry& entry) { family_.attributes = pairs(entry); }},
+          {"variables", [&](const Entry& entry) { family_.variables = texts(entry); }}});
+  }
+
+  void read_pressures(const Entry& section) {
+    const auto read = [&](const Entry& entry, std::vector<PressurePair>& to) {
+      for (auto& [pressure, dynamic] : pairs(entry)) to.push_back({std::move(pressure), std::move(dynamic)});
+    };
+    each(table(section), "[pressures]",
+         {{"measured", [&](const Entry& entry) { read(entry, family_.measured); }},
+          {"processed", [&](const Entry& entry) { read(entry, family_.processed); }}});
+  }
+
+  void read_series(const Entry& section) {
+    for (const Entry& entry : entries_of(table(section), "[series]")) {
+      if (series_named(entry.key) == nullptr) refuse(entry, names_of_series());
+      family_.series[entry.key] = texts(entry);
+    }
+  }
+
+  void read_thermometers(const Entry& section) {
+    for (const toml::node& node : array(section, "tables [[thermometer]]")) {
+      Thermometer& thermometer = family_.thermometers.emplace_back();
+      each(as<toml::table>(node, "a table [[thermometer]] is wanted here"), "[[thermometer]]",
+           {{"variable", [&](const Entry& entry) { thermometer.variable = text(entry); }},
+            {"recovery_factor", [&](const Entry& entry) {
+               const PublishedRecoveryFactor* const known = published_recovery_factor(text(entry));
+               if (known == nullptr) fail(entry, "there is no published recovery factor of that name");
+               thermometer.recovery = known->name;
+             }}});
+      if (thermometer.variable.empty() || thermometer.recovery.empty())
+        fail(node, "a thermometer has a variable and a recovery_factor; give both");
+    }
+  }
+
+  AircraftFamily family_;
+};
+
+bool contains_word(std::string text, std::string word) {
+  const auto lower = [](std::string& letters) {
+    for (char& letter : letters) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  };
+  lower(text);
+  lower(word);
+  return text.find(word) != std::string::npos;
+}
+
+/// How much a flight is like those of a family: 2 for an attribute, 1 for the variables.
+int likeness(const AircraftFamily& family, const Flight& flight) {
+  const bool by_attribute =
+      std::any_of(family.attributes.begin(), family.attributes.end(), [&](const auto& attribute) {
+        return contains_word(flight.attribute(attribute.first), attribute.second);
+      });
+  const bool by_variables = !family.variables.empty() &&
+                            std::all_of(family.variables.begin(), family.variables.end(),
+                                        [&](const std::string& variable) { return flight.has(variable); });
+  return (by_attribute ? 2 : 0) + (by_variables ? 1 : 0);
+}
+
+}  // namespace
+
+std::vector<std::string> AircraftFamily::names_of(std::string_view of) const {
+  const auto found = series.find(of);
+  return found == series.end() ? std::vector<std::string>() : found->second;
+}
+
+std::string AircraftFamily::unit_of(const std::string& variable) const {
+  const auto found = units.find(variable);
+  return found == units.end() ? std::string() : found->second;
+}
+
+const std::vector<AircraftFamily>& aircraft_families() {
+  static const std::vector<AircraftFamily> all{
+      parse_family(aircraft::ncar, "ncar.toml"),
+      parse_family(aircraft::faam_core, "faam-core.toml"),
+      parse_family(aircraft::halo_bahamas, "halo-bahamas.toml"),
+      parse_family(aircraft::noaa_wp_3d, "noaa-wp-3d.toml"),
+      parse_family(aircraft::wyoming_king_air, "wyoming-king-air.toml"),
+  };
+  return all;
+}
+
+std::vector<const AircraftFamily*> families_like(const Flight& flight) {
+  std::vector<const AircraftFamily*> best;
+  int most = 1;
+  for (const AircraftFamily& family : aircraft_families()) {
+    const int here = likeness(family, flight);
+    if (here < most || here == 0) continue;
+    if (here > most) best.clear();
+    most = here;
+    best.push_back(&family);
+  }
+  return best;
+}
+
+const AircraftFamily& family_of(const Flight& flight) {
+  const std::vector<const AircraftFamily*> like = families_like(flight);
+  return like.empty() ? aircraft_families().front() : *like.front();
+}
+
+const AircraftFamily& family_named(const std::string& name) {
+  std::vector<std::string> known;
+  for (const AircraftFamily& family : aircraft_families()) {
+    if (family.name == name) return family;
+    known.push_back(family.name);
+  }
+  constexpr std::string_view ending = ".toml";
+  if (name.size() <= ending.size() || name.substr(name.size() - ending.size()) != ending) {
+    const std::string meant = did_you_mean(name, known);
+    throw Error(fmt::format(
+        "there are no roles '{}'; {}", name,
+        meant.empty() ? fmt::format("known are {}, and files that end in .toml", fmt::join(known, ", "))
+                      : meant));
+  }
+  // Those of the user stay for the run of the program, since flights refer to them.
+  static std::mutex reading;
+  static std::deque<std::pair<std::string, AircraftFamily>> read;
+  const std::lock_guard lock(reading);
+  for (const auto& [path, family] : read) {
+    if (path == name) return family;
+  }
+  return read.emplace_back(name, parse_family(text_of_file(name, "an aircraft file"), name)).second;
+}
+
+AircraftFamily parse_family(std::string_view text, std::string_view name) { return Reader(name).read(text); }
+
+}  // namespace pcor::internal

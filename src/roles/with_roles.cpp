@@ -1,0 +1,129 @@
+#include <pcor/roles/with_roles.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <utility>
+
+#include <pcor/words/error.hpp>
+#include "laws/model_names.hpp"
+#include "roles/recorded_series.hpp"
+#include "roles/usual_variables.hpp"
+
+namespace pcor {
+
+using namespace internal;
+
+namespace {
+
+/// One flight and the model that it completes.
+class Completion {
+ public:
+  Completion(const ModelFile& model, const Flight& flight, const AircraftFamily& family)
+      : file_(model), flight_(flight), family_(family) {}
+
+  ModelFile complete(std::vector<std::string>& notes) {
+    take_pressures();
+    take_temperature();
+    if (!has(Quantity::vapor_pressure) && !has(Quantity::dew_point)) {
+      if (!take(Quantity::vapor_pressure) && !take(Quantity::dew_point) && file_.model.moist) {
+        file_.model.moist = false;
+        traps_.push_back("no humidity is recorded: the air is taken as dry");
+      }
+    }
+    for (std::size_t i = 0; i < role_count; ++i) {
+      const auto role = static_cast<Quantity>(i);
+      const bool chosen_above = role == Quantity::vapor_pressure || role == Quantity::dew_point ||
+                                role == Quantity::ambient_temperature;
+      if (!chosen_above && !has(role)) take(role);
+    }
+    notes.push_back(fmt::format("roles by {}: {}", family_.name, fmt::join(taken_, ", ")));
+    for (std::string& trap : traps_) notes.push_back(std::move(trap));
+    return std::move(file_);
+  }
+
+ private:
+  bool has(Quantity role) const { return file_.variables.count(role) != 0; }
+
+  bool is_there(Quantity role, const std::string& variable) const {
+    return has_values(flight_, variable, std::string(facts_of(role).unit), family_.unit_of(variable));
+  }
+
+  void set(Quantity role, const std::string& variable) {
+    file_.variables[role] = variable;
+    if (std::string unit = family_.unit_of(variable); !unit.empty())
+      file_.units.emplace(role, std::move(unit));
+    taken_.push_back(fmt::format("{} = {}", facts_of(role).name, variable));
+    const auto trap = family_.traps.find(variable);
+    if (trap != family_.traps.end()) traps_.push_back(fmt::format("{}: {}", variable, trap->second));
+  }
+
+  bool take(Quantity role) {
+    for (const std::string& variable : family_.names_of(facts_of(role).name)) {
+      if (!is_there(role, variable)) continue;
+      set(role, variable);
+      return true;
+    }
+    return false;
+  }
+
+  void take_pressures() {
+    std::vector<std::string> looked_for;
+    for (const PressurePair& pair : family_.measured) {
+      looked_for.push_back(pair.name());
+      if (!is_there(Quantity::static_pressure, pair.static_pressure) ||
+          !is_there(Quantity::dynamic_pressure, pair.dynamic_pressure))
+        continue;
+      set(Quantity::static_pressure, pair.static_pressure);
+      set(Quantity::dynamic_pressure, pair.dynamic_pressure);
+      return;
+    }
+    throw Error(fmt::format(
+        "{}: it has no pair of static and dynamic pressure of the names that {} has ({}); name them as "
+        "static_pressure and dynamic_pressure in the [variables] of the model, or another aircraft by roles "
+        "= "
+        "\"...\"; 'pcor inspect' tells what the flight holds",
+        flight_.path().string(), family_.title, fmt::join(looked_for, ", ")));
+  }
+
+  void take_temperature() {
+    if (has(Quantity::recovery_temperature) || has(Quantity::ambient_temperature)) return;
+    for (const Thermometer& thermometer : family_.thermometers) {
+      if (!is_there(Quantity::recovery_temperature, thermometer.variable)) continue;
+      set(Quantity::recovery_temperature, thermometer.variable);
+      const bool states_one = !file_.recovery_factor_name.empty() ||
+                              file_.model.recovery.coefficients != Model().recovery.coefficients;
+      if (!states_one) {
+        file_.model.recovery = published_recovery_factor(thermometer.recovery)->law;
+        file_.recovery_factor_name = thermometer.recovery;
+      }
+      return;
+    }
+    take(Quantity::ambient_temperature);
+  }
+
+  ModelFile file_;
+  const Flight& flight_;
+  const AircraftFamily& family_;
+  std::vector<std::string> taken_;
+  std::vector<std::string> traps_;
+};
+
+}  // namespace
+
+ModelFile with_roles(const ModelFile& model, const Flight& flight, std::vector<std::string>& notes) {
+  if (model.variables.count(Quantity::static_pressure) != 0) return model;
+  if (model.roles_from.empty()) {
+    const std::vector<const AircraftFamily*> like = families_like(flight);
+    if (like.size() > 1) {
+      std::vector<std::string> names;
+      for (const AircraftFamily* family : like) names.push_back(family->name);
+      throw Error(fmt::format("{}: it is like the files of {}; say which in the model, roles = \"{}\"",
+                              flight.path().string(), fmt::join(names, " and of "), names.front()));
+    }
+  }
+  return Completion(model, flight, family_of(model, flight)).complete(notes);
+}
+
+}  // namespace pcor

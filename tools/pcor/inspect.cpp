@@ -1,0 +1,252 @@
+#include <pcor/inspect/inspect.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <pcor/inspect/inspection_report.hpp>
+#include <pcor/words/error.hpp>
+#include <pcor/words/utc.hpp>
+#include "command.hpp"
+
+namespace pcor::tool {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::vector<std::string> flights;
+  std::string model;
+  std::string time_stamp = "begin";
+};
+
+double rate_of(const Inspection& flight) {
+  return flight.rates.empty() ? 0.0 : flight.rates.rbegin()->first / flight.time.step;
+}
+
+nlohmann::ordered_json as_json(const Inspection& flight) {
+  nlohmann::ordered_json result;
+  result["path"] = flight.path;
+  result["aircraft"] = flight.aircraft;
+  result["project"] = flight.project;
+  result["flight"] = flight.flight;
+  result["institution"] = flight.institution;
+  result["names_of"] = flight.family;
+  result["alike"] = flight.alike;
+  result["rate_hz"] = rate_of(flight);
+  result["records"] = flight.records;
+  result["begin"] = utc_text(flight.time.first, iso_time);
+  result["end"] = utc_text(flight.time.last, iso_time);
+  result["gaps"] = flight.time.gap_count;
+  nlohmann::ordered_json roles = nlohmann::ordered_json::object();
+  for (const InspectedRole& role : flight.roles) {
+    roles[role.role] = {{"variable", role.variable},
+                        {"unit", role.unit},
+                        {"sign", role.is_turned ? "-" : "+"},
+                        {"rate", role.rate},
+                        {"present", role.present},
+                        {"trap", role.trap},
+                        {"verified", role.is_verified},
+                        {"others", role.others}};
+  }
+  result["roles"] = roles;
+  result["missing"] = nlohmann::ordered_json::array();
+  for (const MissingRole& role : flight.missing) {
+    result["missing"].push_back({{"role", role.role},
+                                 {"looked_for", role.looked_for},
+                                 {"cost", role.cost},
+                                 {"effects", role.effects}});
+  }
+  result["frozen"] = nlohmann::ordered_json::array();
+  for (const FrozenSpan& span : flight.frozen) {
+    const std::vector<double>& time = flight.samples->time;
+    result["frozen"].push_back({{"role", std::string(facts_of(span.quantity).name)},
+                                {"begin", utc_text(time[span.first], iso_time)},
+                                {"end", utc_text(time[span.first + span.count - 1], iso_time)}});
+  }
+  result["regimes"] = nlohmann::ordered_json::array();
+  for (const Interval& interval : flight.intervals) {
+    result["regimes"].push_back({{"name", std::string(facts_of(interval.regime).name)},
+                                 {"begin", utc_text(interval.begin, iso_time)},
+                                 {"end", utc_text(interval.end, iso_time)}});
+  }
+  result["laws"] = nlohmann::ordered_json::array();
+  for (const InspectedLaw& law : flight.laws) {
+    result["laws"].push_back({{"name", law.name},
+                              {"model", law.path.string()},
+                              {"has_variables", law.has_variables},
+                              {"is_in_time", law.is_in_time}});
+  }
+  result["notes"] = flight.notes;
+  return result;
+}
+
+void print_head(const Inspection& flight) {
+  std::vector<std::string> who;
+  for (const std::string& part : {flight.project, flight.flight, flight.aircraft, flight.institution}) {
+    if (!part.empty()) who.push_back(part);
+  }
+  fmt::print("{}: {}\n", flight.path,
+             who.empty() ? "it does not say whose flight it is" : fmt::format("{}", fmt::join(who, ", ")));
+  fmt::print("{} to {} UTC, {} records of {:g} s, {} gap{} in time\n", utc_text(flight.time.first),
+             utc_text(flight.time.last), flight.records, flight.time.step, flight.time.gap_count,
+             flight.time.gap_count == 1 ? "" : "s");
+  std::vector<std::string> rates;
+  for (const auto& [rate, count] : flight.rates)
+    rates.push_back(fmt::format("{} of {} Hz", count, rate / flight.time.step));
+  fmt::print("variables: {}\n", fmt::join(rates, ", "));
+  if (flight.alike.empty()) {
+    fmt::print("names are looked for as in files of {}, since the file is like none that is known\n",
+               flight.family_title);
+  } else if (flight.alike.size() > 1) {
+    fmt::print(
+        "it is like the files of {}; names are looked for as in those of {}; say which in the model by "
+        "roles\n",
+        fmt::join(flight.alike, " and of "), flight.family);
+  } else {
+    fmt::print("names are those of {} ({})\n", flight.family_title, flight.family);
+  }
+}
+
+void print_roles(const Inspection& flight) {
+  fmt::print("\n{:<33} {:<12} {:<10} {:>4} {:>8}  {}\n", "role", "variable", "unit", "Hz", "present",
+             "also there");
+  for (const InspectedRole& role : flight.roles) {
+    fmt::print("{:<33} {:<12} {:<10} {:>4g} {:>7.1f}%  {}\n", role.role,
+               role.variable + (role.is_verified ? "" : " ?"), role.unit, role.rate / flight.time.step,
+               100.0 * role.present, fmt::join(role.others, " "));
+  }
+  const bool doubt = std::any_of(flight.roles.begin(), flight.roles.end(),
+                                 [](const InspectedRole& role) { return !role.is_verified; });
+  if (doubt)
+    fmt::print(
+        "?: no public document of this aircraft was found that has the name; make sure of what it is\n");
+  for (const InspectedRole& role : flight.roles) {
+    if (!role.trap.empty()) fmt::print("{}: {}\n", role.variable, role.trap);
+  }
+}
+
+void print_missing(const Inspection& flight) {
+  bool any = false;
+  for (const MissingRole& role : flight.missing) {
+    if (role.cost.empty() && role.effects.empty()) continue;
+    if (!any) fmt::print("\n{:<33} what cannot be done without it\n", "missing");
+    any = true;
+    fmt::print("{:<33} {}{}{}\n", role.role, role.cost, role.cost.empty() || role.effects.empty() ? "" : "; ",
+               role.effects.empty() ? "" : fmt::format("no effects {}", fmt::join(role.effects, ", ")));
+  }
+}
+
+void print_flown(const Inspection& flight) {
+  std::map<Regime, std::pair<int, double>> flown;
+  for (const Interval& interval : flight.intervals) {
+    auto& [count, time] = flown[interval.regime];
+    ++count;
+    time += interval.end - interval.begin;
+  }
+  if (!flown.empty()) fmt::print("\n{:<18} {:>5} {:>8}\n", "flown", "times", "minutes");
+  for (const auto& [regime, sum] : flown)
+    fmt::print("{:<18} {:>5} {:>8.1f}\n", facts_of(regime).name, sum.first, sum.second / 60.0);
+  for (const FrozenSpan& span : flight.frozen) {
+    const std::vector<double>& time = flight.samples->time;
+    fmt::print("{} stands still from {} to {}\n", facts_of(span.quantity).name,
+               utc_text(time[span.first], "%H:%M:%S"),
+               utc_text(time[span.first + span.count - 1], "%H:%M:%S"));
+  }
+}
+
+void print(const Inspection& flight) {
+  print_head(flight);
+  print_roles(flight);
+  print_missing(flight);
+  print_flown(flight);
+  if (!flight.laws.empty()) fmt::print("\nlaws for this aircraft\n");
+  for (const InspectedLaw& law : flight.laws) {
+    fmt::print("  {}: {}{}\n", law.path.string(), law.name,
+               !law.has_variables ? "; the flight does not record its pressures"
+               : !law.is_in_time  ? "; stated for another time"
+                                  : "; fits the flight's pressures and its date");
+  }
+  for (const std::string& note : flight.notes) fmt::print("\nNote: {}.\n", note);
+}
+
+/// What to do next, as a command to paste.
+std::string next_step(const Options& options, const Inspection& flight) {
+  const std::string path = quoted(flight.path);
+  if (!flight.model)
+    return "To go on: name the variables of its pressures in the [variables] of a model "
+           "(data/models/FORMAT.md)";
+  if (!options.model.empty()) {
+    const bool laser = flight.model->variables.count(Quantity::lams_airspeed) != 0;
+    if (laser)
+      return fmt::format("To fit a law: pcor refit {} -m {} -o fitted.toml", path, quoted(options.model));
+    const std::vector<std::string>& alike = flight.alike;
+    return fmt::format("To see what the flight's own processing makes of it: pcor check {}{}", path,
+                       alike.empty() ? "" : fmt::format(" -m {}", quoted(options.model)));
+  }
+  const auto fits = std::find_if(flight.laws.begin(), flight.laws.end(),
+                                 [](const InspectedLaw& law) { return law.has_variables && law.is_in_time; });
+  if (fits != flight.laws.end())
+    return fmt::format("To correct it: pcor process {} -m {} -o corrected.nc", path,
+                       quoted(fits->path.string()));
+  return fmt::format("To have a model to start from: pcor inspect {} --write-model model.toml", path);
+}
+
+void run(const Options& options) {
+  std::vector<std::filesystem::path> inputs(options.flights.begin(), options.flights.end());
+  refuse_overwriting({options.model, options.common.json, options.common.report}, inputs);
+  for (const std::string& output : {options.model, options.common.report}) require_writable(output);
+  JsonResult json(options.common);
+  nlohmann::ordered_json result;
+  result["flights"] = nlohmann::ordered_json::array();
+  std::vector<Inspection> all;
+  for (const std::string& flight : options.flights) {
+    all.push_back(
+        inspect_flight(flight, {}, options.time_stamp == "middle" ? TimeStamp::middle : TimeStamp::begin));
+    result["flights"].push_back(as_json(all.back()));
+    if (!wants_text(options.common)) continue;
+    if (all.size() > 1) fmt::print("\n");
+    print(all.back());
+  }
+  const Inspection& first = all.front();
+  if (!options.model.empty()) {
+    if (!first.model)
+      throw Error(fmt::format("{}: no model can be written: {}", first.path, first.notes.front()));
+    save_model(*first.model, options.model, inputs);
+    if (wants_text(options.common)) fmt::print("\nwrote {}\n", options.model);
+  }
+  if (!options.common.report.empty()) {
+    write_report(inspection_report(all), options.common.report);
+    if (wants_text(options.common)) fmt::print("\nwrote {}\n", options.common.report);
+  }
+  json.write(result);
+  if (wants_text(options.common)) fmt::print("\n{}\n", next_step(options, first));
+}
+
+}  // namespace
+
+std::function<void()> add_inspect(CLI::App& program) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(
+      "inspect",
+      "See what a flight holds: aircraft, rates, roles of its variables, what is missing, what was flown");
+  command->add_option("flights", options->flights, "flights, netCDF files")->required()->type_name("IN.nc");
+  command
+      ->add_option(
+          "--write-model", options->model,
+          "write a model of the first flight to FILE.toml, with its roles and terms that a refit finds")
+      ->type_name("FILE.toml");
+  command
+      ->add_option("--time-stamp", options->time_stamp,
+                   "whether the time of a record is the beginning or the middle of its second")
+      ->check(CLI::IsMember({"begin", "middle"}))
+      ->capture_default_str();
+  add_common_options(*command, options->common);
+  return [options] { run(*options); };
+}
+
+}  // namespace pcor::tool
