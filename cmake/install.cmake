@@ -7,13 +7,15 @@ install(TARGETS pcor_realtime EXPORT pcor-realtime)
 install(EXPORT pcor-realtime NAMESPACE pcor:: DESTINATION ${pcor_config_dir})
 
 if(PCOR_MODEL)
-  install(TARGETS pcor_model EXPORT pcor-model ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(TARGETS pcor_model EXPORT pcor-model
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(EXPORT pcor-model NAMESPACE pcor:: DESTINATION ${pcor_config_dir})
   install(FILES ${PROJECT_SOURCE_DIR}/cmake/model_dependencies.cmake DESTINATION ${pcor_config_dir})
 endif()
 
 if(PCOR_OFFLINE)
-  install(TARGETS pcor_offline EXPORT pcor-offline ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(TARGETS pcor_offline EXPORT pcor-offline
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(EXPORT pcor-offline NAMESPACE pcor:: DESTINATION ${pcor_config_dir})
   install(FILES ${PROJECT_SOURCE_DIR}/cmake/offline_dependencies.cmake DESTINATION ${pcor_config_dir})
 endif()
@@ -36,8 +38,28 @@ foreach(room IN LISTS pcor_headers)
             DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pcor FILES_MATCHING PATTERN "*.hpp")
   endif()
 endforeach()
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/models DESTINATION ${CMAKE_INSTALL_DATADIR}/pcor)
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+foreach(data models aircraft scenarios)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/${data} DESTINATION ${CMAKE_INSTALL_DATADIR}/pcor)
+endforeach()
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
+        DESTINATION ${CMAKE_INSTALL_DOCDIR})
+if(TARGET pcor_tool)
+  install(PROGRAMS ${PROJECT_SOURCE_DIR}/tools/report_pictures DESTINATION ${CMAKE_INSTALL_DATADIR}/pcor/tools)
+endif()
+
+# For programs that are not built by CMake.
+set(pcor_pkg_config pcor-realtime)
+if(PCOR_MODEL)
+  list(APPEND pcor_pkg_config pcor-model)
+endif()
+if(PCOR_OFFLINE)
+  list(APPEND pcor_pkg_config pcor-offline)
+endif()
+foreach(name IN LISTS pcor_pkg_config)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/packaging/${name}.pc.in ${PROJECT_BINARY_DIR}/${name}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endforeach()
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/pcorConfig.cmake.in ${PROJECT_BINARY_DIR}/pcorConfig.cmake
   INSTALL_DESTINATION ${pcor_config_dir}

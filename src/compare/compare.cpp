@@ -14,6 +14,7 @@
 
 #include "numerics/missing.hpp"
 #include "residuals/flight_statistics.hpp"
+#include "words/phrasing.hpp"
 
 namespace pcor {
 
@@ -231,7 +232,7 @@ std::vector<Field> fields_of(const std::vector<Contender>& contenders) {
 
 /// The residuals of models to one reference on one flight, where all of them have one.
 FlightResiduals residuals_on(const Flight& flight, const std::vector<Pairing>& pairings,
-                             const MaskOptions& options, std::vector<std::string>& notes) {
+                             const MaskOptions& options, std::vector<FlightNote>& notes) {
   FlightResiduals result;
   for (const auto& [contender, reference] : pairings) {
     const ModelFile& model = contender.model;
@@ -242,7 +243,7 @@ FlightResiduals residuals_on(const Flight& flight, const std::vector<Pairing>& p
     result.values.push_back(residuals.values(parameters));
     result.reference_defects.push_back(residuals.wanted_defect(parameters));
     result.model_defects.push_back(residuals.quantity(Quantity::static_defect, parameters));
-    for (const std::string& note : samples->notes) notes.push_back(samples->name + ": " + note);
+    for (const std::string& note : samples->notes) notes.emplace_back(samples->name, note);
     if (!result.samples) {
       result.samples = samples;
       result.mask = residuals.mask();
@@ -278,17 +279,19 @@ Comparison compare_with(const std::vector<Pairing>& pairings,
   std::vector<Gathering> gatherings;
   for (const auto& [contender, reference] : pairings) gatherings.emplace_back(contender.name, reference);
   std::vector<std::pair<std::string, std::string>> aircraft;
+  std::vector<FlightNote> notes;
   for (const std::filesystem::path& path : flights) {
     const Flight flight(path, options.time_stamp);
     aircraft.emplace_back(path.filename().string(), flight.aircraft());
     require_one_aircraft(aircraft);
-    FlightResiduals residuals = residuals_on(flight, pairings, options.mask, result.notes);
+    FlightResiduals residuals = residuals_on(flight, pairings, options.mask, notes);
     for (const Mask mask : residuals.mask) ++result.masks[static_cast<std::size_t>(mask)];
     const NoiseFloor noise = lowest_noise(residuals);
     for (std::size_t m = 0; m < pairings.size(); ++m) gatherings[m].add(residuals, m, noise);
     result.flights.push_back(std::move(residuals));
     tell();
   }
+  result.notes = notes_of_flights(notes);
   if (result.masks[0] == 0) return result;
   for (Gathering& gathering : gatherings) result.models.push_back(gathering.finish());
   fit_lines(result);

@@ -4,6 +4,7 @@
 
 #include "residuals/flight_statistics.hpp"
 #include "residuals/masks.hpp"
+#include "words/phrasing.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -14,7 +15,7 @@ struct Compared {
   std::vector<double> fitted_blocks{};
   std::size_t held_out_blocks = 0;
   ResidualSums flaps_out{};
-  std::vector<std::string> notes{};
+  std::vector<FlightNote> notes{};
   RegimeSet flown{};
 };
 
@@ -84,7 +85,7 @@ BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& valu
     const FlightSamples& samples = fit.residuals().samples();
     Compared& one = each[number];
     one.flaps_out = flaps_out(fit.residuals(), values.data());
-    for (const std::string& note : samples.notes) one.notes.push_back(samples.name + ": " + note);
+    for (const std::string& note : samples.notes) one.notes.emplace_back(samples.name, note);
     for (const Interval& interval : samples.intervals)
       one.flown.set(static_cast<std::size_t>(interval.regime));
   });
@@ -105,10 +106,12 @@ BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& valu
     }
     all.flights.insert(all.flights.end(), one.parts.begin(), one.parts.end());
   }
+  std::vector<FlightNote> notes;
   for (const Compared& one : each) {
-    all.notes.insert(all.notes.end(), one.notes.begin(), one.notes.end());
+    notes.insert(notes.end(), one.notes.begin(), one.notes.end());
     all.flown |= one.flown;
   }
+  for (std::string& note : notes_of_flights(notes)) all.notes.push_back(std::move(note));
   for (const std::unique_ptr<FitFlights>& with : flights.further()) {
     for (const Compared& one : compared(*with, values))
       all.further.insert(all.further.end(), one.parts.begin(), one.parts.end());

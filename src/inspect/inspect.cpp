@@ -78,6 +78,12 @@ class Look {
     find_roles();
     look_at_samples();
     find_laws(laws);
+    for (const PressurePair& pair : family_.processed) {
+      if (result_.corrected_pressure.empty() &&
+          has_values(flight_, pair.static_pressure, std::string(facts_of(Quantity::static_pressure).unit),
+                     family_.unit_of(pair.static_pressure)))
+        result_.corrected_pressure = pair.static_pressure;
+    }
     return std::move(result_);
   }
 

@@ -1,10 +1,13 @@
 #include "residuals/samples.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include <pcor/physics/air_data.hpp>
@@ -53,13 +56,37 @@ std::vector<double> measured_airspeed(const ModelSamples& samples) {
   return airspeed;
 }
 
-FlightMotion read_motion(const Flight& flight, const ModelFile& model, const FlightSamples& samples) {
-  const auto read = [&](Quantity role) { return read_role(flight, model, role).values; };
+/// What is not found without a series of the motion.
+struct Loss {
+  Quantity role;
+  std::string_view text;
+};
+
+constexpr std::array<Loss, 4> losses{{
+    {Quantity::altitude,
+     "no height is recorded: climbs and descents, levels and bands of altitude are not found"},
+    {Quantity::roll, "no roll is recorded: turns, circles and reverse headings are not found"},
+    {Quantity::pitch, "no pitch is recorded: pitch manoeuvres are found by the angle of attack alone"},
+    {Quantity::heading,
+     "no heading is recorded: circles and reverse headings are found by the ground track alone"},
+}};
+
+FlightMotion read_motion(const Flight& flight, const ModelFile& model, FlightSamples& samples) {
+  std::vector<std::string> by_usual_names;
+  const auto take = [&](const std::string_view role, RecordedSeries series) {
+    if (!series.variable.empty()) by_usual_names.push_back(fmt::format("{} = {}", role, series.variable));
+    return std::move(series.values);
+  };
+  const auto read = [&](Quantity role) {
+    RecordedSeries series = read_role(flight, model, role);
+    if (model.variables.count(role) != 0) return std::move(series.values);
+    return take(facts_of(role).name, std::move(series));
+  };
   FlightMotion motion;
   motion.time = samples.time;
   motion.airspeed = measured_airspeed(samples.model);
   motion.altitude = read(Quantity::altitude);
-  if (motion.altitude.empty()) motion.altitude = read_usual(flight, "other_altitude").values;
+  if (motion.altitude.empty()) motion.altitude = take("altitude", read_usual(flight, "other_altitude"));
   motion.vertical_speed = read(Quantity::vertical_speed);
   motion.roll = read(Quantity::roll);
   motion.pitch = read(Quantity::pitch);
@@ -69,6 +96,16 @@ FlightMotion read_motion(const Flight& flight, const ModelFile& model, const Fli
   motion.ground_speed = read(Quantity::ground_speed);
   motion.ground_track = read(Quantity::ground_track);
   motion.liquid_water = read(Quantity::liquid_water);
+  if (!by_usual_names.empty()) {
+    samples.notes.push_back(
+        fmt::format("regimes are found with variables of usual names that the model does not name: {}",
+                    fmt::join(by_usual_names, ", ")));
+  }
+  const std::array<const std::vector<double>*, losses.size()> found{&motion.altitude, &motion.roll,
+                                                                    &motion.pitch, &motion.heading};
+  for (std::size_t i = 0; i < losses.size(); ++i) {
+    if (found[i]->empty()) samples.notes.emplace_back(losses[i].text);
+  }
   return motion;
 }
 
@@ -168,6 +205,13 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelFile&
     add(Quantity::time, std::move(since_first));
   }
   const double step = flight.time().step;
+  int fastest = 1;
+  for (const ModelInput& input : inputs) fastest = std::max(fastest, flight.variable(input.variable).rate);
+  if (fastest > 1) {
+    notes.push_back(
+        fmt::format("recorded with up to {:g} samples a second: what is compared are means over {:g} s",
+                    fastest / step, step));
+  }
   const auto rate = [&](FastSeries& series) {
     series.shortest_period = signal_band_of(series, time, step).shortest_period;
     return rate_of(series, time, step, series.shortest_period);

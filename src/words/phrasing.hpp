@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pcor::internal {
@@ -13,6 +14,12 @@ std::string sentence(std::string text);
 
 /// "a", "a and b", "a, b and c".
 std::string list_text(const std::vector<std::string>& all);
+
+/// A flight and what is to be said of it.
+using FlightNote = std::pair<std::string, std::string>;
+
+/// What is said of flights, once each: "first.nc, second.nc: ...", of more than three "16 flights: ...".
+std::vector<std::string> notes_of_flights(const std::vector<FlightNote>& notes);
 
 /// The decimals with which an error has two digits, the first of them that after rounding: 0.0996 is 0.10.
 int decimals_of_error(double error);

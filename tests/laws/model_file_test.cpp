@@ -504,6 +504,13 @@ class ModelFileOnDisk : public testing::Test {
 
 }  // namespace
 
+TEST(ModelFile, MayLeaveItsVariablesToTheAircraft) {
+  const ModelFile file = parse_model("format = \"pcor-model/1\"\nroles = \"faam-core\"\n", "open.toml");
+  EXPECT_TRUE(file.variables.empty());
+  EXPECT_EQ(file.roles_from, "faam-core");
+  EXPECT_EQ(parse_model(write_model(file), "again.toml").roles_from, "faam-core");
+}
+
 TEST(ModelFile, ReadsThePublishedExample) {
   const ModelFile file = parse_model(published_example, "m.toml");
   EXPECT_EQ(file.model.name, "C-130 PSFD/QCF");
@@ -789,7 +796,6 @@ INSTANTIATE_TEST_SUITE_P(
                  {"no key 'nmae'", "did you mean name?"}},
         BadInput{
             "TableThatIsNone", "[temperature]\n[lams]\n[variables.units]\n", "7:12", {"no role 'units'"}},
-        BadInput{"NoVariables", "format = \"pcor-model/1\"\n", "1:1", {"'static_pressure'", "[variables]"}},
         BadInput{"NoDynamicPressure",
                  "format = \"pcor-model/1\"\n[variables]\nstatic_pressure = \"PSFD\"\n",
                  "2:2",

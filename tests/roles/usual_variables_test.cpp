@@ -2,9 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <pcor/units/units.hpp>
-#include "laws/model_names.hpp"
-
 namespace pcor::internal {
 namespace {
 
@@ -14,8 +11,10 @@ using testing::IsSupersetOf;
 using testing::Not;
 
 TEST(UsualVariables, BelongToRolesThatAModelNeedNotName) {
-  EXPECT_THAT(usual_variables(Quantity::attack), ElementsAre("ATTACK", "AKRD"));
-  EXPECT_THAT(usual_variables(Quantity::cabin_pressure), ElementsAre("PCAB"));
+  const AircraftFamily& ncar = family_named("ncar");
+  EXPECT_THAT(usual_variables(ncar, Quantity::attack), ElementsAre("ATTACK", "AKRD"));
+  EXPECT_THAT(usual_variables(ncar, Quantity::cabin_pressure), ElementsAre("PCAB"));
+  EXPECT_THAT(usual_variables(Quantity::attack), IsSupersetOf({"ATTACK", "AOA", "alpha", "ALPHA"}));
   for (const Quantity role :
        {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::lams_airspeed, Quantity::mach,
         Quantity::vapor_pressure, Quantity::dew_point, Quantity::recovery_temperature,
@@ -25,22 +24,18 @@ TEST(UsualVariables, BelongToRolesThatAModelNeedNotName) {
 
 TEST(UsualVariables, OfTheAltitudeAreHeightsByGps) {
   // Against the height that a pressure makes, no pressure could be tested.
-  EXPECT_THAT(usual_variables(Quantity::altitude), Not(Contains("PALT")));
-  EXPECT_THAT(usual_heights(), IsSupersetOf(usual_variables(Quantity::altitude)));
-  EXPECT_EQ(usual_heights().back(), "PALT");
+  const AircraftFamily& ncar = family_named("ncar");
+  EXPECT_THAT(usual_variables(ncar, Quantity::altitude), Not(Contains("PALT")));
+  EXPECT_THAT(usual_heights(ncar), IsSupersetOf(usual_variables(ncar, Quantity::altitude)));
+  EXPECT_EQ(usual_heights(ncar).back(), "PALT");
 }
 
-TEST(UsualVariables, AreConvertedToUnitsThatThereAre) {
-  for (const char* series : {"other_altitude", "longitude", "ground_speed_east", "ground_speed_north"}) {
-    const std::string unit(usual_series(series).series.unit);
-    EXPECT_NO_THROW(UnitConversion::between(unit, unit, {series, "", ""})) << series;
-  }
-  EXPECT_THROW(usual_series("ground_speed_up"), std::out_of_range);
-}
-
-TEST(UsualThermometers, HaveAPublishedRecoveryFactorEach) {
-  for (const Thermometer& thermometer : usual_thermometers())
-    EXPECT_NE(published_recovery_factor(thermometer.recovery), nullptr) << thermometer.variable;
+TEST(UsualVariables, KnowsSeriesThatNoModelReads) {
+  ASSERT_NE(series_named("longitude"), nullptr);
+  EXPECT_EQ(series_named("longitude")->unit, "deg");
+  EXPECT_EQ(series_named("roll"), &facts_of(Quantity::roll));
+  EXPECT_EQ(series_named("ground_speed_up"), nullptr);
+  EXPECT_EQ(series_named("corrected_mach"), nullptr) << "it is a result";
 }
 
 }  // namespace

@@ -181,12 +181,14 @@ std::string next_step(const Options& options, const Inspection& flight) {
     return "To go on: name the variables of its pressures in the [variables] of a model "
            "(data/models/FORMAT.md)";
   if (!options.model.empty()) {
-    const bool laser = flight.model->variables.count(Quantity::lams_airspeed) != 0;
-    if (laser)
-      return fmt::format("To fit a law: pcor refit {} -m {} -o fitted.toml", path, quoted(options.model));
-    const std::vector<std::string>& alike = flight.alike;
-    return fmt::format("To see what the flight's own processing makes of it: pcor check {}{}", path,
-                       alike.empty() ? "" : fmt::format(" -m {}", quoted(options.model)));
+    std::string reference;
+    if (flight.model->variables.count(Quantity::lams_airspeed) == 0) {
+      if (flight.corrected_pressure.empty())
+        return fmt::format("To see what else can be said of its pressures: pcor check {}", path);
+      reference = " --reference " + quoted("pressure:" + flight.corrected_pressure);
+    }
+    return fmt::format("To fit a law: pcor refit {} -m {} -o fitted.toml{}", path, quoted(options.model),
+                       reference);
   }
   const auto fits = std::find_if(flight.laws.begin(), flight.laws.end(),
                                  [](const InspectedLaw& law) { return law.has_variables && law.is_in_time; });

@@ -60,6 +60,8 @@ struct Inspection {
   std::map<int, std::size_t> rates{};  ///< how many variables have so many samples in a record
   std::vector<InspectedRole> roles{};
   std::vector<MissingRole> missing{};
+  std::string
+      corrected_pressure{};  ///< the static pressure that the flight's own processing corrected; may be empty
   std::vector<FrozenSpan>
       frozen{};  ///< sensors that stand still in flight, for longer than their noise allows
   std::vector<Interval> intervals{};  ///< what was flown; empty without pressures

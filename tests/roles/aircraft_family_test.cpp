@@ -1,0 +1,78 @@
+#include "roles/aircraft_family.hpp"
+
+#include <gmock/gmock.h>
+
+#include <set>
+#include <string>
+
+#include <pcor/units/units.hpp>
+#include <pcor/words/error.hpp>
+#include "laws/model_names.hpp"
+#include "roles/usual_variables.hpp"
+#include "support/netcdf_file.hpp"
+
+namespace pcor::internal {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+std::string refusal_of(const std::string& text) {
+  return test::message_of<Error>([&] { parse_family(text, "mine.toml"); });
+}
+
+const std::string head = "format = \"pcor-aircraft/1\"\nname = \"mine\"\ntitle = \"my aircraft\"\n";
+
+TEST(AircraftFamily, DataAreWhole) {
+  std::set<std::string> names;
+  for (const AircraftFamily& family : aircraft_families()) {
+    SCOPED_TRACE(family.name);
+    EXPECT_TRUE(names.insert(family.name).second);
+    EXPECT_FALSE(family.title.empty());
+    EXPECT_FALSE(family.source.empty()) << "names without a source are rumours";
+    EXPECT_FALSE(family.measured.empty());
+    EXPECT_FALSE(family.attributes.empty()) << "no file would be known";
+    for (const Thermometer& thermometer : family.thermometers)
+      EXPECT_NE(published_recovery_factor(thermometer.recovery), nullptr) << thermometer.variable;
+    std::set<std::string> known;
+    for (const auto& [series, variables] : family.series) {
+      ASSERT_NE(series_named(series), nullptr) << series;
+      known.insert(variables.begin(), variables.end());
+    }
+    for (const auto* pairs : {&family.measured, &family.processed}) {
+      for (const PressurePair& pair : *pairs) known.insert({pair.static_pressure, pair.dynamic_pressure});
+    }
+    for (const Thermometer& thermometer : family.thermometers) known.insert(thermometer.variable);
+    for (const auto& [variable, trap] : family.traps) EXPECT_THAT(known, Contains(variable));
+    for (const auto& [variable, unit] : family.units) {
+      EXPECT_THAT(known, Contains(variable));
+      EXPECT_TRUE(is_known_unit(unit)) << unit;
+    }
+  }
+  EXPECT_EQ(aircraft_families().front().name, "ncar") << "whose names stand for a file that none knows";
+}
+
+TEST(AircraftFamily, RefusesWhatHasNoMeaning) {
+  EXPECT_THAT(refusal_of("name = \"mine\""), HasSubstr("mine.toml:1:"));
+  EXPECT_THAT(refusal_of("format = \"pcor-aircraft/1\"\nname = \"mine\""), HasSubstr("has no title"));
+  EXPECT_THAT(refusal_of(head + "[series]\nheigth = [\"ALT\"]"), HasSubstr("heigth"));
+  EXPECT_THAT(refusal_of(head + "[series]\naltitude = \"ALT\""), HasSubstr("a list of texts"));
+  EXPECT_THAT(refusal_of(head + "[series]\naltitude = [7]"), HasSubstr("a text in quotes"));
+  EXPECT_THAT(refusal_of(head + "[pressures]\nmeasured = [[\"PS\"]]"), HasSubstr("a pair has two texts"));
+  EXPECT_THAT(refusal_of(head + "[pressures]\nboth = []"), HasSubstr("both"));
+  EXPECT_THAT(refusal_of(head + "[[thermometer]]\nvariable = \"T\""), HasSubstr("give both"));
+  EXPECT_THAT(refusal_of(head + "[[thermometer]]\nvariable = \"T\"\nrecovery_factor = \"mine\""),
+              HasSubstr("no published recovery factor"));
+}
+
+TEST(AircraftFamily, IsNamed) {
+  EXPECT_EQ(family_named("faam-core").unit_of("VELD_GIN"), "-1 m s-1");
+  EXPECT_EQ(family_named("faam-core").unit_of("ALT_GIN"), "") << "as the file says";
+  EXPECT_THAT(test::message_of<Error>([] { family_named("fam-core"); }),
+              HasSubstr("did you mean 'faam-core'"));
+  EXPECT_THAT(test::message_of<Error>([] { family_named("/nowhere/mine.toml"); }),
+              HasSubstr("/nowhere/mine.toml"));
+}
+
+}  // namespace
+}  // namespace pcor::internal
