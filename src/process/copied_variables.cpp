@@ -35,6 +35,7 @@ void name_coordinates(const Flight& flight, const ModelFile& model, FileDescript
   description.longitude = coordinate("longitude_coordinate", "", usual_series("longitude").names);
   description.altitude =
       coordinate("zaxis_coordinate", variable_of(model, Quantity::altitude), usual_heights());
+  if (description.altitude.rfind("PALT", 0) == 0) description.altitude_standard_name = "barometric_altitude";
 }
 
 Names flown_variables(const Flight& flight, const ModelFile& model) {

@@ -15,6 +15,7 @@
 #include <pcor/words/suggest.hpp>
 
 #include "commands.hpp"
+#include "model_name.hpp"
 
 namespace {
 
@@ -92,6 +93,7 @@ int main(int argc, char** argv) {
 
   std::vector<std::function<void()>> runs;
   for (const auto add : pcor::tool::commands) runs.push_back(add(program));
+  pcor::tool::take_models_by_name(program);
 
   try {
     program.parse(argc, argv);
@@ -100,6 +102,9 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     fmt::print(stderr, "{}\n", usage_message(program, error.what(), {argv + 1, argv + argc}));
     return wrong_usage;
+  } catch (const pcor::Error& error) {
+    fmt::print(stderr, "pcor: {}\n", error.what());
+    return work_not_done;
   }
 
   try {
