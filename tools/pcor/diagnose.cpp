@@ -13,6 +13,7 @@
 #include "comparison.hpp"
 #include "diagnosis.hpp"
 #include "progress.hpp"
+#include "report_origin.hpp"
 #include "shaped_effect.hpp"
 
 namespace pcor::tool {
@@ -199,7 +200,9 @@ void run(const Options& options) {
     diagnose_with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
     diagnosis = diagnose(flight_paths(options.comparison), model, references.used, diagnose_with);
   }
-  if (!options.common.report.empty()) write_report(diagnosis_report(diagnosis, model), options.common.report);
+  if (!options.common.report.empty())
+    write_report_of_run(diagnosis_report(diagnosis, model), {{options.model}, options.comparison.flights, {}},
+                        options.common.report);
   json.write(as_json(diagnosis));
   if (wants_text(options.common)) print(diagnosis, references, options);
 }

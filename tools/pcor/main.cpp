@@ -16,6 +16,7 @@
 
 #include "commands.hpp"
 #include "model_name.hpp"
+#include "report_origin.hpp"
 
 namespace {
 
@@ -81,6 +82,7 @@ extern "C" void stop(int signal) {
 int main(int argc, char** argv) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, stop);
 
+  pcor::tool::remember_command(argc, argv);
   CLI::App program("Corrects the static and dynamic pressure that a research aircraft measures.", "pcor");
   program.set_version_flag("--version", "pcor " PCOR_VERSION);
   program.require_subcommand(1);
