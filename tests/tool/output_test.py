@@ -91,6 +91,17 @@ class Outputs(unittest.TestCase):
                 for name in places + getattr(variable, "ancillary_variables", "").split():
                     self.assertIn(name, output.variables, variable.name)
 
+    def test_a_track_of_other_names_is_found_by_standard_names(self):
+        def change(flight):
+            for name, other, standard in (("LATC", "LAT_GIN", "latitude"), ("LONC", "LON_GIN", "longitude")):
+                flight.renameVariable(name, other)
+                flight[other].standard_name = standard
+
+        self.edit(change)
+        output = self.output()
+        self.assertEqual(output["PSXC"].coordinates, "LAT_GIN LON_GIN GGALT")
+        self.assertEqual(output.featureType, "trajectory")
+
     def test_a_flight_without_a_track_is_no_trajectory(self):
         self.edit(lambda flight: flight.renameVariable("LONC", "NOTHING"))
         output = self.output()
