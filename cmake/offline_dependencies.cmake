@@ -5,6 +5,7 @@ pkg_check_modules(netcdf_cxx4 REQUIRED IMPORTED_TARGET netcdf-cxx4)
 pkg_check_modules(netcdf REQUIRED IMPORTED_TARGET netcdf)
 find_package(nlohmann_json REQUIRED)
 find_package(Boost REQUIRED) # headers: the distributions of Boost.Math, the random numbers of Boost.Random
+find_package(OpenSSL REQUIRED) # libcrypto: the SHA-256 of what an output was made of
 find_package(Eigen3 REQUIRED)
 find_package(Ceres REQUIRED)
 find_package(glog REQUIRED) # in which Ceres writes

@@ -1,13 +1,12 @@
 #include "fit/fitted_model.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <utility>
 
 #include <pcor/words/utc.hpp>
+#include "fit/lineage.hpp"
 #include "laws/covariance_blocks.hpp"
 
 namespace pcor::internal {
@@ -41,7 +40,9 @@ Provenance provenance_of(const RefitResult& fit, Loss loss) {
 
 }  // namespace
 
-ModelFile fitted_model(ModelFile file, std::size_t first, const RefitResult& fit, Loss loss) {
+ModelFile fitted_model(const ModelFile& given, std::size_t first, const RefitResult& fit, Loss loss,
+                       const std::string& flights) {
+  ModelFile file = given;
   std::vector<std::string> held;
   std::vector<std::size_t> inside;  // places in the covariance
   Covariance covariance;
@@ -93,9 +94,9 @@ ModelFile fitted_model(ModelFile file, std::size_t first, const RefitResult& fit
     if (entry.first == "temperature") provenance.push_back(std::move(entry));
   }
   file.provenance = std::move(provenance);
-  const std::string before = file.law.source.empty() ? "" : "; before: " + file.law.source;
+  descend(file, given, "fitted to", flights);
   file.law = {};
-  file.law.source = fmt::format("refit by pcor to {}{}", fit.reference_text, before);
+  file.law.source = "refit by pcor to " + fit.reference_text;
   file.law.rms_hpa = fit.rms;
   return file;
 }

@@ -1,14 +1,18 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 
 #include <pcor/fit/refit.hpp>
 
 namespace pcor::internal {
 
-/// `file` with the coefficients of a fit, their standard errors and covariance, and where they come from.
-/// What it knew of parameters that were held, and of the temperature, stays.
+/// `given` with the coefficients of a fit, their standard errors and covariance, a name that says what it was
+/// fitted to, and where it comes from (`descend`). What it knew of parameters that were held, and of the
+/// temperature, stays.
 /// @param first of the fit's parameters that is one of this file
-ModelFile fitted_model(ModelFile file, std::size_t first, const RefitResult& fit, Loss loss);
+/// @param flights what the fitted flights are called
+ModelFile fitted_model(const ModelFile& given, std::size_t first, const RefitResult& fit, Loss loss,
+                       const std::string& flights);
 
 }  // namespace pcor::internal

@@ -13,6 +13,7 @@
 #include "fit/fit_covariance.hpp"
 #include "fit/fitted_model.hpp"
 #include "fit/identifiability.hpp"
+#include "fit/lineage.hpp"
 #include "fit/omissions.hpp"
 #include "fit/prior.hpp"
 #include "fit/solver.hpp"
@@ -61,6 +62,13 @@ void require_one_kind(const Sources& sources, const RefitOptions& options) {
   }
   for (const std::filesystem::path& path : options.holdout) add(path);
   require_one_aircraft(aircraft);
+}
+
+/// What the flights of a fit are called, from files or memory.
+std::string text_of(const Sources& sources) {
+  std::vector<std::string> flights;
+  for (const auto& [path, samples] : sources) flights.push_back(samples ? samples->name : flight_text(path));
+  return flights_text(flights);
 }
 
 /// Whether two references are of one system, and have its law.
@@ -288,12 +296,13 @@ RefitResult fit(const Sources& sources, const ModelFile& model, const References
   result.worse = why_worse(result, before.rms_of(before.bulk_squares));
   result.warnings = fit_warnings(flights, result, solution.values, sums.rms_of(squares.least()));
   result.notes = notes_of(result, task, fitted, covariance.matrix, compared);
-  result.model = fitted_model(model, 0, result, options.loss);
+  const std::string fitted_flights = text_of(sources);
+  result.model = fitted_model(model, 0, result, options.loss, fitted_flights);
   if (options.fit_reference) {
     const auto own = std::accumulate(
         model.model.effects.begin(), model.model.effects.end(), std::size_t{0},
         [](std::size_t sum, const ModelEffect& effect) { return sum + effect.parameters.size(); });
-    result.reference = fitted_model(*reference.model(), own, result, options.loss);
+    result.reference = fitted_model(*reference.model(), own, result, options.loss, fitted_flights);
   }
   return result;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "compare/comparison_panels.hpp"
+#include "fit/lineage.hpp"
 #include "words/phrasing.hpp"
 
 namespace pcor {
@@ -73,7 +74,7 @@ ReportTable flight_table(const RefitResult& fit) {
 Report refit_report(const RefitResult& fit, const Comparison& comparison) {
   ComparisonPanels panels(comparison);
   Report& report = panels.report();
-  report.title = fmt::format("Refit of {} to {}", fit.model.model.name, fit.reference_text);
+  report.title = fmt::format("Refit of {} to {}", unfitted_name(fit.model), fit.reference_text);
   report.subtitle = "Before and after";
   report.summary.push_back(fmt::format(
       "The fit brings the rms residual from {:.3f} to {:.3f} hPa over {} samples; the noise is {:.3f} hPa.",

@@ -14,6 +14,7 @@
 #include <optional>
 
 #include <pcor/words/replacement_file.hpp>
+#include "flight/cf_description.hpp"
 #include "flight/netcdf_copy.hpp"
 #include "flight/netcdf_output.hpp"
 
@@ -36,6 +37,13 @@ struct Range {
   }
   bool empty() const { return least > greatest; }
 };
+
+/// A duration by ISO 8601, always of the same length.
+std::string duration_text(double seconds) {
+  const auto whole = static_cast<long>(std::lround(seconds));
+  return fmt::format("P{:02}DT{:02}H{:02}M{:02}S", whole / 86400, whole / 3600 % 24, whole / 60 % 60,
+                     whole % 60);
+}
 
 /// A variable that the program computes.
 struct Written {
@@ -63,6 +71,7 @@ struct FlightWriter::Implementation {
   bool whole_seconds;
   ReplacementFile replacement;
   std::optional<NetcdfOutput> file;
+  std::optional<CfDescription> cf;
   std::optional<NetcdfCopy> copies;  // from an input that is a netCDF file
   std::vector<Series> series;        // from another one
 
@@ -86,6 +95,7 @@ struct FlightWriter::Implementation {
     if (input && std::filesystem::equivalent(shown, input->path(), code))
       throw Error(shown.string() + " is the input itself; choose another output");
     file.emplace(replacement.path(), shown, start.kind);
+    cf.emplace(description, *file);
     const auto* const source = input ? dynamic_cast<const NetcdfFile*>(&input->file()) : nullptr;
     if (source) {
       const int time = *source->find_variable(input->time_variable());
@@ -119,6 +129,7 @@ struct FlightWriter::Implementation {
                           (description.history.empty() ? "written by pcor" : description.history);
     if (input) {
       if (copies) copies->copy_global_attributes();
+      put_text(NC_GLOBAL, "time_coverage_resolution", fmt::format("PT{:g}S", input->time().step));
       const std::string earlier = input->attribute("history");
       if (!earlier.empty()) history += "\n" + earlier;
       supply("platform", input->aircraft());
@@ -131,8 +142,9 @@ struct FlightWriter::Implementation {
     supply("summary", text_of("title"), description.summary);
     supply("source", "airborne observations");
     supply("platform_type", "aircraft");
-    put_text(NC_GLOBAL, "Conventions", "NCAR-RAF/nimbus-2.1 CF-1.8 ACDD-1.3");
-    put_text(NC_GLOBAL, "ConventionsURL", "https://www.eol.ucar.edu/raf/Software/netCDF.html");
+    supply("keywords", "aircraft, airspeed, static pressure, dynamic pressure");
+    put_text(NC_GLOBAL, "Conventions", conventions(true));
+    if (!input) put_text(NC_GLOBAL, "ConventionsURL", "https://www.eol.ucar.edu/raf/Software/netCDF.html");
     put_text(NC_GLOBAL, "standard_name_vocabulary", "CF Standard Name Table v93");
     put_text(NC_GLOBAL, "history", history);
     put_text(NC_GLOBAL, "date_created", utc_text(now, iso_8601));
@@ -143,6 +155,7 @@ struct FlightWriter::Implementation {
     put_text(NC_GLOBAL, "time_coverage_end", utc_text(0, iso_8601));
     supply("FlightDate", utc_text(midnight, "%m/%d/%Y"));
     put_text(NC_GLOBAL, "TimeInterval", "00:00:00-00:00:00");
+    put_text(NC_GLOBAL, "time_coverage_duration", duration_text(0));
     const struct {
       const std::string& variable;
       const char *coordinate, *range;
@@ -155,10 +168,49 @@ struct FlightWriter::Implementation {
       reserve_range(NC_GLOBAL, std::string(place.range) + "_min", 1);
       reserve_range(NC_GLOBAL, std::string(place.range) + "_max", 1);
     }
-    if (!description.altitude.empty()) {
-      put_text(NC_GLOBAL, "geospatial_vertical_positive", "up");
-      put_text(NC_GLOBAL, "geospatial_vertical_units", "m");
+    if (!description.altitude.empty()) put_text(NC_GLOBAL, "geospatial_vertical_positive", "up");
+  }
+
+  std::string conventions(bool is_cf) const {
+    std::string claimed = "NCAR-RAF/nimbus-2.1";
+    if (input) {
+      claimed = input->attribute("Conventions");
+      const std::size_t begin = claimed.find("NCAR-RAF");
+      claimed = begin == std::string::npos
+                    ? ""
+                    : claimed.substr(begin, claimed.find_first_of(" ,;", begin) - begin);
     }
+    if (!claimed.empty()) claimed += ' ';
+    return claimed + (is_cf ? "CF-1.8 ACDD-1.3" : "ACDD-1.3");
+  }
+
+  /// What the flight is called: project, flight and date.
+  std::string trajectory() const {
+    std::string name;
+    for (const std::string& part :
+         {text_of("project"), text_of("FlightNumber"), utc_text(midnight, "%Y-%m-%d")}) {
+      if (!part.empty()) name += (name.empty() ? "" : " ") + part;
+    }
+    return name;
+  }
+
+  /// Whether every unit is one that UDUNITS knows.
+  bool has_known_units() const {
+    const NetcdfFile& whole = file->file();
+    for (int variable = 0; variable < whole.variable_count(); ++variable) {
+      const std::string unit = whole.text_attribute(variable, "units");
+      const bool is_time = unit.find(" since ") != std::string::npos;
+      if (!unit.empty() && !is_time && !is_known_unit(unit)) return false;
+    }
+    return true;
+  }
+
+  void end_definition() {
+    if (!file->is_defining()) return;
+    cf->complete(trajectory());
+    if (!has_known_units()) put_text(NC_GLOBAL, "Conventions", conventions(false));
+    file->end_definition();
+    cf->write();
   }
 
   std::string text_of(const std::string& name) const { return file->file().text_attribute(NC_GLOBAL, name); }
@@ -205,6 +257,7 @@ struct FlightWriter::Implementation {
     put_text(entry.id, "standard_name", variable.standard_name);
     put_text(entry.id, "Category", variable.category);
     put_text(entry.id, "DataQuality", variable.data_quality);
+    put_text(entry.id, "coverage_content_type", entry.flags ? "qualityInformation" : "physicalMeasurement");
     if (!variable.dependencies.empty())
       put_text(entry.id, "Dependencies",
                fmt::format("{} {}", variable.dependencies.size(), fmt::join(variable.dependencies, " ")));
@@ -257,7 +310,7 @@ struct FlightWriter::Implementation {
   // The data
 
   void write_time_stamps(RecordBlock block, const double* times) {
-    file->end_definition();
+    end_definition();
     if (block.count == 0) return;
     std::vector<double> since_midnight(times, times + block.count);
     for (std::size_t i = 0; i < block.count; ++i) {
@@ -277,7 +330,7 @@ struct FlightWriter::Implementation {
   }
 
   void write(std::size_t number, RecordBlock block, const double* values) {
-    file->end_definition();
+    end_definition();
     Written& variable = written.at(number);
     const std::size_t start[] = {block.first, 0};
     const std::size_t count[] = {block.count, static_cast<std::size_t>(variable.rate)};
@@ -372,6 +425,7 @@ struct FlightWriter::Implementation {
     put_text(NC_GLOBAL, "time_coverage_start", utc_text(first_time, iso_8601));
     put_text(NC_GLOBAL, "time_coverage_end", utc_text(last_time, iso_8601));
     put_text(NC_GLOBAL, "TimeInterval", utc_text(first_time, "%H:%M:%S-") + utc_text(last_time, "%H:%M:%S"));
+    put_text(NC_GLOBAL, "time_coverage_duration", duration_text(last_time - first_time));
     for (const Written& variable : written)
       if (!variable.flags)
         put_range(variable.id, "actual_range",

@@ -12,6 +12,10 @@
 namespace pcor::internal {
 namespace {
 
+/// How the names of attributes begin in which this program says what a file was made of: they are not true
+/// of the next one.
+constexpr const char* own_attributes = "pcor_";
+
 constexpr std::size_t copied_bytes_at_once = std::size_t{4} << 20;
 
 // Where in a copied variable the records of a block are.
@@ -30,7 +34,7 @@ struct Slab {
 
 void NetcdfCopy::copy_global_attributes() const {
   for (const std::string& name : source_.attribute_names(NC_GLOBAL))
-    copy_attribute(NC_GLOBAL, NC_GLOBAL, name, NC_NAT);
+    if (name.rfind(own_attributes, 0) != 0) copy_attribute(NC_GLOBAL, NC_GLOBAL, name, NC_NAT);
 }
 
 void NetcdfCopy::copy_attribute(int from, int to, const std::string& name, int type_of_variable) const {

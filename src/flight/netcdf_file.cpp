@@ -116,8 +116,8 @@ void NetcdfFile::check(int status, const std::string& doing) const {
   constexpr std::uintmax_t little = 1 << 20;
   const bool full = status == ENOSPC || (!code && space.available < little);
   if (full && status != ENOSPC) message += " (the disk is full)";
-  throw Error(Error::Code::file, message + (full ? "; make room or choose another output"
-                                                 : "; check the space and the permissions there"));
+  throw Error(Error::Code::output, message + (full ? "; make room or choose another output"
+                                                   : "; check the space and the permissions there"));
 }
 
 void NetcdfFile::close() { check(nc_close(std::exchange(id_, closed)), "cannot be closed"); }

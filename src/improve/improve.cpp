@@ -11,6 +11,7 @@
 
 #include <pcor/flight/flight.hpp>
 #include <pcor/words/error.hpp>
+#include "fit/lineage.hpp"
 #include "improve/average.hpp"
 #include "improve/improve_loop.hpp"
 #include "numerics/missing.hpp"
@@ -603,7 +604,9 @@ Improvement improve(const std::vector<std::filesystem::path>& flights, const Mod
   loop.trace_variables = options.trace_variables;
   loop.most_steps = options.most_steps;
   loop.flights = fmt::format("{}", fmt::join(names, ", "));
-  return loop.run(model);
+  Improvement improvement = loop.run(model);
+  descend(improvement.model, model, "improved on", flights_text(flights));
+  return improvement;
 }
 
 }  // namespace pcor

@@ -1,6 +1,7 @@
 #include "process/copied_variables.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "laws/archived_model.hpp"
 #include "roles/usual_variables.hpp"
@@ -18,6 +19,18 @@ std::string first_series(const Flight& flight, const Names& names) {
   return found == names.end() ? std::string() : *found;
 }
 
+/// The first time series that says itself what it is, by a standard name of CF; empty where none does.
+std::string series_that_is(const Flight& flight, const std::string& standard_name) {
+  for (const std::string& name : flight.variables()) {
+    const VariableInfo& info = flight.variable(name);
+    const bool is_it = std::find(info.attributes.begin(), info.attributes.end(),
+                                 std::pair<std::string, std::string>("standard_name", standard_name)) !=
+                       info.attributes.end();
+    if (info.is_series && is_it) return name;
+  }
+  return {};
+}
+
 std::string variable_of(const ModelFile& model, Quantity role) {
   const auto found = model.variables.find(role);
   return found == model.variables.end() ? std::string() : found->second;
@@ -26,16 +39,19 @@ std::string variable_of(const ModelFile& model, Quantity role) {
 }  // namespace
 
 void name_coordinates(const Flight& flight, const ModelFile& model, FileDescription& description) {
-  const auto coordinate = [&flight](const char* attribute, const std::string& given, Names usual) {
+  const auto coordinate = [&flight](const char* attribute, const std::string& given, Names usual,
+                                    const char* standard_name) {
     usual.insert(usual.begin(), {flight.attribute(attribute), given});
-    return first_series(flight, usual);
+    const std::string named = first_series(flight, usual);
+    return named.empty() ? series_that_is(flight, standard_name) : named;
   };
   const AircraftFamily& family = family_of(model, flight);
   description.latitude = coordinate("latitude_coordinate", variable_of(model, Quantity::latitude),
-                                    usual_variables(family, Quantity::latitude));
-  description.longitude = coordinate("longitude_coordinate", "", family.names_of("longitude"));
-  description.altitude =
-      coordinate("zaxis_coordinate", variable_of(model, Quantity::altitude), usual_heights(family));
+                                    usual_variables(family, Quantity::latitude), "latitude");
+  description.longitude = coordinate("longitude_coordinate", "", family.names_of("longitude"), "longitude");
+  description.altitude = coordinate("zaxis_coordinate", variable_of(model, Quantity::altitude),
+                                    usual_heights(family), "altitude");
+  if (description.altitude.rfind("PALT", 0) == 0) description.altitude_standard_name = "barometric_altitude";
 }
 
 Names flown_variables(const Flight& flight, const ModelFile& model) {

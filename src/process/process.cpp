@@ -23,6 +23,7 @@
 #include "laws/output_table.hpp"
 #include "process/copied_variables.hpp"
 #include "process/delay_line.hpp"
+#include "process/origin.hpp"
 #include "roles/fast_series.hpp"
 #include "roles/model_inputs.hpp"
 
@@ -56,7 +57,7 @@ double flying_dynamic_pressure(const std::string& aircraft) {
 class Processing {
  public:
   Processing(const std::filesystem::path& input, const ModelFile& file, const ProcessOptions& options)
-      : flight_(input, options.time_stamp), file_(file), options_(options) {}
+      : flight_(input, options.time_stamp), given_(file), file_(file), options_(options) {}
 
   ProcessSummary run(const std::filesystem::path& output);
 
@@ -108,7 +109,8 @@ class Processing {
   std::string temperature_calibration();
 
   Flight flight_;
-  ModelFile file_;
+  const ModelFile& given_;
+  ModelFile file_;  // as it is applied to this flight
   const ProcessOptions& options_;
   std::vector<Quantity> roles_;
   std::shared_ptr<const Chain> chain_;
@@ -279,12 +281,10 @@ FileDescription Processing::describe() const {
   FileDescription description;
   description.history = options_.history;
   name_coordinates(flight_, file_, description);
-  description.attributes = {
-      {"pcor_model", file_.model.name},
-      {"pcor_model_source", file_.law.source},
-      {"pcor_model_aircraft", file_.model.aircraft},
-      {"pcor_time_stamp",
-       flight_.time_stamp() == TimeStamp::begin ? "begin of the record" : "middle of the record"}};
+  description.attributes = origin_attributes(flight_.path(), given_, options_);
+  description.attributes.emplace_back("pcor_time_stamp", flight_.time_stamp() == TimeStamp::begin
+                                                             ? "begin of the record"
+                                                             : "middle of the record");
   return description;
 }
 
@@ -339,7 +339,9 @@ void Processing::define_outputs(FlightWriter& writer) {
     variable.ancillary_variables.push_back(name_of(std::string(quality_output)));
     if (is_uncertainty) {
       variable.dependencies = {output_names_.at(row.uncertainty_of)};
-      variable.attributes = {{"coverage_factor", "1"}, {"comment", uncertainty_comment()}};
+      variable.attributes = {{"coverage_factor", "1"},
+                             {"coverage_content_type", "qualityInformation"},
+                             {"comment", uncertainty_comment()}};
     }
     if (row.quantity == Quantity::height_step) {
       variable.attributes = {{"temperature_calibration", temperature_calibration()},

@@ -8,7 +8,9 @@
 #include <fstream>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "report/assets.hpp"
 #include "report/report_data.hpp"
@@ -126,6 +128,14 @@ std::string items(const Report& report) {
   return html;
 }
 
+std::string facts(const std::vector<std::pair<std::string, std::string>>& facts) {
+  if (facts.empty()) return "";
+  std::string html = R"(<dl class="facts">)";
+  for (const auto& [name, fact] : facts)
+    html += fmt::format("<div>{}{}</div>\n", element("dt", name), element("dd", fact));
+  return html + "</dl>\n";
+}
+
 std::string head(const Report& report) {
   std::string html =
       "<header>\n" + element("h1", report.title) + element("p", "subtitle", report.subtitle) + "</header>\n";
@@ -134,13 +144,11 @@ std::string head(const Report& report) {
     for (const std::string& sentence : report.summary) html += element("li", sentence);
     html += "</ul></section>\n";
   }
-  if (!report.facts.empty()) {
-    html += R"(<dl class="facts">)";
-    for (const auto& [name, fact] : report.facts)
-      html += fmt::format("<div>{}{}</div>\n", element("dt", name), element("dd", fact));
-    html += "</dl>\n";
-  }
-  return html;
+  return html + facts(report.facts);
+}
+
+std::string foot(const Report& report) {
+  return report.origin.empty() ? "" : "<footer>\n" + facts(report.origin) + "</footer>\n";
 }
 
 }  // namespace
@@ -161,7 +169,7 @@ std::string report_html(const Report& report) {
   html += "</style>\n</head>\n<body>\n";
   html += head(report);
   html += "<noscript><p>The pictures need JavaScript, which is switched off here.</p></noscript>\n";
-  html += "<main>\n" + items(report) + "</main>\n";
+  html += "<main>\n" + items(report) + "</main>\n" + foot(report);
   html += R"(<script type="application/json" id="data">)";
   html += report::data_json(report);
   html += "</script>\n<script>\n";

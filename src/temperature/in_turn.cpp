@@ -4,6 +4,7 @@
 
 #include <pcor/temperature/temperature.hpp>
 #include <pcor/words/error.hpp>
+#include "fit/lineage.hpp"
 #include "laws/calibration.hpp"
 #include "residuals/flight_air.hpp"
 
@@ -79,6 +80,7 @@ CalibrationInTurn calibrate_in_turn(const std::vector<std::filesystem::path>& fl
     current = result.temperature.model;
     result.rounds.push_back(std::move(round));
   }
+  descend(result.temperature.model, model, "fitted to", flights_text(flights));
   result.temperature.degrees = std::move(degrees);
   if (result.rounds.size() > 1) {
     std::vector<std::string>& notes = result.temperature.notes;

@@ -106,26 +106,29 @@ void remove_unfinished_files() noexcept {
 }
 
 ReplacementFile::ReplacementFile(const fs::path& target) : shown_(target) {
-  if (target.empty()) throw Error("the output has no name; name a file");
+  if (target.empty()) throw Error(Error::Code::output, "the output has no name; name a file");
   std::error_code code;
   target_ = fs::weakly_canonical(behind_links(fs::absolute(target)), code);
   if (code)
-    throw Error(shown_.string() + " cannot be written: " + code.message() + "; choose another output");
+    throw Error(Error::Code::output,
+                shown_.string() + " cannot be written: " + code.message() + "; choose another output");
   const fs::file_status status = fs::status(target_, code);
-  if (fs::is_directory(status)) throw Error(shown_.string() + " is a directory; name a file");
+  if (fs::is_directory(status))
+    throw Error(Error::Code::output, shown_.string() + " is a directory; name a file");
   if (fs::exists(status) && !fs::is_regular_file(status))
-    throw Error(shown_.string() + " is not a regular file; choose another output");
+    throw Error(Error::Code::output, shown_.string() + " is not a regular file; choose another output");
   const fs::path directory = target_.parent_path();
   if (!fs::is_directory(directory, code))
-    throw Error(shown_.string() + " cannot be written: there is no directory " + directory.string() +
-                "; make it first");
+    throw Error(Error::Code::output, shown_.string() + " cannot be written: there is no directory " +
+                                         directory.string() + "; make it first");
   if (access(directory.c_str(), W_OK | X_OK) != 0)
-    throw Error(shown_.string() + " cannot be written: " + directory.string() + ": " + std::strerror(errno) +
-                "; choose another output");
+    throw Error(Error::Code::output, shown_.string() + " cannot be written: " + directory.string() + ": " +
+                                         std::strerror(errno) + "; choose another output");
   path_ = make_hidden_file(directory, target_.filename().string());
   if (path_.empty())
-    throw Error(shown_.string() + " cannot be written: " + directory.string() + ": " + std::strerror(errno) +
-                "; check the space and the permissions there, or choose another output");
+    throw Error(Error::Code::output,
+                shown_.string() + " cannot be written: " + directory.string() + ": " + std::strerror(errno) +
+                    "; check the space and the permissions there, or choose another output");
 }
 
 ReplacementFile::~ReplacementFile() {
@@ -141,11 +144,13 @@ void ReplacementFile::commit() {
   std::error_code code;
   if (fs::exists(target_, code)) fs::permissions(path_, fs::status(target_).permissions(), code);
   if (!settle(path_))
-    throw Error(shown_.string() + " cannot be written: " + std::strerror(errno) +
-                "; check the space and the permissions there, or choose another output");
+    throw Error(Error::Code::output,
+                shown_.string() + " cannot be written: " + std::strerror(errno) +
+                    "; check the space and the permissions there, or choose another output");
   fs::rename(path_, target_, code);
   if (code)
-    throw Error(shown_.string() + " cannot be put in place: " + code.message() + "; choose another output");
+    throw Error(Error::Code::output,
+                shown_.string() + " cannot be put in place: " + code.message() + "; choose another output");
   committed_ = true;
   take_from_list(path_.string());
 }

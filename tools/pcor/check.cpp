@@ -12,6 +12,7 @@
 #include "comparison.hpp"
 #include "model_of_flight.hpp"
 #include "progress.hpp"
+#include "report_origin.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -170,6 +171,14 @@ void print(const Checks& checks, const Options& options, bool has_laser) {
   fmt::print("\n{}\n", next_step(checks, options, has_laser));
 }
 
+std::vector<std::string> models_of(const Options& options) {
+  std::vector<std::string> models;
+  for (const std::string& model : {options.model, options.second}) {
+    if (!model.empty()) models.push_back(model);
+  }
+  return models;
+}
+
 void run(const Options& options) {
   std::vector<std::filesystem::path> inputs = input_files(options.flights);
   inputs.insert(inputs.end(), {options.model, options.second});
@@ -189,7 +198,9 @@ void run(const Options& options) {
     check_options.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
     checks = check(flight_paths(options.flights), model, check_options);
   }
-  if (!options.common.report.empty()) write_report(check_report(checks), options.common.report);
+  if (!options.common.report.empty())
+    write_report_of_run(check_report(checks), {models_of(options), options.flights.flights, {}},
+                        options.common.report);
   json.write(as_json(checks));
   const bool has_laser = model && model->variables.count(Quantity::lams_airspeed) > 0;
   if (wants_text(options.common)) print(checks, options, has_laser);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -12,6 +13,7 @@
 #include "comparison.hpp"
 #include "model_of_flight.hpp"
 #include "progress.hpp"
+#include "report_origin.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -204,6 +206,15 @@ void add_references(ChosenReferences& told, const ChosenReferences& own) {
   }
 }
 
+/// Models that share a name are told apart by their files.
+void name_by_file(std::vector<Contender>& contenders, const std::vector<std::string>& files) {
+  std::map<std::string, std::size_t> count;
+  for (const Contender& contender : contenders) ++count[contender.name];
+  for (std::size_t i = 0; i < contenders.size(); ++i) {
+    if (count[contenders[i].name] > 1) contenders[i].name = files[i];
+  }
+}
+
 std::string history_of(const Options& options) {
   std::string line = "pcor " PCOR_VERSION " compare " + command_line(options.comparison);
   for (const std::string& model : options.models) line += " -m " + quoted(model);
@@ -230,6 +241,7 @@ void run(const Options& options) {
     add_references(references, own);
     contenders.push_back({model.model.name, model, own.used});
   }
+  name_by_file(contenders, options.models);
   CompareOptions compare_options;
   compare_options.mask = mask_options(options.comparison);
   compare_options.time_stamp = time_stamp(options.comparison);
@@ -245,7 +257,9 @@ void run(const Options& options) {
                       history_of(options));
     }
   }
-  if (!options.common.report.empty()) write_report(comparison_report(comparison), options.common.report);
+  if (!options.common.report.empty())
+    write_report_of_run(comparison_report(comparison), {options.models, options.comparison.flights, {}},
+                        options.common.report);
   json.write(as_json(comparison));
   if (wants_text(options.common)) print(comparison, references, options);
 }

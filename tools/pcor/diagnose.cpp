@@ -14,6 +14,7 @@
 #include "diagnosis.hpp"
 #include "model_of_flight.hpp"
 #include "progress.hpp"
+#include "report_origin.hpp"
 #include "shaped_effect.hpp"
 
 namespace pcor::tool {
@@ -200,7 +201,9 @@ void run(const Options& options) {
     diagnose_with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
     diagnosis = diagnose(flight_paths(options.comparison), model, references.used, diagnose_with);
   }
-  if (!options.common.report.empty()) write_report(diagnosis_report(diagnosis, model), options.common.report);
+  if (!options.common.report.empty())
+    write_report_of_run(diagnosis_report(diagnosis, model), {{options.model}, options.comparison.flights, {}},
+                        options.common.report);
   json.write(as_json(diagnosis));
   if (wants_text(options.common)) print(diagnosis, references, options);
 }

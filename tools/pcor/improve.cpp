@@ -15,6 +15,7 @@
 #include "model_of_flight.hpp"
 #include "progress.hpp"
 #include "refusal.hpp"
+#include "report_origin.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -155,7 +156,9 @@ void run(const Options& options) {
   refuse_worse(improvement.worse, options.force, improvement.model);
   save_model(improvement.model, options.output, inputs);
   if (!options.common.report.empty())
-    write_report(improvement_report(improvement, model), options.common.report);
+    write_report_of_run(improvement_report(improvement, model),
+                        {{options.model, options.output}, options.comparison.flights, options.holdout},
+                        options.common.report);
   json.write(as_json(improvement, options));
   if (wants_text(options.common)) print(improvement, references, options);
 }

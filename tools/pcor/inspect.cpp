@@ -13,6 +13,7 @@
 #include <pcor/words/error.hpp>
 #include <pcor/words/utc.hpp>
 #include "command.hpp"
+#include "model_name.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -166,7 +167,7 @@ void print(const Inspection& flight) {
   print_flown(flight);
   if (!flight.laws.empty()) fmt::print("\nlaws for this aircraft\n");
   for (const InspectedLaw& law : flight.laws) {
-    fmt::print("  {}: {}{}\n", law.path.string(), law.name,
+    fmt::print("  {}: {}{}\n", law.path.stem().string(), law.name,
                !law.has_variables ? "; the flight does not record its pressures"
                : !law.is_in_time  ? "; stated for another time"
                                   : "; fits the flight's pressures and its date");
@@ -194,7 +195,7 @@ std::string next_step(const Options& options, const Inspection& flight) {
                                  [](const InspectedLaw& law) { return law.has_variables && law.is_in_time; });
   if (fits != flight.laws.end())
     return fmt::format("To correct it: pcor process {} -m {} -o corrected.nc", path,
-                       quoted(fits->path.string()));
+                       quoted(fits->path.stem().string()));
   return fmt::format("To have a model to start from: pcor inspect {} --write-model model.toml", path);
 }
 
@@ -205,10 +206,11 @@ void run(const Options& options) {
   JsonResult json(options.common);
   nlohmann::ordered_json result;
   result["flights"] = nlohmann::ordered_json::array();
+  const std::vector<std::filesystem::path> laws = named_models();
   std::vector<Inspection> all;
   for (const std::string& flight : options.flights) {
     all.push_back(
-        inspect_flight(flight, {}, options.time_stamp == "middle" ? TimeStamp::middle : TimeStamp::begin));
+        inspect_flight(flight, laws, options.time_stamp == "middle" ? TimeStamp::middle : TimeStamp::begin));
     result["flights"].push_back(as_json(all.back()));
     if (!wants_text(options.common)) continue;
     if (all.size() > 1) fmt::print("\n");

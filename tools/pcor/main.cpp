@@ -15,6 +15,8 @@
 #include <pcor/words/suggest.hpp>
 
 #include "commands.hpp"
+#include "model_name.hpp"
+#include "report_origin.hpp"
 
 namespace {
 
@@ -80,6 +82,7 @@ extern "C" void stop(int signal) {
 int main(int argc, char** argv) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, stop);
 
+  pcor::tool::remember_command(argc, argv);
   CLI::App program("Corrects the static and dynamic pressure that a research aircraft measures.", "pcor");
   program.set_version_flag("--version", "pcor " PCOR_VERSION);
   program.require_subcommand(1);
@@ -92,6 +95,7 @@ int main(int argc, char** argv) {
 
   std::vector<std::function<void()>> runs;
   for (const auto add : pcor::tool::commands) runs.push_back(add(program));
+  pcor::tool::take_models_by_name(program);
 
   try {
     program.parse(argc, argv);
@@ -100,6 +104,9 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     fmt::print(stderr, "{}\n", usage_message(program, error.what(), {argv + 1, argv + argc}));
     return wrong_usage;
+  } catch (const pcor::Error& error) {
+    fmt::print(stderr, "pcor: {}\n", error.what());
+    return work_not_done;
   }
 
   try {

@@ -1,11 +1,19 @@
-#include <pcor/process/process.hpp>
+#include <pcor/process/process_flights.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <cmath>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <system_error>
+#include <vector>
 
+#include <pcor/words/error.hpp>
 #include <pcor/words/utc.hpp>
 #include "command.hpp"
 #include "model_of_flight.hpp"
@@ -14,9 +22,11 @@
 namespace pcor::tool {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct Options {
   CommonOptions common;
-  std::string input;
+  std::vector<std::string> inputs;
   std::string model;
   std::string output;
   std::string correct_with = "model";
@@ -25,11 +35,14 @@ struct Options {
   std::string suffix;
   bool copy_all = false;
   bool hydrostatic = false;
+  bool if_stale = false;
+  bool skip_unreadable = false;
 };
 
-std::string command_line(const Options& options) {
-  std::string line = fmt::format("pcor " PCOR_VERSION " process {} -m {} -o {}", quoted(options.input),
-                                 quoted(options.model), quoted(options.output));
+/// What makes one output alone.
+std::string command_line(const ProcessTask& task, const Options& options) {
+  std::string line = fmt::format("pcor " PCOR_VERSION " process {} -m {} -o {}", quoted(task.input.string()),
+                                 quoted(options.model), quoted(task.output.string()));
   if (options.correct_with != "model") line += " --correct-with " + options.correct_with;
   if (options.time_stamp != "begin") line += " --time-stamp " + options.time_stamp;
   if (!options.uncertainty.empty()) line += " --uncertainty " + options.uncertainty;
@@ -39,11 +52,15 @@ std::string command_line(const Options& options) {
   return line;
 }
 
-nlohmann::ordered_json as_json(const ProcessSummary& summary, const Options& options) {
+nlohmann::ordered_json as_json(const ProcessedFlight& flight, const Options& options) {
   nlohmann::ordered_json result;
-  result["input"] = options.input;
-  result["output"] = options.output;
+  result["input"] = flight.input.string();
+  result["output"] = flight.output.string();
   result["model"] = options.model;
+  result["state"] = name_of(flight.state);
+  if (flight.state == FlightState::unreadable) result["reason"] = flight.reason;
+  if (flight.state != FlightState::processed) return result;
+  const ProcessSummary& summary = flight.summary;
   result["aircraft"] = summary.aircraft;
   result["project"] = summary.project;
   result["flight"] = summary.flight;
@@ -67,7 +84,43 @@ nlohmann::ordered_json as_json(const ProcessSummary& summary, const Options& opt
   return result;
 }
 
-void print(const ProcessSummary& summary, const Options& options) {
+std::size_t count_of(const std::vector<ProcessedFlight>& flights, FlightState state) {
+  return static_cast<std::size_t>(std::count_if(
+      flights.begin(), flights.end(), [state](const ProcessedFlight& each) { return each.state == state; }));
+}
+
+nlohmann::ordered_json as_json(const std::vector<ProcessedFlight>& flights, const Options& options) {
+  nlohmann::ordered_json result;
+  result["model"] = options.model;
+  result["output"] = options.output;
+  result["processed"] = count_of(flights, FlightState::processed);
+  result["up_to_date"] = count_of(flights, FlightState::up_to_date);
+  result["unreadable"] = count_of(flights, FlightState::unreadable);
+  result["flights"] = nlohmann::ordered_json::array();
+  for (const ProcessedFlight& flight : flights) result["flights"].push_back(as_json(flight, options));
+  return result;
+}
+
+using Flags = decltype(ProcessSummary::flagged);
+
+void print_flags(const Flags& flagged) {
+  bool any = false;
+  for (std::size_t i = 0; i < quality_facts.size(); ++i) {
+    if (flagged[i] == 0) continue;
+    if (!any) fmt::print("\n{:>9}  {:<32} {}\n", "samples", "quality bit", "meaning");
+    any = true;
+    fmt::print("{:>9}  {:<32} {}\n", flagged[i], quality_facts[i].name, quality_facts[i].meaning);
+  }
+}
+
+void print_hint(const ProcessedFlight& flight) {
+  fmt::print("To look at the result: ncdump -v {} {} | less\n", flight.summary.outputs.front(),
+             quoted(flight.output.string()));
+}
+
+/// All that is to be said of one flight.
+void print(const ProcessedFlight& of) {
+  const ProcessSummary& summary = of.summary;
   std::string flight;
   for (const std::string& part : {summary.project, summary.flight, summary.aircraft}) {
     if (part.empty()) continue;
@@ -90,18 +143,59 @@ void print(const ProcessSummary& summary, const Options& options) {
   }
   fmt::print("\n");
   if (summary.gaps > 0) fmt::print("{} gap{} in time\n", summary.gaps, summary.gaps == 1 ? "" : "s");
-  bool flagged = false;
-  for (std::size_t i = 0; i < quality_facts.size(); ++i) {
-    if (summary.flagged[i] == 0) continue;
-    if (!flagged) fmt::print("\n{:>9}  {:<32} {}\n", "samples", "quality bit", "meaning");
-    flagged = true;
-    fmt::print("{:>9}  {:<32} {}\n", summary.flagged[i], quality_facts[i].name, quality_facts[i].meaning);
-  }
+  print_flags(summary.flagged);
   for (const std::string& note : summary.notes) fmt::print("\nNote: {}.\n", note);
-  fmt::print("\nwrote {} to {}\n", fmt::join(summary.outputs, " "), options.output);
-  fmt::print("To look at the result: ncdump -v {} {} | less\n", summary.outputs.front(),
-             quoted(options.output));
+  fmt::print("\nwrote {} to {}\n", fmt::join(summary.outputs, " "), of.output.string());
+  print_hint(of);
 }
+
+/// Several flights as a table, a row as soon as a flight is done, and at the end what they have in common.
+class Table {
+ public:
+  explicit Table(const std::vector<ProcessTask>& tasks) {
+    for (const ProcessTask& task : tasks) width_ = std::max(width_, task.input.filename().string().size());
+    fmt::print("{:<{}} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "flight", width_, "samples", "corrected", "delta-p",
+               "least", "greatest");
+  }
+
+  void add(const ProcessedFlight& flight) {
+    const ProcessSummary& summary = flight.summary;
+    fmt::print("{:<{}} ", flight.input.filename().string(), width_);
+    if (flight.state != FlightState::processed) {
+      fmt::print("{}{}\n", name_of(flight.state), flight.reason.empty() ? "" : ": " + flight.reason);
+    } else if (summary.in_flight == 0) {
+      fmt::print("{:>9} {:>9} {:>9}\n", summary.samples, summary.corrected, "no flight");
+    } else {
+      fmt::print("{:>9} {:>9} {:>9.2f} {:>9.2f} {:>9.2f}\n", summary.samples, summary.corrected,
+                 summary.mean_defect, summary.least_defect, summary.greatest_defect);
+    }
+    std::fflush(stdout);
+  }
+
+  static void end(const std::vector<ProcessedFlight>& flights, const std::string& folder) {
+    fmt::print("delta-p: the mean in flight, hPa, with the least and the greatest\n");
+    Flags flagged{};
+    std::map<std::string, std::size_t> notes;
+    for (const ProcessedFlight& flight : flights) {
+      for (std::size_t i = 0; i < flagged.size(); ++i) flagged[i] += flight.summary.flagged[i];
+      for (const std::string& note : flight.summary.notes) ++notes[note];
+    }
+    print_flags(flagged);
+    for (const auto& [note, count] : notes) {
+      fmt::print("\nNote, {} of {} flights: {}.\n", count, flights.size(), note);
+    }
+    fmt::print("\n{} flights: {} processed into {}, {} up to date, {} unreadable\n", flights.size(),
+               count_of(flights, FlightState::processed), folder, count_of(flights, FlightState::up_to_date),
+               count_of(flights, FlightState::unreadable));
+    const auto done = std::find_if(flights.begin(), flights.end(), [](const ProcessedFlight& each) {
+      return each.state == FlightState::processed;
+    });
+    if (done != flights.end()) print_hint(*done);
+  }
+
+ private:
+  std::size_t width_ = 24;
+};
 
 UncertaintyPart part_named(const std::string& name) {
   if (name == "total") return UncertaintyPart::total;
@@ -110,10 +204,42 @@ UncertaintyPart part_named(const std::string& name) {
   return name == "none" ? UncertaintyPart::none : UncertaintyPart::total_if_stated;
 }
 
-void run(const Options& options) {
-  refuse_overwriting({options.output, options.common.json}, {options.input, options.model});
-  JsonResult json(options.common);
-  const ModelFile model = read_model_for(options.model, {options.input}, options.common);
+/// Several flights go into a folder, which is made; one does where the output is a folder already.
+bool wants_folder(const Options& options) {
+  std::error_code code;
+  if (fs::is_directory(options.output, code)) return true;
+  const bool is_there = fs::exists(options.output, code);
+  const bool looks_like_a_folder = !options.output.empty() && options.output.back() == '/';
+  if (options.inputs.size() == 1 && !looks_like_a_folder) return false;
+  if (is_there || fs::path(options.output).extension() == ".nc") {
+    throw Error(fmt::format("{} {}; several flights need a folder: name one that is there or is to be made",
+                            options.output, is_there ? "is a file" : "is named like a file"));
+  }
+  return true;
+}
+
+std::vector<ProcessTask> tasks_of(const Options& options, bool folder) {
+  const std::vector<fs::path> flights(options.inputs.begin(), options.inputs.end());
+  std::vector<ProcessTask> tasks = folder ? tasks_in_folder(flights, options.output)
+                                          : std::vector<ProcessTask>{{flights.front(), options.output, {}}};
+  refuse_overwriting({options.common.json}, flights);
+  for (ProcessTask& task : tasks) {
+    task.history = command_line(task, options);
+    refuse_overwriting({task.output, options.common.json}, {task.input, options.model});
+  }
+  return tasks;
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code code;
+  fs::create_directories(folder, code);
+  if (code) {
+    throw Error(fmt::format("the folder {} cannot be made: {}; choose another output", folder.string(),
+                            code.message()));
+  }
+}
+
+ProcessOptions process_options(const Options& options) {
   ProcessOptions process;
   process.correct_with = options.correct_with == "lams" ? CorrectWith::lams : CorrectWith::model;
   process.time_stamp = options.time_stamp == "middle" ? TimeStamp::middle : TimeStamp::begin;
@@ -121,15 +247,58 @@ void run(const Options& options) {
   process.hydrostatic = options.hydrostatic;
   process.uncertainty = part_named(options.uncertainty);
   process.suffix = options.suffix;
-  process.history = command_line(options);
-  ProcessSummary summary;
-  {
-    Progress bar("processing", !options.common.quiet);
-    process.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
-    summary = process_flight(options.input, model, options.output, process);
+  return process;
+}
+
+/// As `process_flights`; what stops several flights says that the others can be done all the same.
+std::vector<ProcessedFlight> process_all(const std::vector<ProcessTask>& tasks, const ModelFile& model,
+                                         const ProcessFlightsOptions& options) {
+  try {
+    return process_flights(tasks, model, options);
+  } catch (const Error& error) {
+    if (tasks.size() == 1 || error.code() == Error::Code::output) throw;
+    throw Error(error.code(), fmt::format("{}; what was done before it stays, and --skip-unreadable does the "
+                                          "flights after it too",
+                                          error.what()));
   }
-  json.write(as_json(summary, options));
-  if (wants_text(options.common)) print(summary, options);
+}
+
+void run(const Options& options) {
+  const bool folder = wants_folder(options);
+  const std::vector<ProcessTask> tasks = tasks_of(options, folder);
+  const bool many = tasks.size() > 1;
+  JsonResult json(options.common);
+  const ModelFile model =
+      read_model_for(options.model, {options.inputs.begin(), options.inputs.end()}, options.common);
+  if (folder) make_folder(options.output);
+  ProcessFlightsOptions process;
+  process.process = process_options(options);
+  process.if_stale = options.if_stale;
+  process.skip_unreadable = options.skip_unreadable;
+  std::optional<Progress> bar;
+  process.begins = [&](std::size_t task) {
+    bar.emplace(many ? fmt::format("processing {} of {}", task + 1, tasks.size()) : "processing",
+                !options.common.quiet);
+  };
+  process.process.progress = [&bar](std::size_t done, std::size_t total) { bar->show(done, total); };
+  const bool text = wants_text(options.common);
+  std::optional<Table> table;
+  if (many && text) table.emplace(tasks);
+  process.ends = [&](const ProcessedFlight& flight) {
+    bar.reset();
+    if (table) table->add(flight);
+  };
+  const std::vector<ProcessedFlight> flights = process_all(tasks, model, process);
+  json.write(many ? as_json(flights, options) : as_json(flights.front(), options));
+  if (table) Table::end(flights, options.output);
+  if (count_of(flights, FlightState::unreadable) == flights.size()) {
+    throw Error(many ? fmt::format("none of the {} flights could be processed", flights.size())
+                     : flights.front().reason);
+  }
+  if (!text || many) return;
+  if (flights.front().state == FlightState::processed) return print(flights.front());
+  fmt::print("{} is up to date: this version made it of this flight with this model and these options\n",
+             flights.front().output.string());
 }
 
 }  // namespace
@@ -137,14 +306,23 @@ void run(const Options& options) {
 std::function<void()> add_process(CLI::App& program) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
-      program.add_subcommand("process", "Correct a flight: run every sample through the real-time loop");
-  command->add_option("input", options->input, "the flight, a netCDF file")->required()->type_name("IN.nc");
+      program.add_subcommand("process", "Correct flights: run every sample through the real-time loop");
+  command->add_option("input", options->inputs, "the flights, netCDF files")->required()->type_name("IN.nc");
   command->add_option("-m,--model", options->model, "the model of the pressure system")
       ->required()
       ->type_name("MODEL.toml");
-  command->add_option("-o,--output", options->output, "the file to write, whole or not at all")
+  command
+      ->add_option("-o,--output", options->output,
+                   "the file to write, whole or not at all; of several flights the folder, where each gets a "
+                   "file of its own name")
       ->required()
       ->type_name("OUT.nc");
+  command->add_flag("--if-stale", options->if_stale,
+                    "leave an output alone that was made of the same flight, model and options by this "
+                    "version, as its hashes tell");
+  command->add_flag("--skip-unreadable", options->skip_unreadable,
+                    "go on after a flight that cannot be read or lacks what the model needs, and give the "
+                    "reason in its row");
   command
       ->add_option("--correct-with", options->correct_with,
                    "what PSXC and QCXC are corrected with: the model, or the laser air-motion sensor (LAMS) "

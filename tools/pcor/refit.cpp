@@ -14,6 +14,7 @@
 #include "model_of_flight.hpp"
 #include "progress.hpp"
 #include "refusal.hpp"
+#include "report_origin.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -258,7 +259,9 @@ void write_fit_report(const RefitResult& result, const ModelFile& model, const R
   const Comparison comparison = compare(
       flights, {{"before the fit" + part, model, references}, {"after the fit" + part, result.model, fitted}},
       compare_options);
-  write_report(refit_report(result, comparison), options.common.report);
+  write_report_of_run(refit_report(result, comparison),
+                      {{options.model, options.output}, options.comparison.flights, options.holdout},
+                      options.common.report);
 }
 
 void run(const Options& options) {

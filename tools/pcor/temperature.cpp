@@ -13,6 +13,7 @@
 #include "model_of_flight.hpp"
 #include "progress.hpp"
 #include "refusal.hpp"
+#include "report_origin.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -252,7 +253,10 @@ void run(const Options& options) {
       result = fit_temperature(flight_paths(options.comparison), model, with);
     }
   }
-  if (!options.common.report.empty()) write_report(temperature_report(result), options.common.report);
+  if (!options.common.report.empty())
+    write_report_of_run(temperature_report(result),
+                        {{options.model, options.output}, options.comparison.flights, {}},
+                        options.common.report);
   nlohmann::ordered_json all = as_json(result);
   if (options.iterate) {
     all["rounds"] = as_json(in_turn);

@@ -39,6 +39,7 @@ struct FileDescription {
   std::string history;  ///< what makes this file, e.g. the command line; it is dated and put before what was
                         ///< done before
   std::string latitude, longitude, altitude;  ///< variables of the output that say where the aircraft was
+  std::string altitude_standard_name = "altitude";  ///< of the CF table, where the variable states none
   std::vector<std::pair<std::string, std::string>>
       attributes;  ///< further global ones; they replace the input's
 };
@@ -54,7 +55,13 @@ struct NewFlight {
   FileKind kind = FileKind::netcdf4;
 };
 
-/// Writes a flight to a netCDF file by the NCAR-RAF/nimbus, CF and ACDD conventions, whole or not at all.
+/// Writes a flight to a netCDF file by the CF and ACDD conventions, whole or not at all. Those of
+/// NCAR-RAF/nimbus are kept where the input claims them, and by a new flight; `Conventions` names those that
+/// are kept: CF not where a copied variable has a unit that UDUNITS does not know.
+///
+/// The coordinates get the units degrees_north and degrees_east, and every time series names those that are
+/// known for it. A flight with both is a CF trajectory, with a variable `trajectory_id`. What an attribute of
+/// a copied variable names is in the output, or is not named.
 ///
 /// The data go to a hidden file beside the output, which `finish` puts in its place; whatever fails before
 /// that leaves an existing output as it was. First `define` and `copy` every variable, then `write` each of

@@ -133,7 +133,7 @@ using ReportItem = std::variant<TimePanel, BinnedPanel, PlanePanel, PairPanel, R
                                 CurvePanel, ReportTable, ReportText>;
 
 /// What a report says, in the order in which the reader meets it: the title, the summary, the facts, the
-/// items. All texts are plain text in UTF-8.
+/// items, its origin. All texts are plain text in UTF-8.
 struct Report {
   std::string title;
   std::string subtitle;
@@ -145,6 +145,7 @@ struct Report {
   std::vector<ReportColumn> columns;
   std::vector<ReportInterval> intervals;
   std::vector<ReportItem> items;
+  std::vector<std::pair<std::string, std::string>> origin;  ///< how it came to be, like facts, at the foot
 };
 
 /// One HTML page that needs nothing else: no network, no other file. A browser draws its panels from the

@@ -14,10 +14,11 @@ class Error : public std::runtime_error {
  public:
   enum class Code : std::uint8_t {
     other,
-    file,      ///< it cannot be read or written, or is damaged
+    file,      ///< it cannot be read, or is damaged
     variable,  ///< a flight has no variable of that name, or no value of it
     unit,      ///< a variable has no unit, one that is not known, or one that does not convert
-    model      ///< the model cannot be used on what is recorded
+    model,     ///< the model cannot be used on what is recorded
+    output     ///< an output cannot be written where it was asked for
   };
 
   explicit Error(const std::string& message) : Error(Code::other, message) {}

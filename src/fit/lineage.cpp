@@ -1,0 +1,80 @@
+#include "fit/lineage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include <pcor/flight/flight.hpp>
+#include <pcor/words/error.hpp>
+#include <pcor/words/utc.hpp>
+
+namespace pcor::internal {
+namespace {
+
+constexpr const char* before_key = "before";
+
+const ProvenanceValue* entry(const Provenance& all, const std::string& key) {
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&key](const auto& each) { return each.first == key; });
+  return found == all.end() ? nullptr : &found->second;
+}
+
+/// A model as an entry of the list.
+Provenance entry_of(const ModelFile& model) {
+  Provenance all;
+  all.emplace_back("name", ProvenanceValue{model.model.name});
+  if (const ProvenanceValue* const date = entry(model.provenance, "date")) all.emplace_back("date", *date);
+  if (!model.law.source.empty()) all.emplace_back("source", ProvenanceValue{model.law.source});
+  return all;
+}
+
+}  // namespace
+
+std::string flight_text(const std::filesystem::path& path) {
+  const std::string file = path.filename().string();
+  try {
+    const Flight flight(path);
+    std::string text;
+    for (const std::string& part : {flight.project(), flight.flight_number()}) {
+      if (!part.empty()) text += part + " ";
+    }
+    return (text.empty() ? file + " " : text) + utc_text(flight.time().first, "%Y-%m-%d");
+  } catch (const Error&) {
+    return file;
+  }
+}
+
+std::string flights_text(const std::vector<std::string>& flights) {
+  if (flights.empty()) return "no flight";
+  if (flights.size() == 1) return flights.front();
+  return fmt::format("{} and {} more", flights.front(), flights.size() - 1);
+}
+
+std::string flights_text(const std::vector<std::filesystem::path>& flights) {
+  std::vector<std::string> texts;
+  for (const std::filesystem::path& flight : flights)
+    texts.push_back(texts.empty() ? flight_text(flight) : flight.string());
+  return flights_text(texts);
+}
+
+std::string unfitted_name(const ModelFile& model) {
+  const std::string& name = model.model.name;
+  if (entry(model.provenance, "program") == nullptr) return name;  // as its author calls it
+  return name.substr(0, std::min(name.find(", fitted to "), name.find(", improved on ")));
+}
+
+void descend(ModelFile& made, const ModelFile& from, const std::string& how, const std::string& flights) {
+  ProvenanceList before;
+  if (const ProvenanceValue* const earlier = entry(from.provenance, before_key)) {
+    if (const auto* const list = std::get_if<ProvenanceList>(earlier)) before = *list;
+  }
+  before.emplace_back(entry_of(from));
+  Provenance& all = made.provenance;
+  all.erase(std::remove_if(all.begin(), all.end(), [](const auto& each) { return each.first == before_key; }),
+            all.end());
+  all.emplace_back(before_key, ProvenanceValue{std::move(before)});
+  made.model.name = fmt::format("{}, {} {}", unfitted_name(from), how, flights);
+}
+
+}  // namespace pcor::internal

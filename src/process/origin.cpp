@@ -1,0 +1,73 @@
+#include "process/origin.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "process/sha256.hpp"
+
+namespace pcor::internal {
+namespace {
+
+const char* name_of(UncertaintyPart part) {
+  switch (part) {
+    case UncertaintyPart::total:
+      return "total";
+    case UncertaintyPart::systematic:
+      return "systematic";
+    case UncertaintyPart::random:
+      return "random";
+    case UncertaintyPart::none:
+      return "none";
+    case UncertaintyPart::total_if_stated:
+      break;
+  }
+  return "total if stated";
+}
+
+const char* yes_or_no(bool yes) { return yes ? "yes" : "no"; }
+
+}  // namespace
+
+std::string options_text(const ProcessOptions& options) {
+  return fmt::format("pcor " PCOR_VERSION
+                     "; corrected with: {}; time stamp: {}; uncertainty: {}; suffix: '{}'; all variables: "
+                     "{}; hydrostatic: {}",
+                     options.correct_with == CorrectWith::lams ? "LAMS" : "model",
+                     options.time_stamp == TimeStamp::begin ? "begin" : "middle",
+                     name_of(options.uncertainty), options.suffix, yes_or_no(options.copy_all),
+                     yes_or_no(options.hydrostatic));
+}
+
+std::string coefficients_text(const ModelFile& model) {
+  std::string text;
+  for (std::size_t e = 0; e < model.model.effects.size(); ++e) {
+    const ModelEffect& effect = model.model.effects[e];
+    const std::vector<std::string> names = parameter_names(effect);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const std::optional<double> error = model.fit(e, i).standard_error;
+      text += fmt::format("{}{}.{} = {}{}", text.empty() ? "" : "; ", effect.id, names[i],
+                          effect.parameters[i], error ? fmt::format(" +- {:.3g}", *error) : "");
+    }
+  }
+  return text;
+}
+
+std::vector<std::pair<std::string, std::string>> origin_attributes(const std::filesystem::path& input,
+                                                                   const ModelFile& model,
+                                                                   const ProcessOptions& options) {
+  const std::string text = write_model(model);
+  const std::string chosen = options_text(options);
+  return {{"pcor_model", model.model.name},
+          {"pcor_model_source", model.law.source},
+          {"pcor_model_aircraft", model.model.aircraft},
+          {"pcor_model_coefficients", coefficients_text(model)},
+          {"pcor_model_toml", text},
+          {model_hash_attribute, sha256_of_text(text)},
+          {"pcor_options", chosen},
+          {options_hash_attribute, sha256_of_text(chosen)},
+          {"pcor_input", input.filename().string()},
+          {input_hash_attribute, sha256_of_file(input)}};
+}
+
+}  // namespace pcor::internal

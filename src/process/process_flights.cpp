@@ -1,0 +1,83 @@
+#include <pcor/process/process_flights.hpp>
+
+#include <fmt/format.h>
+
+#include <map>
+#include <system_error>
+
+#include <pcor/process/up_to_date.hpp>
+#include <pcor/words/error.hpp>
+
+namespace pcor {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void process_one(const ProcessTask& task, const ModelFile& model, const ProcessFlightsOptions& options,
+                 ProcessedFlight& flight) {
+  if (options.if_stale && is_up_to_date(task.output, task.input, model, options.process)) {
+    flight.state = FlightState::up_to_date;
+    return;
+  }
+  ProcessOptions process = options.process;
+  process.history = task.history;
+  flight.summary = process_flight(task.input, model, task.output, process);
+}
+
+}  // namespace
+
+std::string_view name_of(FlightState state) {
+  switch (state) {
+    case FlightState::up_to_date:
+      return "up to date";
+    case FlightState::unreadable:
+      return "unreadable";
+    case FlightState::processed:
+      break;
+  }
+  return "processed";
+}
+
+std::vector<ProcessTask> tasks_in_folder(const std::vector<fs::path>& flights, const fs::path& folder) {
+  std::vector<ProcessTask> tasks;
+  std::map<fs::path, fs::path> flight_called;
+  for (const fs::path& flight : flights) {
+    const fs::path name = flight.filename();
+    const auto [other, is_new] = flight_called.emplace(name, flight);
+    if (!is_new) {
+      throw Error(fmt::format("{} and {} would have one output, {}; process them into two folders",
+                              other->second.string(), flight.string(), (folder / name).string()));
+    }
+    std::error_code code;
+    if (fs::equivalent(fs::absolute(flight).parent_path(), folder, code)) {
+      throw Error(
+          fmt::format("{} lies in the folder {} itself, and is never written over; choose another folder",
+                      flight.string(), folder.string()));
+    }
+    tasks.push_back({flight, folder / name});
+  }
+  return tasks;
+}
+
+std::vector<ProcessedFlight> process_flights(const std::vector<ProcessTask>& tasks, const ModelFile& model,
+                                             const ProcessFlightsOptions& options) {
+  std::vector<ProcessedFlight> flights;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (options.begins) options.begins(i);
+    ProcessedFlight& flight = flights.emplace_back();
+    flight.input = tasks[i].input;
+    flight.output = tasks[i].output;
+    try {
+      process_one(tasks[i], model, options, flight);
+    } catch (const Error& error) {
+      if (!options.skip_unreadable || error.code() == Error::Code::output) throw;
+      flight.state = FlightState::unreadable;
+      flight.reason = error.what();
+    }
+    if (options.ends) options.ends(flight);
+  }
+  return flights;
+}
+
+}  // namespace pcor

@@ -1,0 +1,298 @@
+#!/usr/bin/env python3
+"""Many flights in one command, only what is stale done again, and models found by name.
+
+    many_flights_test.py TOOL SOURCE_DIRECTORY
+
+Flights are made from the text of the example flight.
+"""
+
+import hashlib
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+import netCDF4
+
+TOOL = Path(sys.argv[1]).resolve()
+SOURCE = Path(sys.argv[2]).resolve()
+NAME = "c130-psfd-qcr-2003"
+MODEL = SOURCE / "data/models" / (NAME + ".toml")
+CDL = subprocess.run([SOURCE / "tools/make_example_flight"], check=True, capture_output=True, text=True).stdout
+
+
+class ManyFlights(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = Path(folder.name)
+        self.out = self.path / "corrected"
+
+    def flight(self, name):
+        path = self.path / name
+        path.parent.mkdir(exist_ok=True)
+        subprocess.run(["ncgen", "-k", "classic", "-o", path, "-"], input=CDL, check=True, text=True)
+        return path
+
+    def flights(self, *names):
+        return [self.flight(name) for name in names]
+
+    def bad_flight(self, name="bad.nc"):
+        path = self.path / name
+        path.write_text("no flight")
+        return path
+
+    def run_tool(self, *arguments, **options):
+        return subprocess.run([TOOL, *arguments], capture_output=True, text=True, **options)
+
+    def process(self, flights, *more, model=MODEL, output=None):
+        return self.run_tool("process", *flights, "-m", model, "-o", output or self.out, *more)
+
+    def states(self, flights, *more, **options):
+        """What was done to each flight, by its name."""
+        result = self.process(flights, "--json", "-", *more, **options)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return {Path(flight["input"]).name: flight["state"] for flight in json.loads(result.stdout)["flights"]}
+
+    def made(self):
+        return sorted(path.name for path in self.out.iterdir())
+
+
+class Folder(ManyFlights):
+    def test_each_flight_goes_into_the_folder_under_its_name(self):
+        flights = self.flights("a.nc", "b.nc", "c.nc")
+        result = self.process(flights)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual(self.made(), ["a.nc", "b.nc", "c.nc"])
+        for name in ("a.nc", "b.nc", "c.nc", "600"):
+            self.assertIn(name, result.stdout)
+
+    def test_the_outputs_are_those_of_one_flight_alone(self):
+        flights = self.flights("a.nc", "b.nc")
+        self.process(flights)
+        self.process(flights[1:], output=self.path / "alone.nc")
+        with netCDF4.Dataset(self.out / "b.nc") as one, netCDF4.Dataset(self.path / "alone.nc") as alone:
+            self.assertTrue((one["PSXC"][:] == alone["PSXC"][:]).all())
+            self.assertEqual(set(one.variables), set(alone.variables))
+            self.assertIn(f"-o {self.out / 'b.nc'}", one.history)
+
+    def test_one_flight_may_go_into_a_folder_that_is_there(self):
+        self.out.mkdir()
+        self.assertEqual(self.process(self.flights("a.nc")).returncode, 0)
+        self.assertEqual(self.made(), ["a.nc"])
+
+    def test_json_has_the_keys_of_one_flight_for_each(self):
+        flights = self.flights("a.nc", "b.nc")
+        one = json.loads(self.process(flights[:1], "--json", "-", output=self.path / "one.nc").stdout)
+        many = json.loads(self.process(flights, "--json", "-").stdout)
+        self.assertEqual(many["processed"], 2)
+        self.assertEqual([flight["input"] for flight in many["flights"]], [str(path) for path in flights])
+        for flight in many["flights"]:
+            self.assertEqual(set(flight), set(one))
+            self.assertEqual(flight["records"], 600)
+
+    def test_a_clash_of_names_is_told_before_the_work(self):
+        result = self.process(self.flights("one/a.nc", "b.nc", "two/a.nc"))
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("one/a.nc", result.stderr)
+        self.assertIn("two/a.nc", result.stderr)
+        self.assertFalse(self.out.exists())
+
+    def test_several_flights_need_a_folder(self):
+        flights = self.flights("a.nc", "b.nc")
+        (self.path / "file").write_text("a file")
+        for output in (self.path / "file", self.path / "out.nc"):
+            result = self.process(flights, output=output)
+            self.assertEqual((result.returncode, result.stderr.count("\n")), (1, 1))
+            self.assertIn("folder", result.stderr)
+        self.assertFalse((self.path / "out.nc").exists())
+
+    def test_the_folder_is_not_that_of_the_flights(self):
+        flights = self.flights("a.nc", "b.nc")
+        before = [path.read_bytes() for path in flights]
+        result = self.process(flights, output=self.path)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("a.nc", result.stderr)
+        self.assertEqual([path.read_bytes() for path in flights], before)
+
+    def test_memory_does_not_grow_with_the_flights(self):
+        flight = self.flight("a.nc")
+        flights = [flight]
+        for number in range(60):
+            flights.append(shutil.copy(flight, self.path / f"{number}.nc"))
+
+        def memory(count):
+            code = "import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True); " \
+                   "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)"
+            command = [TOOL, "process", *flights[:count], "-m", MODEL, "-o", f"{self.out}/", "--quiet"]
+            return int(subprocess.run([sys.executable, "-c", code, *command], check=True, capture_output=True,
+                                      text=True).stdout)
+
+        self.assertLess(memory(61), memory(3) + 4096)  # KiB
+
+
+class Unreadable(ManyFlights):
+    def test_the_first_bad_file_stops_the_run_and_what_was_done_stays(self):
+        a, b = self.flights("a.nc", "b.nc")
+        result = self.process([a, self.bad_flight(), b])
+        self.assertEqual((result.returncode, result.stderr.count("\n")), (1, 1))
+        self.assertIn("bad.nc", result.stderr)
+        self.assertIn("--skip-unreadable", result.stderr)
+        self.assertEqual(self.made(), ["a.nc"])
+
+    def test_a_bad_file_becomes_a_row_with_its_reason(self):
+        a, b = self.flights("a.nc", "b.nc")
+        bad = self.bad_flight()
+        result = self.process([a, bad, b], "--skip-unreadable")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertRegex(result.stdout, r"(?m)^bad\.nc .*not a netCDF file")
+        self.assertEqual(self.made(), ["a.nc", "b.nc"])
+        summary = json.loads(self.process([a, bad, b], "--skip-unreadable", "--json", "-").stdout)
+        self.assertEqual((summary["processed"], summary["unreadable"]), (2, 1))
+        self.assertIn("netCDF", summary["flights"][1]["reason"])
+
+    def test_a_flight_without_a_variable_of_the_model_is_bad_too(self):
+        a, b = self.flights("a.nc", "b.nc")
+        subprocess.run(["ncrename", "-v", "QCR,QCX", b], check=True, capture_output=True)
+        self.assertEqual(self.states([b, a], "--skip-unreadable"), {"b.nc": "unreadable", "a.nc": "processed"})
+
+    def test_nothing_done_is_status_1(self):
+        result = self.process([self.bad_flight(), self.bad_flight("worse.nc")], "--skip-unreadable")
+        self.assertEqual((result.returncode, result.stderr.count("\n")), (1, 1))
+        self.assertIn("worse.nc", result.stdout)
+
+    def test_an_output_that_cannot_be_written_is_no_bad_flight(self):
+        flights = self.flights("a.nc", "b.nc")
+        (self.out / "a.nc").mkdir(parents=True)
+        result = self.process(flights, "--skip-unreadable")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("is a directory", result.stderr)
+
+
+class Stale(ManyFlights):
+    def test_only_what_is_stale_is_done(self):
+        flights = self.flights("a.nc", "b.nc", "c.nc")
+        everything = {"a.nc": "processed", "b.nc": "processed", "c.nc": "processed"}
+        nothing = dict.fromkeys(everything, "up to date")
+        self.assertEqual(self.states(flights, "--if-stale"), everything)
+        self.assertEqual(self.states(flights, "--if-stale"), nothing)
+        (self.out / "b.nc").unlink()
+        self.assertEqual(self.states(flights, "--if-stale"), {**nothing, "b.nc": "processed"})
+        self.assertEqual(self.states(flights), everything)
+
+    def test_content_counts_and_not_its_date_or_size(self):
+        flights = self.flights("a.nc", "b.nc")
+        self.process(flights)
+        before = flights[0].stat()
+        with netCDF4.Dataset(flights[0], "a") as flight:
+            flight["PSFD"][17] += 0.5
+        os.utime(flights[0], ns=(before.st_atime_ns, before.st_mtime_ns))
+        os.utime(flights[1])
+        self.assertEqual(flights[0].stat().st_size, before.st_size)
+        self.assertEqual(self.states(flights, "--if-stale"), {"a.nc": "processed", "b.nc": "up to date"})
+
+    def test_another_model_or_option_makes_all_stale(self):
+        flights = self.flights("a.nc", "b.nc")
+        model = self.path / "model.toml"
+        model.write_text(MODEL.read_text())
+        self.process(flights, model=model)
+        self.assertEqual(set(self.states(flights, "--if-stale", model=model).values()), {"up to date"})
+        model.write_text(MODEL.read_text().replace("[[effect]]", "[uncertainty]\nstatic_defect = 0.1\n\n[[effect]]", 1))
+        self.assertEqual(set(self.states(flights, "--if-stale", model=model).values()), {"processed"})
+        self.assertEqual(set(self.states(flights, "--if-stale", "--suffix", "_X", model=model).values()), {"processed"})
+        self.assertEqual(set(self.states(flights, "--if-stale", "--suffix", "_X", model=model).values()), {"up to date"})
+        self.assertEqual(set(self.states(flights, "--if-stale", model=model).values()), {"processed"})
+
+    def test_a_file_that_is_no_output_of_pcor_is_stale(self):
+        flights = self.flights("a.nc", "b.nc")
+        self.out.mkdir()
+        (self.out / "a.nc").write_text("something else")
+        self.assertEqual(set(self.states(flights, "--if-stale").values()), {"processed"})
+
+    def test_one_flight(self):
+        (flight,) = self.flights("a.nc")
+        output = self.path / "out.nc"
+        self.process([flight], "--if-stale", output=output)
+        before = output.read_bytes()
+        result = self.process([flight], "--if-stale", output=output)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertIn("up to date", result.stdout)
+        self.assertEqual(output.read_bytes(), before)
+
+    def test_a_run_that_is_killed_goes_on_where_it_was(self):
+        flight = self.flight("0.nc")
+        flights = [flight] + [shutil.copy(flight, self.path / f"{number}.nc") for number in range(1, 40)]
+        for how in (signal.SIGTERM, signal.SIGKILL):
+            with self.subTest(signal=how):
+                shutil.rmtree(self.out, ignore_errors=True)
+                run = subprocess.Popen([TOOL, "process", *flights, "-m", MODEL, "-o", self.out, "--if-stale", "--quiet"])
+                while run.poll() is None and len(list(self.out.glob("*.nc")) if self.out.exists() else []) < 3:
+                    time.sleep(0.001)
+                run.send_signal(how)
+                self.assertEqual(run.wait(), -how, "the run ended before it could be stopped")
+                done = {path.name for path in self.out.glob("[0-9]*.nc")}
+                self.assertLess(len(done), len(flights))
+                states = self.states(flights, "--if-stale")
+                self.assertEqual({name for name, state in states.items() if state == "up to date"}, done)
+                self.assertEqual(len(states), len(flights))
+
+    def test_the_hash_is_that_of_everyone_else(self):
+        (flight,) = self.flights("a.nc")
+        self.process([flight], output=self.path / "out.nc")
+        with netCDF4.Dataset(self.path / "out.nc") as output:
+            self.assertEqual(output.pcor_input_sha256, hashlib.sha256(flight.read_bytes()).hexdigest())
+            self.assertEqual(output.pcor_model_sha256, hashlib.sha256(output.pcor_model_toml.encode()).hexdigest())
+
+
+class ModelNames(ManyFlights):
+    def test_a_shipped_model_is_found_by_its_name(self):
+        (flight,) = self.flights("a.nc")
+        by_name = self.process([flight], "--json", "-", model=NAME, output=self.path / "one.nc")
+        self.assertEqual(by_name.returncode, 0, by_name.stderr)
+        self.assertEqual(Path(json.loads(by_name.stdout)["model"]).resolve(), MODEL)
+
+    def test_every_command_knows_names(self):
+        flight = self.path / "flight.nc"
+        self.run_tool("simulate", SOURCE / "data/scenarios/c130-short.toml", "-o", flight)
+        second = ["--reference", "static:c130-psfrd-eq18"]
+        for command in (["compare", flight, *second], ["diagnose", flight, *second],
+                        ["refit", flight, *second, "-o", self.path / "fitted.toml", "--force"],
+                        ["check", flight, "--second", "c130-psfrd-eq18"],
+                        ["add", "static-lag", "-o", self.path / "more.toml"]):
+            with self.subTest(command=command[0]):
+                result = self.run_tool(*command, "-m", "c130-psfd-eq18")
+                self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_a_folder_of_ones_own_comes_first(self):
+        own = self.path / "own"
+        own.mkdir()
+        (own / "my-law.toml").write_text(MODEL.read_text().replace('name = "', 'name = "my own '))
+        (flight,) = self.flights("a.nc")
+        environment = {**os.environ, "PCOR_MODELS": f"{self.path / 'none'}:{own}"}
+        result = self.run_tool("process", flight, "-m", "my-law", "-o", self.path / "one.nc", env=environment)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        with netCDF4.Dataset(self.path / "one.nc") as output:
+            self.assertTrue(output.pcor_model.startswith("my own"))
+
+    def test_a_file_goes_before_a_name(self):
+        (flight,) = self.flights("a.nc")
+        (self.path / NAME).write_text(MODEL.read_text().replace('name = "', 'name = "here '))
+        self.run_tool("process", flight, "-m", NAME, "-o", self.path / "one.nc", cwd=self.path)
+        with netCDF4.Dataset(self.path / "one.nc") as output:
+            self.assertTrue(output.pcor_model.startswith("here"))
+
+    def test_an_unknown_name_tells_what_may_be_meant(self):
+        (flight,) = self.flights("a.nc")
+        result = self.process([flight], model="c130-psfd-eq81", output=self.path / "one.nc")
+        self.assertEqual((result.returncode, result.stderr.count("\n")), (1, 1))
+        self.assertRegex(result.stderr, "did you mean .*c130-psfd-eq18")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0]])

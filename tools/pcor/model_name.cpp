@@ -1,0 +1,115 @@
+#include "model_name.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+#include <sstream>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <pcor/words/error.hpp>
+#include <pcor/words/suggest.hpp>
+
+namespace pcor::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view model_ending = ".toml";
+
+bool ends_with(std::string_view text, std::string_view end) {
+  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
+}
+
+/// The user's folders first, then those of the program: beside where it is installed, in its source, and
+/// where it was to be installed.
+std::vector<fs::path> model_folders() {
+  std::vector<fs::path> folders;
+  if (const char* const own = std::getenv("PCOR_MODELS")) {
+    std::istringstream list(own);
+    for (std::string folder; std::getline(list, folder, ':');) {
+      if (!folder.empty()) folders.emplace_back(folder);
+    }
+  }
+  std::error_code code;
+  const fs::path program = fs::read_symlink("/proc/self/exe", code);
+  if (!code) folders.push_back(program.parent_path() / PCOR_MODELS_FROM_PROGRAM);
+  folders.emplace_back(PCOR_MODELS_IN_SOURCE);
+  folders.emplace_back(PCOR_MODELS_INSTALLED);
+  return folders;
+}
+
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code code;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, code)) {
+    if (entry.path().extension() == model_ending) names.push_back(entry.path().stem().string());
+  }
+  return names;
+}
+
+}  // namespace
+
+std::string model_file(const std::string& given) {
+  std::error_code code;
+  if (given.empty() || fs::exists(given, code) || given.find('/') != std::string::npos ||
+      ends_with(given, model_ending))
+    return given;
+  std::vector<std::string> known;
+  for (const fs::path& folder : model_folders()) {
+    const fs::path file = folder / (given + std::string(model_ending));
+    if (fs::is_regular_file(file, code)) return fs::weakly_canonical(file, code).string();
+    for (std::string& name : names_in(folder)) known.push_back(std::move(name));
+  }
+  const std::string meant = did_you_mean(given, known);
+  throw Error(fmt::format("there is no model file '{}', and no model of that name; {}", given,
+                          meant.empty() ? "name a file, or a model in a folder of PCOR_MODELS" : meant));
+}
+
+std::vector<fs::path> named_models() {
+  std::vector<fs::path> models;
+  std::set<std::string> known;
+  for (const fs::path& folder : model_folders()) {
+    std::vector<std::string> names = names_in(folder);
+    std::sort(names.begin(), names.end());
+    for (const std::string& name : names) {
+      if (known.insert(name).second) models.push_back(folder / (name + std::string(model_ending)));
+    }
+  }
+  return models;
+}
+
+std::string reference_with_model_file(const std::string& given) {
+  for (const std::string_view kind : {"static:", "total:"}) {
+    if (given.compare(0, kind.size(), kind) != 0) continue;
+    const std::string model = given.substr(kind.size());
+    if (model.find('+') != std::string::npos) break;  // a pair of variables
+    return std::string(kind) + model_file(model);
+  }
+  return given;
+}
+
+void take_models_by_name(CLI::App& program) {
+  using Find = std::string (*)(const std::string&);
+  const std::pair<const char*, Find> options[] = {
+      {"--model", model_file}, {"--second", model_file}, {"--reference", reference_with_model_file}};
+  for (CLI::App* const command : program.get_subcommands({})) {
+    for (const auto& [name, find] : options) {
+      CLI::Option* const option = command->get_option_no_throw(name);
+      if (option == nullptr) continue;
+      option->transform(CLI::Validator(
+          [find = find](std::string& text) {
+            text = find(text);
+            return std::string();
+          },
+          ""));
+    }
+  }
+}
+
+}  // namespace pcor::tool
