@@ -289,9 +289,14 @@ class ModelNames(ManyFlights):
 
     def test_an_unknown_name_tells_what_may_be_meant(self):
         (flight,) = self.flights("a.nc")
-        result = self.process([flight], model="c130-psfd-eq81", output=self.path / "one.nc")
+        own = self.path / "own"
+        own.mkdir()
+        shutil.copy(SOURCE / "data/models/c130-psfd-eq18.toml", own)
+        result = self.run_tool("process", flight, "-m", "c130-psfd-eq81", "-o", self.path / "one.nc",
+                               env={**os.environ, "PCOR_MODELS": str(own)})
         self.assertEqual((result.returncode, result.stderr.count("\n")), (1, 1))
         self.assertRegex(result.stderr, "did you mean .*c130-psfd-eq18")
+        self.assertEqual(result.stderr.count("c130-psfd-eq18"), 1, "a name is told once")
 
 
 if __name__ == "__main__":

@@ -60,13 +60,13 @@ std::string model_file(const std::string& given) {
   if (given.empty() || fs::exists(given, code) || given.find('/') != std::string::npos ||
       ends_with(given, model_ending))
     return given;
-  std::vector<std::string> known;
+  std::set<std::string> known;  // a name may be in several folders
   for (const fs::path& folder : model_folders()) {
     const fs::path file = folder / (given + std::string(model_ending));
     if (fs::is_regular_file(file, code)) return fs::weakly_canonical(file, code).string();
-    for (std::string& name : names_in(folder)) known.push_back(std::move(name));
+    for (const std::string& name : names_in(folder)) known.insert(name);
   }
-  const std::string meant = did_you_mean(given, known);
+  const std::string meant = did_you_mean(given, {known.begin(), known.end()});
   throw Error(fmt::format("there is no model file '{}', and no model of that name; {}", given,
                           meant.empty() ? "name a file, or a model in a folder of PCOR_MODELS" : meant));
 }

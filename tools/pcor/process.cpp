@@ -154,11 +154,14 @@ class Table {
  public:
   explicit Table(const std::vector<ProcessTask>& tasks) {
     for (const ProcessTask& task : tasks) width_ = std::max(width_, task.input.filename().string().size());
-    fmt::print("{:<{}} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "flight", width_, "samples", "corrected", "delta-p",
-               "least", "greatest");
   }
 
   void add(const ProcessedFlight& flight) {
+    if (!has_head_) {
+      fmt::print("{:<{}} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "flight", width_, "samples", "corrected",
+                 "delta-p", "least", "greatest");
+    }
+    has_head_ = true;
     const ProcessSummary& summary = flight.summary;
     fmt::print("{:<{}} ", flight.input.filename().string(), width_);
     if (flight.state != FlightState::processed) {
@@ -195,6 +198,7 @@ class Table {
 
  private:
   std::size_t width_ = 24;
+  bool has_head_ = false;
 };
 
 UncertaintyPart part_named(const std::string& name) {
