@@ -98,6 +98,7 @@ void print(const ProcessSummary& summary, const Options& options) {
   }
   for (const std::string& note : summary.notes) fmt::print("\nNote: {}.\n", note);
   fmt::print("\nwrote {} to {}\n", fmt::join(summary.outputs, " "), options.output);
+  say_written({options.common.json});
   fmt::print("To look at the result: ncdump -v {} {} | less\n", summary.outputs.front(),
              quoted(options.output));
 }
@@ -143,6 +144,7 @@ std::function<void()> add_process(CLI::App& program) {
       ->type_name("MODEL.toml");
   command->add_option("-o,--output", options->output, "the file to write, whole or not at all")
       ->required()
+      ->check(is_file_name())
       ->type_name("OUT.nc");
   command
       ->add_option("--correct-with", options->correct_with,
@@ -166,6 +168,8 @@ std::function<void()> add_process(CLI::App& program) {
   command->add_flag("--hydrostatic", options->hydrostatic,
                     "write HYDSTEP, the change of hydrostatic height per kelvin from sample to sample");
   add_common_options(*command, options->common, false);
+  add_examples(*command, {"process third.nc -m best.toml -o corrected.nc",
+                          "process third.nc -m best.toml --all --suffix _NEW -o everything.nc"});
   return [options] { run(*options); };
 }
 
