@@ -244,5 +244,72 @@ class Terminal(ComparisonTest):
         self.assertEqual(command.strip(), self.done("compare", ONE, "-m", model).stdout.strip().splitlines()[-1].split(": ")[-1])
 
 
+class Shell(ComparisonTest):
+    def completed(self, *words):
+        """What bash offers for the last of the words of a command line."""
+        script = self.write("pcor.bash", self.done("completion", "bash").stdout)
+        subprocess.run(["bash", "-n", script], check=True)
+        line = " ".join(f"'{word}'" for word in ("pcor", *words))
+        ask = f"source {script}; COMP_WORDS=({line}); COMP_CWORD={len(words)}; _pcor; printf '%s\\n' \"${{COMPREPLY[@]}}\""
+        result = subprocess.run(["bash", "-c", ask], cwd=self.path, check=True, capture_output=True, text=True)
+        self.assertEqual(result.stderr, "")
+        return [word for word in result.stdout.split("\n") if word]
+
+    def test_sub_commands_are_completed(self):
+        commands = commands_of(self.done("--help").stdout)
+        self.assertLessEqual(set(commands), set(self.completed("")))
+        self.assertEqual(self.completed("ref"), ["refit"])
+
+    def test_options_are_completed(self):
+        self.assertEqual(self.completed("refit", "--ho"), ["--holdout"])
+        for command in commands_of(self.done("--help").stdout):
+            known = re.findall(r"^ +(?:-\w,)?(--[\w-]+)", self.done(command, "--help").stdout, flags=re.MULTILINE)
+            self.assertLessEqual(set(known), set(self.completed(command, "-")))
+        self.assertNotIn("--second", self.completed("check", "-"))
+
+    def test_values_are_completed(self):
+        self.assertEqual(self.completed("refit", "--loss", "hu"), ["huber"])
+        self.assertEqual(self.completed("refit", "--exclude", "pitch"), ["pitch manoeuvre"])
+        self.assertEqual(self.completed("effects", "static-qp"), ["static-qp"])
+        self.assertIn("total:", self.completed("compare", "one.nc", "--reference", ""))
+        self.assertEqual(self.completed("refit", "--min-airspeed", ""), [])
+        self.assertEqual(self.completed("refit", "--loss", "=", "hu"), ["huber"])
+
+    def test_files_are_completed(self):
+        for name in ("one.nc", "two.nc", "law.toml", "page.html", "notes.txt"):
+            self.write(name, "")
+        (self.path / "flights").mkdir()
+        self.assertEqual(set(self.completed("refit", "")), {"one.nc", "two.nc", "flights"})
+        self.assertEqual(set(self.completed("refit", "one.nc", "-m", "")), {"law.toml", "flights"})
+        self.assertEqual(self.completed("refit", "one.nc", "--holdout", "t"), ["two.nc"])
+        self.assertEqual(self.completed("refit", "--reference", "static", ":", "l"), ["law.toml"])
+        self.assertEqual(self.completed("process", "one.nc", "--json", "no"), ["notes.txt"])
+
+    def test_zsh_can_read_its_completion(self):
+        script = self.done("completion", "zsh").stdout
+        self.assertTrue(script.startswith("#compdef pcor\n"))
+        for command in commands_of(self.done("--help").stdout):
+            self.assertIn(f"      {command}) _arguments", script)
+        if shutil.which("zsh"):
+            subprocess.run(["zsh", "-n", self.write("_pcor", script)], check=True)
+
+    def test_manual_pages(self):
+        self.done("man", "--folder", self.path)
+        pages = {f"pcor-{command}.1" for command in commands_of(self.done("--help").stdout)} | {"pcor.1"}
+        self.assertEqual(set(os.listdir(self.path)), pages)
+        self.assertEqual(self.done("man", "refit").stdout, (self.path / "pcor-refit.1").read_text())
+        refit = (self.path / "pcor-refit.1").read_text()
+        for words in ("\\fB\\-m\\fR, \\fB\\-\\-model\\fR \\fIMODEL.toml\\fR", ".SH EXAMPLES", "  pcor refit first.nc"):
+            self.assertIn(words, refit)
+        for checker in (["groff", "-man", "-ww", "-z"], ["mandoc", "-Tlint", "-Wwarning"]):
+            if shutil.which(checker[0]):
+                for page in pages:
+                    result = subprocess.run([*checker, self.path / page], capture_output=True, text=True)
+                    self.assertEqual((result.returncode, result.stdout, result.stderr), (0, "", ""), page)
+
+    def test_no_page_of_what_is_no_sub_command(self):
+        self.refused("man", "refitt", words=["refitt"])
+
+
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
