@@ -236,6 +236,13 @@ class Terminal(ComparisonTest):
             self.assertLessEqual(max(map(len, prose.splitlines())), int(stated or width))
             self.assertEqual(text.split(), plain.split())
 
+    def test_rows_of_tables_are_broken_between_columns(self):
+        plain = self.done("effects").stdout
+        text = self.shown(80, "effects")
+        self.assertLessEqual(max(map(len, text.splitlines()[:-1])), 80)
+        self.assertEqual(text.split(), plain.split())
+        self.assertRegex(text, r"(?m)^static-lag +lag +static-line +static-line\n +pneumatic lag of the static line\n")
+
     def test_a_command_to_copy_stays_whole(self):
         model = self.model()
         text = self.shown(60, "compare", ONE, "-m", model)

@@ -45,12 +45,12 @@ void add_flight_options(CLI::App& command, ComparisonOptions& options) {
           "--intervals", options.intervals,
           "flight regimes to add or to veto, and times to leave out; docs/intervals.md has the format")
       ->type_name("FILE.toml");
-  command.add_option("--min-airspeed", options.least_airspeed, "m/s; slower samples are left out")
+  command.add_option("--min-airspeed", options.least_airspeed, "samples that are slower are left out, m/s")
       ->check(is_amount())
       ->capture_default_str();
   command
       .add_option("--max-flaps", options.most_flaps,
-                  "percent; samples with more flaps are left out; not given it is 5, and none is left out "
+                  "samples with more flaps are left out, percent; not given it is 5, and none is left out "
                   "where an effect of the model reads the flaps")
       ->check(is_amount());
   command

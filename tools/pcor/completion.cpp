@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "command.hpp"
@@ -83,15 +84,18 @@ complete -F _pcor pcor
 }
 
 /// A text in the specification of an option for zsh, in which some letters have a meaning.
-std::string zsh_text(std::string text) {
-  for (const std::string letter : {"\\", ":", "[", "]"})
-    text = CLI::detail::find_and_replace(text, letter, "\\" + letter);
-  return text;
+std::string zsh_text(const std::string& text) {
+  std::string result;
+  for (const char letter : text) {
+    if (std::string_view("\\:[]").find(letter) != std::string_view::npos) result += '\\';
+    result += letter;
+  }
+  return result;
 }
 
 /// The first words of a description: what is behind a semicolon or a colon is for the help.
 std::string brief(const CLI::Option& option) {
-  const std::string text = option.get_description();
+  const std::string& text = option.get_description();
   return text.substr(0, text.find_first_of(";:"));
 }
 

@@ -250,6 +250,8 @@ void write_fit_report(const RefitResult& result, const ModelFile& model, const R
     if (result.reference && system != nullptr && system->variables == result.reference->variables)
       reference = reference->with_model(*result.reference);
   }
+  Progress bar("comparing for the report", !options.common.quiet);
+  compare_options.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
   const bool holds_out = !options.holdout.empty() || options.training_share < 1.0;
   const std::string part = holds_out ? ", fitted and held-out samples" : "";
   const Comparison comparison = compare(

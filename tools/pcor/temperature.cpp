@@ -237,12 +237,13 @@ void run(const Options& options) {
   TemperatureResult result;
   CalibrationInTurn in_turn;
   {
-    Progress bar("reading", !options.common.quiet && !options.iterate);
+    Progress bar(options.iterate ? "fitting and calibrating in turn" : "reading", !options.common.quiet);
     with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
     if (options.iterate) {
       RefitOptions refit_with;
       refit_with.mask = with.mask;
       refit_with.time_stamp = with.time_stamp;
+      refit_with.progress = with.progress;
       const References references = references_to_fit(options.comparison, model).used;
       in_turn = calibrate_in_turn(flight_paths(options.comparison), model, references, refit_with, with);
       result = in_turn.temperature;
@@ -312,7 +313,7 @@ std::function<void()> add_temperature(CLI::App& program) {
       ->check(is_amount());
   command
       ->add_option("--min-climb-rate", options->least_climb_rate,
-                   "m/s; slower climbs and descents are left out")
+                   "climbs and descents that are slower are left out, m/s")
       ->check(is_amount())
       ->capture_default_str();
   command->add_flag("--skip-returning", options->skip_returning,

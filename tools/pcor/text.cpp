@@ -28,12 +28,23 @@ std::size_t terminal_width() {
   return width <= 0 ? 0 : std::max(least_width, static_cast<std::size_t>(width));
 }
 
+/// How many columns a line has: what stands between two blanks or more.
+std::size_t columns_in(std::string_view line) {
+  std::size_t columns = 0;
+  for (std::size_t at = line.find_first_not_of(' '); at != none; at = line.find_first_not_of(' ', at)) {
+    ++columns;
+    at = line.find("  ", at);
+  }
+  return columns;
+}
+
 /// Where the lines after the first one begin.
 std::size_t hanging_indent(std::string_view line, std::size_t width) {
   const std::size_t indent = line.find_first_not_of(' ');
   const std::size_t gap = line.find("  ", indent);
   const std::size_t column = gap == none ? none : line.find_first_not_of(' ', gap);
-  return column != none && column <= width / 2 ? column : std::min(indent + 2, width / 2);
+  if (column != none && column <= width / 2) return column;
+  return indent > width / 4 ? std::min(indent, width / 2) : indent + 2;
 }
 
 /// How many bytes of `text` make `width` letters of UTF-8 at most.
@@ -46,12 +57,14 @@ std::size_t bytes_of(std::string_view text, std::size_t width) {
   return text.size();
 }
 
-/// Takes a first line of at most `width` letters off `text`; a longer word stays whole.
-std::string_view take_line(std::string_view& text, std::size_t width) {
+/// Takes a first line of at most `width` letters off `text`, of a row of a table whole columns; a longer word
+/// stays whole.
+std::string_view take_line(std::string_view& text, std::size_t width, bool is_row) {
   const std::size_t fits = bytes_of(text, width);
   if (fits == text.size()) return std::exchange(text, {});
   const std::size_t begin = text.find_first_not_of(' ');
-  std::size_t blank = text.rfind(' ', fits);
+  std::size_t blank = is_row ? text.rfind("  ", fits) : none;
+  if (blank == none || blank < begin) blank = text.rfind(' ', fits);
   if (blank == none || blank < begin) blank = text.find(' ', fits);
   const std::string_view line = text.substr(0, blank);
   const std::size_t next = blank == none ? none : text.find_first_not_of(' ', blank);
@@ -88,8 +101,9 @@ std::string folded(std::string_view line, std::size_t width) {
   const std::size_t command = line.find(": " + program() + " ");
   std::string_view rest = line.substr(0, command == none ? none : command + 1);
   const std::size_t indent = hanging_indent(line, width);
-  std::string text(take_line(rest, width));
-  while (!rest.empty()) text += fmt::format("\n{:{}}{}", "", indent, take_line(rest, width - indent));
+  const bool is_row = columns_in(line) > 2;
+  std::string text(take_line(rest, width, is_row));
+  while (!rest.empty()) text += fmt::format("\n{:{}}{}", "", indent, take_line(rest, width - indent, is_row));
   if (command != none) text += fmt::format("\n  {}", line.substr(command + 2));
   return text;
 }

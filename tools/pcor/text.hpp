@@ -36,8 +36,8 @@ void finish_text();
 void say_written(const std::vector<std::string>& files);
 
 /// A line in lines of at most `width` letters, broken at blanks; what follows is indented, under the text
-/// where the line begins with a name in a column of its own. A command to copy at its end stays whole, for a
-/// broken one cannot be pasted.
+/// where the line begins with a name in a column of its own. Rows of a table are broken between columns. A
+/// command to copy at its end stays whole, for a broken one cannot be pasted.
 std::string folded(std::string_view line, std::size_t width);
 
 }  // namespace pcor::tool
