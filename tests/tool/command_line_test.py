@@ -252,12 +252,12 @@ class Terminal(ComparisonTest):
 
 
 class Shell(ComparisonTest):
-    def completed(self, *words):
-        """What bash offers for the last of the words of a command line."""
+    def completed(self, *words, end="printf '%s\\n' \"${COMPREPLY[@]}\""):
+        """What bash offers for the last of the words of a command line; or what `end` prints of it."""
         script = self.write("pcor.bash", self.done("completion", "bash").stdout)
         subprocess.run(["bash", "-n", script], check=True)
         line = " ".join(f"'{word}'" for word in ("pcor", *words))
-        ask = f"source {script}; COMP_WORDS=({line}); COMP_CWORD={len(words)}; _pcor; printf '%s\\n' \"${{COMPREPLY[@]}}\""
+        ask = f"source {script}; COMP_WORDS=({line}); COMP_CWORD={len(words)}; _pcor; {end}"
         result = subprocess.run(["bash", "-c", ask], cwd=self.path, check=True, capture_output=True, text=True)
         self.assertEqual(result.stderr, "")
         return [word for word in result.stdout.split("\n") if word]
@@ -291,6 +291,12 @@ class Shell(ComparisonTest):
         self.assertEqual(self.completed("refit", "one.nc", "--holdout", "t"), ["two.nc"])
         self.assertEqual(self.completed("refit", "--reference", "static", ":", "l"), ["law.toml"])
         self.assertEqual(self.completed("process", "one.nc", "--json", "no"), ["notes.txt"])
+
+    def test_a_colon_is_not_quoted(self):
+        """Readline quotes what it takes for file names, as it should where they hold blanks."""
+        for words, quotes in (("check", "--reference", "st"), False), (("refit", "--exclude", "pit"), True):
+            told = self.completed(*words, end='compopt() { echo "$*"; }; _pcor')
+            self.assertEqual("filenames" in told, quotes, words)
 
     def test_zsh_can_read_its_completion(self):
         script = self.done("completion", "zsh").stdout

@@ -70,7 +70,8 @@ _pcor() {{
     case "${{COMP_WORDS[1]}} $before $word" in
 {}    esac
   fi
-  compopt -o filenames 2>/dev/null
+  # As file names, words are quoted; a colon must stay as it is.
+  if [[ $words != *:* ]]; then compopt -o filenames 2>/dev/null; fi
   if [[ -n $words ]]; then
     COMPREPLY=($(compgen -W "$words" -- "$word"))
     if [[ ${{COMPREPLY[0]}} == *: ]]; then compopt -o nospace 2>/dev/null; fi

@@ -109,8 +109,8 @@ std::string page_of_command(const CLI::App& command) {
   const std::string name = "pcor-" + command.get_name();
   const CLI::Option* const positional = positional_of(command);
   return title(name, command.get_description()) +
-         fmt::format(".SH SYNOPSIS\n{} [options] {}\n", bold("pcor " + command.get_name()),
-                     positional == nullptr ? "" : italic(value_name(*positional))) +
+         fmt::format(".SH SYNOPSIS\n{} [options]{}\n", bold("pcor " + command.get_name()),
+                     positional == nullptr ? "" : " " + italic(value_name(*positional))) +
          options_section(command) + closing_sections(command) + see_also({"pcor"});
 }
 
