@@ -22,6 +22,10 @@ endif()
 
 if(TARGET pcor_tool)
   install(TARGETS pcor_tool RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  if(NOT CMAKE_CROSSCOMPILING)
+    install(DIRECTORY ${pcor_shell_files}/bash-completion ${pcor_shell_files}/zsh DESTINATION ${CMAKE_INSTALL_DATADIR})
+    install(DIRECTORY ${pcor_shell_files}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR})
+  endif()
 endif()
 
 # Headers of what is not built would promise what cannot be linked.

@@ -228,11 +228,12 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
   }
   if (!has_witness) {
     const std::string height = trouble_with_height(flown.front().flight->air);
-    return not_run(check.name,
-                   fmt::format("a {} was flown, but there is nothing to hold the pressure against: no laser "
-                               "(lams_airspeed), no second static system (--second OTHER.toml) and no GPS "
-                               "height with a temperature{}",
-                               facts_of(check.regime).name, height.empty() ? "" : " (" + height + ")"));
+    return not_run(
+        check.name,
+        fmt::format("a {} was flown, but there is nothing to hold the pressure against: no laser "
+                    "(lams_airspeed), no second static system (--reference static:OTHER.toml) and no GPS "
+                    "height with a temperature{}",
+                    facts_of(check.regime).name, height.empty() ? "" : " (" + height + ")"));
   }
   if (manoeuvres.empty()) return not_run(check.name, result.notes.front());
   result.name = check.name;
@@ -255,7 +256,7 @@ CheckResult run_angle_check(const CheckedFlights& flights, const AngleCheck& che
     if (result.verdict == CheckVerdict::inconsistent)
       withhold("the second system is as measured, and a slope may be its own", result);
     result.notes.push_back(
-        fmt::format("{} is as measured, so a slope may be its own; --second OTHER.toml gives "
+        fmt::format("{} is as measured, so a slope may be its own; --reference static:OTHER.toml gives "
                     "its correction",
                     manoeuvres.front().flown.flight->second_name));
   }

@@ -29,7 +29,7 @@ CheckResult check_static_pressure(const CheckedFlights& flights) {
   if (first == flights.end()) {
     return not_run("static-pressure",
                    "no flight has a second static system (known are PSFD/QCF, PSFRD/QCFR, PSF/QCF and "
-                   "PS_A/QC_A); --second OTHER.toml names one with its correction");
+                   "PS_A/QC_A); --reference static:OTHER.toml names one with its correction");
   }
   const RedundantFit fit = fit_of(redundant(flights, own, other, comparable));
   if (std::isnan(fit.ordinary.slope)) {
@@ -50,7 +50,8 @@ CheckResult check_static_pressure(const CheckedFlights& flights) {
     // What its own defect is nobody said, so a difference is no fault of the model.
     withhold("the second system is as measured, so it tells nothing of the model", result);
     result.finding += fmt::format(
-        " The pressure of {} is as measured, so the difference is its own defect too: --second OTHER.toml "
+        " The pressure of {} is as measured, so the difference is its own defect too: --reference "
+        "static:OTHER.toml "
         "gives its correction.",
         first->second_name);
   }

@@ -39,7 +39,7 @@ CheckResult check_total_pressure(const CheckedFlights& flights) {
   if (first == flights.end()) {
     return not_run("total-pressure",
                    "no flight has a second pair of pressures (known are PSFD/QCF, PSFRD/QCFR, PSF/QCF and "
-                   "PS_A/QC_A); --second OTHER.toml names one");
+                   "PS_A/QC_A); --reference static:OTHER.toml names one");
   }
   const std::string& one = first->measured[0].name;
   const std::string& two = first->measured[1].name;

@@ -67,7 +67,7 @@ class CheckTest(ComparisonTest):
 
 class Results(CheckTest):
     def test_json(self):
-        result = self.json_of("check", ONE, "-m", self.model(), "--second", OTHER_SYSTEM)
+        result = self.json_of("check", ONE, "-m", self.model(), "--reference", f"static:{OTHER_SYSTEM}")
         self.assertEqual([each["name"] for each in result["checks"]], NAMES)
         for each in result["checks"]:
             self.assertLessEqual({"name", "ran", "reason", "verdict", "key", "judged", "decided", "numbers", "finding",
@@ -112,7 +112,7 @@ class Results(CheckTest):
         check = self.check("-m", self.model())["static-pressure"]
         self.assertEqual(check["verdict"], "cannot tell")
         self.assertIn("as measured", check["finding"])
-        check = self.check("-m", self.model(), "--second", OTHER_SYSTEM)["static-pressure"]
+        check = self.check("-m", self.model(), "--reference", f"static:{OTHER_SYSTEM}")["static-pressure"]
         self.assertEqual(check["verdict"], "consistent")
 
     def test_without_a_model(self):
@@ -122,7 +122,7 @@ class Results(CheckTest):
         self.assertEqual([each["name"] for each in result["checks"]], NAMES)
 
     def test_text(self):
-        text = self.done("check", ONE, "-m", self.model(), "--second", OTHER_SYSTEM).stdout
+        text = self.done("check", ONE, "-m", self.model(), "--reference", f"static:{OTHER_SYSTEM}").stdout
         for name in NAMES:
             self.assertRegex(text, rf"(?m)^{name} ")
         self.assertNotIn("nan", text)
@@ -141,7 +141,7 @@ class Results(CheckTest):
 
     def test_report(self):
         report = self.path / "check.html"
-        self.done("check", ONE, TWO, "-m", self.model(), "--second", OTHER_SYSTEM, "--report", report)
+        self.done("check", ONE, TWO, "-m", self.model(), "--reference", f"static:{OTHER_SYSTEM}", "--report", report)
         html = report.read_text()
         self.assertEqual(addresses_in(html), set())
         for word in ("Verdicts", "Reverse heading", "What it cannot see"):
@@ -172,7 +172,7 @@ class BadInput(CheckTest):
     def test_no_second_system(self):
         checks = self.check(flights=(self.without("PSFRD", "QCFR", "PS_A", "QC_A"),))
         for name in ("total-pressure", "static-pressure"):
-            self.assert_not_run(checks[name], "second", "PSFRD/QCFR", "--second")
+            self.assert_not_run(checks[name], "second", "PSFRD/QCFR", "--reference static:")
 
     def test_no_manoeuvres(self):
         for name, regime in (("pitch", "pitch manoeuvre"), ("yaw", "yaw manoeuvre"), ("speed-run", "speed run")):
@@ -208,8 +208,8 @@ class BadInput(CheckTest):
         other = self.write("other.toml", model.read_text().replace('"PSFD"', '"PSFX"'))
         for arguments, words in (((ONE, ONE), ["one.nc", "twice"]), ((ONE, GV), ["aircraft"]),
                                  ((self.path / "none.nc",), ["none.nc"]), ((ONE, "-m", other), ["PSFX", "PSFD"]),
-                                 ((ONE, "--second", self.path / "none.toml"), ["none.toml"]),
-                                 ((ONE, "-m", model, "--second", model), ["second", "PSFD/QCF"]),
+                                 ((ONE, "--reference", f"static:{self.path / 'none.toml'}"), ["none.toml"]),
+                                 ((ONE, "-m", model, "--reference", f"static:{model}"), ["second", "PSFD/QCF"]),
                                  ((ONE, "-m", model, "--json", model), ["input"])):
             with self.subTest(words):
                 self.refused("check", *arguments, words=words, output=self.path / "nothing")

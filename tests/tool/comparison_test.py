@@ -130,7 +130,7 @@ class ComparisonTest(ToolTest):
 
     def run_as_printed(self, text):
         """The command at the end of a text, run by a shell as a user would who copies it."""
-        command = re.search(r": (pcor \S.*)$", text.rstrip().splitlines()[-1]).group(1)
+        command = re.search(r": (\S*pcor \S.*)$", text.rstrip().splitlines()[-1]).group(1)
         environment = os.environ | {"PATH": f"{TOOL.parent}:{os.environ['PATH']}"}
         result = subprocess.run(command, shell=True, cwd=self.path, env=environment, capture_output=True, text=True)
         self.assertEqual(result.returncode, 0, command + "\n" + result.stderr)
@@ -914,7 +914,7 @@ class Simulate(ComparisonTest):
 
     def test_text_ends_with_what_to_do(self):
         text = self.simulate().stdout
-        self.assertRegex(text, r": pcor compare \S+ -m MODEL\.toml\n$")
+        self.assertRegex(text, r": \S*pcor compare \S+ -m MODEL\.toml\n$")
 
     def test_a_seed_gives_one_flight_and_another_gives_another(self):
         self.simulate()

@@ -47,6 +47,17 @@ class Readme(unittest.TestCase):
                 self.assertEqual(result.returncode, 0, f"{command}: {result.stderr}")
             (snippet,) = blocks("toml")
             self.assertIn(re.sub(r" +#.*", "", snippet), (Path(folder) / "my-model.toml").read_text())
+            self.examples_of_the_help_work(folder)
+
+    def examples_of_the_help_work(self, folder):
+        """On the flights that the commands of the README made."""
+        def text(*words):
+            return subprocess.run([TOOL, *words], cwd=folder, check=True, capture_output=True, text=True).stdout
+
+        for command in re.findall(r"^  (\w+) ", text("--help").split("Subcommands:")[1], flags=re.MULTILINE):
+            for example in text(command, "--help").split("\nExamples:\n")[1].strip().splitlines():
+                result = subprocess.run(example, shell=True, cwd=folder, capture_output=True, text=True)
+                self.assertEqual(result.returncode, 0, f"{example}: {result.stderr}")
 
     def test_model_snippet_is_a_model(self):
         (snippet,) = blocks("toml")

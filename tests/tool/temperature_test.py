@@ -268,7 +268,7 @@ class Fit(TemperatureTest):
         one = self.temperature(*arguments, flights=(flight,))["flights"][0]
         self.assertGreater(one["rms_after_m"], one["rms_before_m"])
         self.assertNotIn("To apply it", self.text_of(*arguments, flights=(flight,)))
-        self.refuse(*arguments, "--quiet", flights=(flight,), words=["nothing was written", "--force"])
+        self.refuse(*arguments, "--quiet", flights=(flight,), words=["no model was written", "--force"])
 
     def test_a_lag_is_not_taken_for_noise_in_silence(self):
         lag = '\n[[effect]]\nid = "static-lag"\ntau = 3.0\n\n[[leg]]'
@@ -361,7 +361,7 @@ class Refusal(TemperatureTest):
         for seed in ("101", "102"):
             flights.append(self.path / f"torque{seed}.nc")
             self.done("simulate", SOURCE / "data/scenarios/c130-hidden.toml", "-o", flights[-1], "--seed", seed, "--quiet")
-        self.refuse("--quiet", flights=flights, words=["nothing was written", "--force"])
+        self.refuse("--quiet", flights=flights, words=["no model was written", "--force"])
         result = self.temperature(flights=flights)
         for at in result["corrections"]:
             self.assertLess(abs(at["correction_k"]), 2.0 * at["stderr_k"])
@@ -383,13 +383,13 @@ class Refusal(TemperatureTest):
         self.assertEqual(result.returncode, 1)
         self.assertEqual(result.stderr.count("\n"), 1)
         self.assertIn("likelihood", result.stdout)
-        self.assertNotIn("wrote", result.stdout)
+        self.assertNotRegex(result.stdout, r"wrote .*toml")
         self.assertTrue(report.exists())
         self.assertFalse((self.path / "out.toml").exists())
 
     def test_thermometers_that_differ(self):
         """One reads 0.55 K and 1 % too high, the other is right: the correction of one harms the other."""
-        self.refuse("--quiet", flights=(ONE, self.good), words=["nothing was written"])
+        self.refuse("--quiet", flights=(ONE, self.good), words=["no model was written"])
         result = self.temperature(flights=(ONE, self.good))
         parts = {part["part"]: part["correction_k"] for part in result["parts"]["flights"]}
         self.assertAlmostEqual(parts["good.nc"] - parts["one.nc"], 0.5, delta=0.1)  # 0.55 K less 1 % of some -5 C

@@ -8,11 +8,9 @@
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/flight/flight.hpp>
 #include <pcor/improve/improve.hpp>
-#include <pcor/model/formula.hpp>
 #include <pcor/roles/with_effects.hpp>
 #include <pcor/units/units.hpp>
 #include <pcor/words/error.hpp>
-#include <pcor/words/suggest.hpp>
 #include "command.hpp"
 #include "diagnosis.hpp"
 #include "shaped_effect.hpp"
@@ -47,16 +45,7 @@ ModelEffect own_effect(const Options& options, const std::vector<std::string>& v
   }
   effect.unit = wanted;
   effect.source = options.source;
-  if (variables.empty()) return effect;
-  const auto formula = Formula::parse(effect.formula, effect.parameter_names);
-  for (const std::string& name : formula->variables()) {
-    if (quantity_named(name) != Quantity::count) continue;
-    if (std::find(variables.begin(), variables.end(), name) != variables.end()) continue;
-    const std::string meant = did_you_mean(name, variables);
-    throw Error(
-        fmt::format("{}: {}, which --formula names, is neither a variable of this file nor a quantity; {}",
-                    options.flight, name, meant.empty() ? "correct the formula" : meant));
-  }
+  if (!variables.empty()) require_known_variables(effect, "--formula", variables, options.flight);
   return effect;
 }
 
@@ -77,7 +66,7 @@ std::vector<Quantity> new_roles(const ModelFile& model, const ModelFile& extende
 }
 
 void print(const ModelFile& model, const ModelFile& extended, const Options& options) {
-  fmt::print("{:<20} {:<15} {:<48} {}\n", "added", "where", "formula", "starts at");
+  say("{:<20} {:<15} {:<48} {}\n", "added", "where", "formula", "starts at");
   for (std::size_t i = model.model.effects.size(); i < extended.model.effects.size(); ++i) {
     const ModelEffect& effect = extended.model.effects[i];
     const EffectFacts* facts = effect.is_formula() ? nullptr : &effect_facts[effect_named(effect.id)];
@@ -87,13 +76,15 @@ void print(const ModelFile& model, const ModelFile& extended, const Options& opt
       start.push_back(fmt::format("{} = {}{}", names[k], effect.parameters[k],
                                   extended.fit(i, k).fixed ? " (fixed)" : ""));
     }
-    fmt::print("{:<20} {:<15} {:<48} {}\n", effect.id, facts_of(facts ? facts->where : effect.where).name,
-               facts ? std::string(facts->formula) : effect.formula, fmt::join(start, ", "));
+    say("{:<20} {:<15} {:<48} {}\n", effect.id, facts_of(facts ? facts->where : effect.where).name,
+        facts ? std::string(facts->formula) : effect.formula, fmt::join(start, ", "));
   }
   for (const Quantity role : new_roles(model, extended))
-    fmt::print("named for it: {} = \"{}\"\n", facts_of(role).name, extended.variables.at(role));
-  fmt::print("\nwrote {}\nTo fit it: pcor refit {} -m {} -o fitted.toml\n", options.output,
-             options.flight.empty() ? "IN.nc" : quoted(options.flight), quoted(options.output));
+    say("named for it: {} = \"{}\"\n", facts_of(role).name, extended.variables.at(role));
+  say("\n");
+  say_written({options.output, options.common.json});
+  say("To fit it: {} refit {} -m {} -o fitted.toml\n", program(),
+      options.flight.empty() ? "IN.nc" : quoted(options.flight), quoted(options.output));
 }
 
 nlohmann::ordered_json as_json(const ModelFile& model, const ModelFile& extended, const Options& options) {
@@ -116,9 +107,9 @@ void run(const Options& options) {
   std::vector<std::string> variables;
   if (!options.flight.empty()) variables = Flight(options.flight).variables();
   const ModelFile extended = with_effects(model, wanted_effects(options, variables), variables);
-  save_model(extended, options.output, inputs);
+  deliver(extended, options.output, inputs);
   json.write(as_json(model, extended, options));
-  if (wants_text(options.common)) print(model, extended, options);
+  if (wants_text(options.common, {options.output})) print(model, extended, options);
 }
 
 CLI::Validator is_place() {
@@ -142,7 +133,9 @@ std::function<void()> add_add(CLI::App& program) {
   command->add_option("-m,--model", options->model, "the model to extend")
       ->required()
       ->type_name("MODEL.toml");
-  command->add_option("-o,--output", options->output, "the extended model, whole or not at all")
+  command
+      ->add_option("-o,--output", options->output,
+                   "the extended model, whole or not at all; - for standard output")
       ->required()
       ->type_name("NEW.toml");
   CLI::Option* formula =
@@ -165,6 +158,9 @@ std::function<void()> add_add(CLI::App& program) {
                    "choose the variables that the effects need among those of this flight")
       ->type_name("IN.nc");
   add_common_options(*command, options->common, false);
+  add_examples(*command,
+               {"add static-lag -m fitted.toml --flight first.nc -o extended.toml",
+                "add my-thrust --formula 'k * (ENGTRQ - 50) / 100' -m fitted.toml -o my-model.toml"});
   return [options] { run(*options); };
 }
 

@@ -21,8 +21,28 @@ struct Options {
   CommonOptions common;
   ComparisonOptions flights;
   std::string model;
-  std::string second;
+  std::string reference;
 };
+
+/// What the reference of a check begins with; the model of the second system follows.
+const std::string second_system = "static:";
+
+/// A check of an option: the form that names a second static system.
+CLI::Validator is_second_system() {
+  const auto check = [](const std::string& reference) -> std::string {
+    if (reference.rfind(second_system, 0) == 0) return "";
+    return fmt::format(
+        "'{}' is nothing that check takes, for it needs no reference but a second static system: "
+        "static:OTHER.toml",
+        reference);
+  };
+  return {check, ""};
+}
+
+/// The file of the second system's model; empty where none is named.
+std::string second_model(const Options& options) {
+  return options.reference.empty() ? "" : options.reference.substr(second_system.size());
+}
 
 nlohmann::ordered_json as_json(const ReportTable& table) {
   return {{"title", table.title}, {"headers", table.headers}, {"rows", table.rows}};
@@ -80,15 +100,15 @@ void print(const ReportTable& table) {
     widths.push_back(width);
   }
   const auto print_row = [&widths](const std::vector<std::string>& cells) {
-    fmt::print("    {:<{}}", cells[0], widths[0]);
+    say("    {:<{}}", cells[0], widths[0]);
     for (std::size_t column = 1; column < cells.size(); ++column)
-      fmt::print("  {:>{}}", cells[column], widths[column]);
-    fmt::print("\n");
+      say("  {:>{}}", cells[column], widths[column]);
+    say("\n");
   };
   print_row(table.headers);
   for (std::size_t row = 0; row < rows; ++row) print_row(table.rows[row]);
   if (rows < table.rows.size())
-    fmt::print("    and {} more, which --json and --report have\n", table.rows.size() - rows);
+    say("    and {} more, which --json and --report have\n", table.rows.size() - rows);
 }
 
 /// As the options stand on a command line, for the commands that are advised.
@@ -111,9 +131,9 @@ std::string next_step(const Checks& checks, const Options& options, bool has_las
       return result.name == name && result.ran && result.verdict == CheckVerdict::inconsistent;
     });
   };
-  const std::string second = options.second.empty() ? "" : " --second " + quoted(options.second);
-  std::string pictures =
-      fmt::format("To see the pictures: pcor check {}{} --report check.html", command_line(options), second);
+  const std::string second = options.reference.empty() ? "" : " --reference " + quoted(options.reference);
+  std::string pictures = fmt::format("To see the pictures: {} check {}{} --report check.html", program(),
+                                     command_line(options), second);
   if (fails("total-pressure")) {
     return "A transducer, a pitot or a line of one system is wrong: static defects cancel in the total "
            "pressure, so no law for them mends it.\n" +
@@ -123,52 +143,52 @@ std::string next_step(const Checks& checks, const Options& options, bool has_las
   const std::size_t open = count_of(checks, CheckVerdict::cannot_tell);
   const bool has_model = !options.model.empty();
   if (has_model && (fails("layers") || fails("lams-temperature"))) {
-    return fmt::format(
-        "To find the thermometer's error by the height: pcor temperature {} -o calibrated.toml",
-        command_line(options));
+    return fmt::format("To find the thermometer's error by the height: {} temperature {} -o calibrated.toml",
+                       program(), command_line(options));
   }
   if (inconsistent > 0 && has_laser)
-    return fmt::format("To refit the law and learn which effect it lacks: pcor improve {} -o improved.toml",
-                       command_line(options));
-  if (inconsistent > 0 && has_model && !options.second.empty()) {
+    return fmt::format("To refit the law and learn which effect it lacks: {} improve {} -o improved.toml",
+                       program(), command_line(options));
+  if (inconsistent > 0 && has_model && !options.reference.empty()) {
     return fmt::format(
-        "To refit the law and learn which effect it lacks: pcor improve {} --reference {} -o improved.toml",
-        command_line(options), quoted("static:" + options.second));
+        "To refit the law and learn which effect it lacks: {} improve {} --reference {} -o improved.toml",
+        program(), command_line(options), quoted(options.reference));
   }
   if (inconsistent == 0 && has_model && count_of(checks, CheckVerdict::consistent) > 0) {
     return fmt::format(
-        "Nothing here speaks against the model{}. To apply it: pcor process {} -m {} -o corrected.nc",
-        open > 0 ? fmt::format("; {} check{} cannot tell", open, open == 1 ? "" : "s") : "",
+        "Nothing here speaks against the model{}. To apply it: {} process {} -m {} -o corrected.nc",
+        open > 0 ? fmt::format("; {} check{} cannot tell", open, open == 1 ? "" : "s") : "", program(),
         quoted(options.flights.flights.front()), quoted(options.model));
   }
   return pictures;
 }
 
 void print(const Checks& checks, const Options& options, bool has_laser) {
-  if (!checks.model.empty()) fmt::print("{}\n", checks.model);
-  fmt::print("\n{:<18} {:<14} {}\n", "check", "verdict", "number");
+  if (!checks.model.empty()) say("{}\n", checks.model);
+  say("\n{:<18} {:<14} {}\n", "check", "verdict", "number");
   for (const CheckResult& result : checks.results) {
-    fmt::print("{:<18} {:<14} {}\n", result.name, result.ran ? name_of(result.verdict) : "not run",
-               result.ran ? key_number(result) : "");
+    say("{:<18} {:<14} {}\n", result.name, result.ran ? name_of(result.verdict) : "not run",
+        result.ran ? key_number(result) : "");
   }
-  fmt::print(
-      "inconsistent: beyond what matters and beyond three standard errors; consistent: within what matters, "
+  say("inconsistent: beyond what matters and beyond three standard errors; consistent: within what matters, "
       "by "
       "two standard errors\n");
   for (const CheckResult& result : checks.results) {
-    fmt::print("\n{}: {}\n", result.name, result.ran ? result.finding : "not run: " + result.reason + ".");
+    say("\n{}: {}\n", result.name, result.ran ? result.finding : "not run: " + result.reason + ".");
     if (result.ran) {
-      fmt::print("  {}: {}.\n", name_of(result.verdict), result.decided);
-      fmt::print("  cannot see: {}\n", result.cannot_see);
+      say("  {}: {}.\n", name_of(result.verdict), result.decided);
+      say("  cannot see: {}\n", result.cannot_see);
     }
     if (!result.tables.empty()) print(result.tables.front());
     for (const std::string& note : result.notes) {
       // The reason of a check that did not run says its first note already.
-      if (result.ran || result.reason.find(note) == std::string::npos) fmt::print("  note: {}.\n", note);
+      if (result.ran || result.reason.find(note) == std::string::npos) say("  note: {}.\n", note);
     }
   }
-  for (const std::string& note : checks.notes) fmt::print("\nNote: {}.\n", note);
-  fmt::print("\n{}\n", next_step(checks, options, has_laser));
+  for (const std::string& note : checks.notes) say("\nNote: {}.\n", note);
+  say("\n");
+  say_written({options.common.report, options.common.json});
+  say("{}\n", next_step(checks, options, has_laser));
 }
 
 std::vector<std::string> models_of(const Options& options) {
@@ -181,7 +201,7 @@ std::vector<std::string> models_of(const Options& options) {
 
 void run(const Options& options) {
   std::vector<std::filesystem::path> inputs = input_files(options.flights);
-  inputs.insert(inputs.end(), {options.model, options.second});
+  inputs.insert(inputs.end(), {options.model, second_model(options)});
   refuse_overwriting({options.common.json, options.common.report}, inputs);
   require_writable(options.common.report);
   JsonResult json(options.common);
@@ -191,7 +211,7 @@ void run(const Options& options) {
   CheckOptions check_options;
   check_options.mask = mask_options(options.flights);
   check_options.time_stamp = time_stamp(options.flights);
-  if (!options.second.empty()) check_options.second = read_model(options.second);
+  if (!options.reference.empty()) check_options.second = read_model(second_model(options));
   Checks checks;
   {
     Progress bar("checking", !options.common.quiet);
@@ -219,10 +239,18 @@ std::function<void()> add_check(CLI::App& program) {
                    "the model to check; without it, the corrected variables that the flight has already")
       ->type_name("MODEL.toml");
   command
-      ->add_option("--second", options->second,
-                   "the model of a second static system; without it, the second pair as measured")
-      ->type_name("OTHER.toml");
+      ->add_option("--reference", options->reference,
+                   "static:OTHER.toml, the model of a second static system; without it, the second pair as "
+                   "measured")
+      ->check(is_second_system())
+      ->type_name("static:OTHER.toml");
+  CLI::Option* const old = command->add_option_function<std::string>(
+      "--second", [options](const std::string& model) { options->reference = second_system + model; });
+  keep_old_name(*old, "--reference static:OTHER.toml");
   add_common_options(*command, options->common);
+  add_examples(*command,
+               {"check first.nc second.nc third.nc -m best.toml --report check.html",
+                "check first.nc -m model.toml --reference static:data/models/c130-psfrd-eq18.toml"});
   return [options] { run(*options); };
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 
@@ -26,18 +27,63 @@ bool same_place(const fs::path& a, const fs::path& b) {
 
 }  // namespace
 
+CLI::Option* add_list_option(CLI::App& command, const std::string& name, std::vector<std::string>& values,
+                             const std::string& description) {
+  return command.add_option(name, values, description + "; several times for several")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->take_all();
+}
+
+void keep_old_name(CLI::Option& option, const std::string& name_now) {
+  option.group("");  // hidden
+  option.each([old = "--" + option.get_lnames().front(), name_now](const std::string&) {
+    fmt::print(stderr, "pcor: {} is called {} now, and works for the time being\n", old, name_now);
+  });
+}
+
+void add_examples(CLI::App& command, const std::vector<std::string>& examples) {
+  const std::string words = command.get_footer();
+  command.footer([words, examples] {
+    std::string text = words + "\n\n" + examples_heading;
+    for (const std::string& example : examples) text += fmt::format("  {} {}\n", program(), example);
+    return text;
+  });
+  command.footer("");
+}
+
 void add_common_options(CLI::App& command, CommonOptions& options, bool has_report) {
   command.add_option("--json", options.json, "write the result as JSON to FILE, - for standard output")
       ->type_name("FILE");
   if (has_report) {
     command
         .add_option("--report", options.report, "write a self-contained report with pictures to FILE.html")
+        ->check(is_file_name())
         ->type_name("FILE.html");
   }
   command.add_flag("--quiet", options.quiet, "print no text");
+  command.set_version_flag("--version", "pcor " PCOR_VERSION, "print the version of the program");
 }
 
-bool wants_text(const CommonOptions& options) { return !options.quiet && options.json != standard_output; }
+bool wants_text(const CommonOptions& options, const std::vector<std::string>& models) {
+  return !options.quiet && options.json != standard_output &&
+         std::find(models.begin(), models.end(), standard_output) == models.end();
+}
+
+CLI::Validator is_file_name() {
+  const auto check = [](const std::string& name) -> std::string {
+    return name == standard_output ? "standard output, '-', takes models and JSON alone: name a file" : "";
+  };
+  return {check, ""};
+}
+
+void deliver(const ModelFile& model, const std::string& output, const std::vector<fs::path>& inputs) {
+  if (output != standard_output) {
+    save_model(model, output, inputs);
+    return;
+  }
+  fmt::print("{}", write_model(model));
+}
 
 JsonResult::JsonResult(const CommonOptions& options) : place_(options.json) {
   if (is_file(place_)) file_.emplace(place_);
@@ -59,24 +105,6 @@ void JsonResult::write(const nlohmann::ordered_json& result) {
   file_->commit();
 }
 
-std::string quoted(const std::string& word) {
-  const bool plain =
-      !word.empty() &&
-      word.find_first_not_of(
-          ""
-          "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+./:,=@%") == std::string::npos;
-  if (plain) return word;
-  std::string text = "'";
-  for (const char letter : word) {
-    if (letter == '\'') {
-      text += "'\\''";
-    } else {
-      text += letter;
-    }
-  }
-  return text + "'";
-}
-
 void require_writable(const fs::path& output) {
   if (is_file(output)) const ReplacementFile probe(output);
 }
@@ -89,6 +117,8 @@ void refuse_overwriting(const std::vector<fs::path>& outputs, const std::vector<
       }
     }
     for (std::size_t j = 0; j < i; ++j) {
+      if (outputs[i] == standard_output && outputs[j] == standard_output)
+        throw Error("standard output, '-', is asked for twice; name a file for one of the results");
       if (same_place(outputs[i], outputs[j])) {
         throw Error(fmt::format("{} is asked for twice as an output; choose two names", outputs[i].string()));
       }

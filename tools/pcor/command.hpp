@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include <pcor/laws/model_file.hpp>
 #include <pcor/words/replacement_file.hpp>
+#include "text.hpp"
 
 namespace pcor::tool {
 
@@ -22,11 +24,37 @@ struct CommonOptions {
   bool quiet = false;    ///< no text for people
 };
 
+/// Adds an option that takes one value and may be given several times. It never takes a second word, so that
+/// flights may stand behind it.
+CLI::Option* add_list_option(CLI::App& command, const std::string& name, std::vector<std::string>& values,
+                             const std::string& description);
+
+/// Keeps an option under the name that it had: it works, is not shown in the help, and says on standard error
+/// what it is called now.
+void keep_old_name(CLI::Option& option, const std::string& name_now);
+
+/// Ends the help of a sub-command with examples: command lines without the program, which work one after
+/// another on the flights of the README.
+void add_examples(CLI::App& command, const std::vector<std::string>& examples);
+
+/// The line of a help from which on it has examples.
+inline constexpr const char* examples_heading = "Examples:\n";
+
 /// Adds the common options to a sub-command; the report only where the sub-command has one.
 void add_common_options(CLI::App& command, CommonOptions& options, bool has_report = true);
 
-/// True where text for people is wanted on standard output.
-bool wants_text(const CommonOptions& options);
+/// True where text for people is wanted on standard output: it is not where a result goes there.
+/// @param models where models are written
+bool wants_text(const CommonOptions& options, const std::vector<std::string>& models = {});
+
+/// Makes `-` a usage error of an option that names a file to write: no file is called so, and standard output
+/// takes JSON and models alone.
+CLI::Validator is_file_name();
+
+/// Writes a model file, whole or not at all, or to standard output where `output` is `-`.
+/// @param inputs files that are never written over @throws Error as `save_model`
+void deliver(const ModelFile& model, const std::string& output,
+             const std::vector<std::filesystem::path>& inputs);
 
 /// The result as JSON. Made before the work, so that a place that cannot be written stops it in time; the
 /// file appears whole or not at all.
@@ -44,11 +72,8 @@ class JsonResult {
   std::optional<ReplacementFile> file_{};
 };
 
-/// A word of a command line as a shell takes it.
-std::string quoted(const std::string& word);
-
-/// Refuses outputs that are inputs, under whatever name, and two outputs in one place. Empty names and `-`
-/// are no files.
+/// Refuses outputs that are inputs, under whatever name, and two outputs in one place, be it standard output,
+/// `-`. Empty names are no files.
 /// @throws Error
 void refuse_overwriting(const std::vector<std::filesystem::path>& outputs,
                         const std::vector<std::filesystem::path>& inputs);

@@ -98,16 +98,16 @@ void print_row(const std::string& name, const Statistics& s) {
   const auto known = [](double value, int digits) {
     return std::isnan(value) ? std::string("unknown") : fmt::format("{:.{}f}", value, digits);
   };
-  fmt::print("{:<32} {:>8} {:>9.3f} {:>9.3f} {:>9.3f} {:>9} {:>7}\n", name, s.samples, s.bias, s.scatter(),
-             s.rms, known(s.noise_rms, 3), known(s.rms_over_noise(), 1));
+  say("{:<32} {:>8} {:>9.3f} {:>9.3f} {:>9.3f} {:>9} {:>7}\n", name, s.samples, s.bias, s.scatter(), s.rms,
+      known(s.noise_rms, 3), known(s.rms_over_noise(), 1));
 }
 
 /// Of the regimes and bands, those that matter: where the model fails most.
 void print_model(const ModelComparison& model, bool with_name) {
-  if (with_name) fmt::print("\n{}\n", model.name);
+  if (with_name) say("\n{}\n", model.name);
   print_flaps_out(model.flaps_out, "the comparison");
-  fmt::print("\n{:<32} {:>8} {:>9} {:>9} {:>9} {:>9} {:>7}\n", "residual, hPa", "samples", "bias", "scatter",
-             "rms", "noise", "ratio");
+  say("\n{:<32} {:>8} {:>9} {:>9} {:>9} {:>9} {:>7}\n", "residual, hPa", "samples", "bias", "scatter", "rms",
+      "noise", "ratio");
   print_row("all", model.all);
   for (const PartStatistics& part : model.regimes) print_row("  " + part.name, part.statistics);
   std::vector<PartStatistics> bands = model.bands;
@@ -115,27 +115,27 @@ void print_model(const ModelComparison& model, bool with_name) {
     return fails_more(a.statistics, b.statistics);
   });
   if (bands.size() > 5) bands.resize(5);
-  if (!bands.empty()) fmt::print("worst bands\n");
+  if (!bands.empty()) say("worst bands\n");
   for (const PartStatistics& part : bands) print_row("  " + part.name, part.statistics);
   if (model.flights.size() > 1) {
-    fmt::print("flights\n");
+    say("flights\n");
     for (const PartStatistics& part : model.flights) print_row("  " + part.name, part.statistics);
   }
-  if (!model.worst.empty()) fmt::print("worst minutes\n");
+  if (!model.worst.empty()) say("worst minutes\n");
   for (const WorstInterval& worst : model.worst) {
-    fmt::print("  {} to {}  bias {:+.3f}, rms {:.3f} hPa  {}\n", utc_text(worst.begin),
-               utc_text(worst.end, "%H:%M:%S"), worst.statistics.bias, worst.statistics.rms, worst.regimes);
+    say("  {} to {}  bias {:+.3f}, rms {:.3f} hPa  {}\n", utc_text(worst.begin),
+        utc_text(worst.end, "%H:%M:%S"), worst.statistics.bias, worst.statistics.rms, worst.regimes);
   }
-  fmt::print("R2 {:.4f}; the residuals are correlated in time: {:.1f} samples count as one independent one\n",
-             model.r_squared, model.samples_per_independent);
+  say("R2 {:.4f}; the residuals are correlated in time: {:.1f} samples count as one independent one\n",
+      model.r_squared, model.samples_per_independent);
 }
 
 /// Of a further reference: all samples and each regime.
 void print_further(const Comparison& comparison, bool with_names) {
-  fmt::print("\nresidual = {}, reference less model\n", comparison.reference);
-  fmt::print("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));
-  fmt::print("{:<32} {:>8} {:>9} {:>9} {:>9} {:>9} {:>7}\n", "residual, hPa", "samples", "bias", "scatter",
-             "rms", "noise", "ratio");
+  say("\nresidual = {}, reference less model\n", comparison.reference);
+  say("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));
+  say("{:<32} {:>8} {:>9} {:>9} {:>9} {:>9} {:>7}\n", "residual, hPa", "samples", "bias", "scatter", "rms",
+      "noise", "ratio");
   for (const ModelComparison& model : comparison.models) {
     print_row(with_names ? model.name : "all", model.all);
     for (const PartStatistics& part : model.regimes) print_row("  " + part.name, part.statistics);
@@ -154,43 +154,43 @@ std::filesystem::path residual_file(const Options& options, std::size_t number) 
 void print(const Comparison& comparison, const ChosenReferences& references, const Options& options) {
   print_references(references);
   if (comparison.is_static_pressure) {
-    fmt::print("residual = static pressure of the reference ({}) less that of the model\n",
-               comparison.reference);
+    say("residual = static pressure of the reference ({}) less that of the model\n", comparison.reference);
   } else {
-    fmt::print("residual = {}, reference less model\n", comparison.reference);
+    say("residual = {}, reference less model\n", comparison.reference);
   }
-  fmt::print("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));
-  if (comparison.models.size() > 1)
-    fmt::print("noise is that of the model that leaves least of it, one for all\n");
+  say("used {} samples; not used: {}\n", comparison.masks[0], mask_text(comparison.masks));
+  if (comparison.models.size() > 1) say("noise is that of the model that leaves least of it, one for all\n");
   for (const ModelComparison& model : comparison.models) print_model(model, comparison.models.size() > 1);
   if (comparison.total_pressure) {
     const LineFit& total = *comparison.total_pressure;
-    fmt::print(
-        "\ntotal pressure of the reference against that of the model: slope {:.5f}, offset {:+.3f} hPa, rms "
+    say("\ntotal pressure of the reference against that of the model: slope {:.5f}, offset {:+.3f} hPa, rms "
         "{:.3f} hPa\n",
         total.slope, total.offset, total.rms);
   }
   for (const Comparison& further : comparison.further) print_further(further, options.models.size() > 1);
-  for (const std::string& note : comparison.notes) fmt::print("\nNote: {}.\n", note);
+  for (const std::string& note : comparison.notes) say("\nNote: {}.\n", note);
+  say("\n");
+  std::vector<std::string> written;
+  for (std::size_t i = 0; !options.residuals.empty() && i < options.comparison.flights.size(); ++i)
+    written.push_back(residual_file(options, i).string());
+  written.insert(written.end(), {options.common.report, options.common.json});
+  say_written(written);
   const auto best = std::min_element(
       comparison.models.begin(), comparison.models.end(),
       [](const ModelComparison& a, const ModelComparison& b) { return a.all.rms < b.all.rms; });
   const std::string& model = options.models[static_cast<std::size_t>(best - comparison.models.begin())];
-  fmt::print("\n");
-  if (comparison.models.size() > 1) fmt::print("The least rms has {}. ", best->name);
+  if (comparison.models.size() > 1) say("The least rms has {}. ", best->name);
   const std::string flights = command_line(options.comparison);
   if (best->all.rms_over_noise() < 1.15) {
-    fmt::print(
-        "The residual of {} is little more than noise. To apply it: pcor process {} -m {} -o corrected.nc\n",
-        best->name, quoted(options.comparison.flights.front()), quoted(model));
+    say("The residual of {} is little more than noise. To apply it: {} process {} -m {} -o corrected.nc\n",
+        best->name, program(), quoted(options.comparison.flights.front()), quoted(model));
     return;
   }
-  fmt::print("To refit its coefficients: pcor refit {} -m {} -o fitted.toml\n", flights, quoted(model));
+  say("To refit its coefficients: {} refit {} -m {} -o fitted.toml\n", program(), flights, quoted(model));
   if (comparison.total_pressure && comparison.is_static_pressure) {
-    fmt::print(
-        "To refit both systems together: pcor refit {} -m {} -o fitted.toml --refit-reference "
+    say("To refit both systems together: {} refit {} -m {} -o fitted.toml --refit-reference "
         "fitted-reference.toml\n",
-        flights, quoted(model));
+        program(), flights, quoted(model));
   }
 }
 
@@ -271,17 +271,20 @@ std::function<void()> add_compare(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("compare", "Compare a model with a measurement of delta-p, by flight regime");
   add_comparison_options(*command, options->comparison);
-  command
-      ->add_option("-m,--model", options->models,
-                   "a model of the pressure system; several are shown side by side")
+  add_list_option(*command, "-m,--model", options->models,
+                  "a model of the pressure system, shown side by side")
       ->required()
-      ->type_name("MODEL.toml")
-      ->expected(1)
-      ->take_all();
+      ->type_name("MODEL.toml");
   command
-      ->add_option("--residuals", options->residuals, "write the residuals of every sample to a netCDF file")
+      ->add_option("--residuals", options->residuals,
+                   "write the residuals of every sample to a netCDF file; of several flights each to one of "
+                   "its own, OUT-FLIGHT.nc")
+      ->check(is_file_name())
       ->type_name("OUT.nc");
   add_common_options(*command, options->common);
+  add_examples(*command, {"compare first.nc second.nc -m model.toml --report compare.html",
+                          "compare first.nc -m model.toml -m fitted.toml --reference lams",
+                          "compare first.nc -m model.toml --exclude turn --residuals residuals.nc"});
   return [options] { run(*options); };
 }
 

@@ -27,31 +27,30 @@ CLI::Validator is_amount() {
 
 void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
   add_flight_options(command, options);
-  command
-      .add_option(
-          "--reference", options.references,
-          "a measurement that the model is held against, several times for several: " + reference_forms() +
-              "; not given, compare takes lams and what the flights allow of total, height and wind, and "
-              "refit, diagnose and improve take lams and, where the flights allow it, total")
-      ->type_name("REFERENCE")
-      ->expected(1)
-      ->take_all();
+  add_list_option(
+      command, "--reference", options.references,
+      "a measurement that the model is held against: " + reference_forms() +
+          "; not given, compare takes lams and what the flights allow of total, height and wind, and "
+          "refit, diagnose and improve take lams and, where the flights allow it, total")
+      ->type_name("REFERENCE");
 }
 
 void add_flight_options(CLI::App& command, ComparisonOptions& options) {
   command.add_option("flights", options.flights, "the flights, netCDF files")->required()->type_name("IN.nc");
-  command.add_option("--exclude", options.exclude, "a flight regime that is left out, e.g. turn or cloud")
+  add_list_option(command, "--exclude", options.exclude,
+                  "a flight regime that is left out, e.g. turn or cloud")
       ->type_name("REGIME");
   command
-      .add_option("--intervals", options.intervals,
-                  "flight regimes to add or to veto, and times to leave out")
+      .add_option(
+          "--intervals", options.intervals,
+          "flight regimes to add or to veto, and times to leave out; docs/intervals.md has the format")
       ->type_name("FILE.toml");
-  command.add_option("--min-airspeed", options.least_airspeed, "m/s; slower samples are left out")
+  command.add_option("--min-airspeed", options.least_airspeed, "samples that are slower are left out, m/s")
       ->check(is_amount())
       ->capture_default_str();
   command
       .add_option("--max-flaps", options.most_flaps,
-                  "percent; samples with more flaps are left out; not given it is 5, and none is left out "
+                  "samples with more flaps are left out, percent; not given it is 5, and none is left out "
                   "where an effect of the model reads the flaps")
       ->check(is_amount());
   command
@@ -134,8 +133,8 @@ ChosenReferences references_to_fit(const ComparisonOptions& options, const Model
 void print_references(const ChosenReferences& references) {
   std::vector<std::string> names;
   for (const auto& reference : references.used) names.push_back(reference->name());
-  if (names.size() > 1) fmt::print("references: {}\n", fmt::join(names, ", "));
-  for (const std::string& why_not : references.not_used) fmt::print("not used as a reference: {}\n", why_not);
+  if (names.size() > 1) say("references: {}\n", fmt::join(names, ", "));
+  for (const std::string& why_not : references.not_used) say("not used as a reference: {}\n", why_not);
 }
 
 nlohmann::ordered_json as_json(const Statistics& statistics) {
@@ -148,7 +147,7 @@ nlohmann::ordered_json as_json(const Statistics& statistics) {
 }
 
 void print_flaps_out(const Statistics& flaps_out, const std::string& of_what) {
-  if (flaps_out.samples > 0) fmt::print("{}\n", flaps_out_text(flaps_out, of_what));
+  if (flaps_out.samples > 0) say("{}\n", flaps_out_text(flaps_out, of_what));
 }
 
 nlohmann::ordered_json masks_as_json(const std::array<std::size_t, mask_count>& masks) {

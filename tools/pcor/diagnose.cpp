@@ -28,48 +28,47 @@ struct Options {
   std::vector<std::string> not_variables;
   bool no_file_variables = false;
   double training_share = 1.0;
-  bool all = false;
+  bool full = false;
 };
 
 constexpr std::size_t shortened = 5;
 
 void print_finding(const Finding& finding) {
-  fmt::print("\n{}: {}\n", finding.id(), finding.title);
-  if (finding.effect.is_formula()) fmt::print("  formula: {}\n", finding.effect.formula);
-  fmt::print("  {}\n", kind_text(finding));
+  say("\n{}: {}\n", finding.id(), finding.title);
+  if (finding.effect.is_formula()) say("  formula: {}\n", finding.effect.formula);
+  say("  {}\n", kind_text(finding));
   if (!finding.worst_flight.empty()) {
-    fmt::print("  largest: {:+.3f} hPa in {} at {}\n", finding.worst, finding.worst_flight,
-               utc_text(finding.worst_time));
+    say("  largest: {:+.3f} hPa in {} at {}\n", finding.worst, finding.worst_flight,
+        utc_text(finding.worst_time));
   }
   for (const Evidence& evidence : finding.evidence) {
-    fmt::print("  {:>3.0f} % of the evidence: {} {} to {}  {}\n", 100.0 * evidence.share, evidence.flight,
-               utc_text(evidence.begin), utc_text(evidence.end, "%H:%M:%S"), evidence.regimes);
+    say("  {:>3.0f} % of the evidence: {} {} to {}  {}\n", 100.0 * evidence.share, evidence.flight,
+        utc_text(evidence.begin), utc_text(evidence.end, "%H:%M:%S"), evidence.regimes);
   }
   for (const Alias& alias : finding.aliases) {
     const std::string size = alias.size_to_usual == 0.0 ? ""
                                                         : fmt::format(", {:.2g} times its usual size",
                                                                       std::abs(alias.size_to_usual));
-    fmt::print("  cannot be told from {} with {}: correlation {:+.3f}, chi2 {:.1f} {}{}\n", alias.effect,
-               estimates_text(alias.estimates), alias.correlation, std::abs(alias.chi2_less),
-               alias.chi2_less < 0.0 ? "more" : "less", size);
+    say("  cannot be told from {} with {}: correlation {:+.3f}, chi2 {:.1f} {}{}\n", alias.effect,
+        estimates_text(alias.estimates), alias.correlation, std::abs(alias.chi2_less),
+        alias.chi2_less < 0.0 ? "more" : "less", size);
   }
   const Advice& advice = finding.advice;
   if (advice.sentence.empty()) return;
-  fmt::print("  advice: {}{}\n", advice.sentence,
-             advice.power > 0.0 ? fmt::format(" (expected power {:.0f} %)", 100.0 * advice.power) : "");
+  say("  advice: {}{}\n", advice.sentence,
+      advice.power > 0.0 ? fmt::format(" (expected power {:.0f} %)", 100.0 * advice.power) : "");
 }
 
 void print_findings(const std::vector<Finding>& findings) {
   if (findings.empty()) return;
-  fmt::print("\n{:<20} {:<32} {:>9} {:>9} {:>8} {:>8} {:>9} {:>9} {:>7}\n", "missing effect", "coefficient",
-             "rms, hPa", "largest", "chi2", "p", "before", "after", "events");
+  say("\n{:<20} {:<32} {:>9} {:>9} {:>8} {:>8} {:>9} {:>9} {:>7}\n", "missing effect", "coefficient",
+      "rms, hPa", "largest", "chi2", "p", "before", "after", "events");
   for (const Finding& finding : findings) {
-    fmt::print("{:<20} {:<32} {:>9.3f} {:>+9.3f} {:>8.1f} {:>8} {:>9.4f} {:>9.4f} {:>7.0f}\n", finding.id(),
-               estimates_text(finding.estimates), finding.rms, finding.worst, finding.chi2,
-               probability(finding.p_value), finding.rms_before, finding.rms_after, finding.events);
+    say("{:<20} {:<32} {:>9.3f} {:>+9.3f} {:>8.1f} {:>8} {:>9.4f} {:>9.4f} {:>7.0f}\n", finding.id(),
+        estimates_text(finding.estimates), finding.rms, finding.worst, finding.chi2,
+        probability(finding.p_value), finding.rms_before, finding.rms_after, finding.events);
   }
-  fmt::print(
-      "before and after: rms, hPa, of parts of the flights that were not fitted; events: separate times "
+  say("before and after: rms, hPa, of parts of the flights that were not fitted; events: separate times "
       "that speak for the effect\n");
   for (const Finding& finding : findings) print_finding(finding);
 }
@@ -79,7 +78,7 @@ void print_list(const std::string& title, std::vector<std::string> items, bool a
   if (items.empty()) return;
   const std::size_t more = all || items.size() <= shortened ? 0 : items.size() - shortened;
   items.resize(items.size() - more);
-  fmt::print("{}: {}{}\n", title, fmt::join(items, ", "), more == 0 ? "" : fmt::format(" and {} more", more));
+  say("{}: {}{}\n", title, fmt::join(items, ", "), more == 0 ? "" : fmt::format(" and {} more", more));
 }
 
 void print_others(const Diagnosis& diagnosis, bool all) {
@@ -95,7 +94,7 @@ void print_others(const Diagnosis& diagnosis, bool all) {
     limits.push_back(fmt::format("{} ({}{}{:.3f} hPa{}{})", limit.effect, sizes, sizes.empty() ? "" : ": ",
                                  limit.rms, limit.note.empty() ? "" : "; ", limit.note));
   }
-  fmt::print("\n");
+  say("\n");
   print_list("not found, and at most (95 %)", std::move(limits), all);
   print_list("absorbed by the model", std::move(absorbed), all);
   print_list("not testable", std::move(not_testable), all);
@@ -107,15 +106,16 @@ std::string next_command(const Diagnosis& diagnosis, const Options& options) {
   const std::string flights = command_line(options.comparison);
   const std::string model = quoted(options.model);
   if (diagnosis.verdict == Verdict::silent) {
-    return fmt::format("To apply the model: pcor process {} -m {} -o corrected.nc",
+    return fmt::format("To apply the model: {} process {} -m {} -o corrected.nc", program(),
                        quoted(options.comparison.flights.front()), model);
   }
   const std::string and_fit =
-      fmt::format(" -m {} --flight {} -o extended.toml && pcor refit {} -m extended.toml -o fitted.toml",
-                  model, quoted(options.comparison.flights.front()), flights);
+      fmt::format(" -m {} --flight {} -o extended.toml && {} refit {} -m extended.toml -o fitted.toml", model,
+                  quoted(options.comparison.flights.front()), program(), flights);
   const auto add_formula = [&and_fit](const std::string& id, const std::string& formula,
                                       const std::string& where) {
-    return fmt::format("pcor add {} --formula {} --where {}{}", quoted(id), quoted(formula), where, and_fit);
+    return fmt::format("{} add {} --formula {} --where {}{}", program(), quoted(id), quoted(formula), where,
+                       and_fit);
   };
   const auto of_catalogue = [](const Finding& finding) {
     return !finding.effect.is_formula() && !finding.of_reference;
@@ -124,17 +124,17 @@ std::string next_command(const Diagnosis& diagnosis, const Options& options) {
   const auto of_reference = [](const Finding& finding) { return finding.of_reference; };
   if (!findings.empty() && std::all_of(findings.begin(), findings.end(), of_reference)) {
     return fmt::format(
-        "It is of the system that the model is held against: the model stays as it is; to see it: pcor "
+        "It is of the system that the model is held against: the model stays as it is; to see it: {} "
         "compare {} "
         "-m {}",
-        flights, model);
+        program(), flights, model);
   }
   const bool sure = diagnosis.verdict == Verdict::identified || diagnosis.verdict == Verdict::ambiguous;
   if (sure && std::all_of(findings.begin(), findings.end(), of_catalogue)) {
     std::string without;
-    std::string add = "pcor add";
+    std::string add = program() + " add";
     for (const Finding& finding : findings) {
-      add += " " + argument_of(finding.effect);
+      add += " " + quoted(argument_of(finding.effect));
       if (finding.shape_beyond_model.empty()) continue;
       without += fmt::format("{} was found {}, which no model file can hold: it is added without that.\n",
                              finding.id(), finding.shape_beyond_model);
@@ -148,35 +148,36 @@ std::string next_command(const Diagnosis& diagnosis, const Options& options) {
            add_formula(effect.id, effect.formula, std::string(facts_of(effect.where).name));
   }
   if (!findings.empty()) {
-    return fmt::format("To add what helps, one after another: pcor improve {} -m {}{} -o best.toml", flights,
-                       model, command_line(options.candidates));
+    return fmt::format("To add what helps, one after another: {} improve {} -m {}{} -o best.toml", program(),
+                       flights, model, command_line(options.candidates));
   }
   for (const TracedVariable& variable : diagnosis.unexplained.variables) {
     if (variable.formula.empty()) continue;
     return fmt::format(
-        "To see whether a formula of {} helps where it was not fitted: pcor improve {} -m {} "
+        "To see whether a formula of {} helps where it was not fitted: {} improve {} -m {} "
         "--trace-variables -o best.toml",
-        variable.name, flights, model);
+        variable.name, program(), flights, model);
   }
-  return fmt::format("To see where it lies: pcor compare {} -m {}", flights, model);
+  return fmt::format("To see where it lies: {} compare {} -m {}", program(), flights, model);
 }
 
 void print(const Diagnosis& diagnosis, const ChosenReferences& references, const Options& options) {
-  fmt::print("{}.\n\n", verdict_text(diagnosis));
+  say("{}.\n\n", verdict_text(diagnosis));
   print_references(references);
-  fmt::print("reference: {}\n", diagnosis.reference);
-  fmt::print("used {} samples; not used: {}\n", diagnosis.samples, mask_text(diagnosis.masks));
-  fmt::print(
-      "rms {:.3f} hPa; noise {:.3f} hPa; rms {:.3f} hPa with the free coefficients fitted again, linearised "
+  say("reference: {}\n", diagnosis.reference);
+  say("used {} samples; not used: {}\n", diagnosis.samples, mask_text(diagnosis.masks));
+  say("rms {:.3f} hPa; noise {:.3f} hPa; rms {:.3f} hPa with the free coefficients fitted again, linearised "
       "and "
       "weighted by the noise\n",
       diagnosis.rms_given, diagnosis.noise_rms, diagnosis.residual_rms);
   print_flaps_out(diagnosis.flaps_out, "the diagnosis");
   print_findings(diagnosis.findings);
   print_unexplained(diagnosis.unexplained);
-  print_others(diagnosis, options.all);
-  for (const std::string& note : diagnosis.notes) fmt::print("\nNote: {}.\n", note);
-  fmt::print("\n{}\n", next_command(diagnosis, options));
+  print_others(diagnosis, options.full);
+  for (const std::string& note : diagnosis.notes) say("\nNote: {}.\n", note);
+  say("\n");
+  say_written({options.common.report, options.common.json});
+  say("{}\n", next_command(diagnosis, options));
 }
 
 void run(const Options& options) {
@@ -191,7 +192,7 @@ void run(const Options& options) {
   DiagnoseOptions diagnose_with;
   diagnose_with.mask = mask_options(options.comparison);
   diagnose_with.time_stamp = time_stamp(options.comparison);
-  diagnose_with.formulas = candidate_formulas(options.candidates, model);
+  diagnose_with.formulas = candidate_formulas(options.candidates, model, options.comparison.flights);
   diagnose_with.whole_file = !options.no_file_variables;
   diagnose_with.not_variables = options.not_variables;
   diagnose_with.training_share = options.training_share;
@@ -219,9 +220,8 @@ std::function<void()> add_diagnose(CLI::App& program) {
       ->required()
       ->type_name("MODEL.toml");
   add_candidate_options(*command, options->candidates);
-  command
-      ->add_option("--not-variable", options->not_variables,
-                   "a variable of the flights that is not searched for structure that no effect explains")
+  add_list_option(*command, "--not-variable", options->not_variables,
+                  "a variable of the flights that is not searched for structure that no effect explains")
       ->type_name("NAME");
   command->add_flag("--no-file-variables", options->no_file_variables,
                     "search no variable of the flights for structure that no effect explains");
@@ -230,8 +230,12 @@ std::function<void()> add_diagnose(CLI::App& program) {
                    "use only this share of every flight, its first part")
       ->check(CLI::Range(0.01, 1.0))
       ->capture_default_str();
-  command->add_flag("--all", options->all, "print the lists of effects that were not found in full");
+  const char* const full = "print the lists of effects that were not found in full";
+  command->add_flag("--full", options->full, full);
+  keep_old_name(*command->add_flag("--all", options->full, full), "--full");
   add_common_options(*command, options->common);
+  add_examples(*command, {"diagnose first.nc second.nc -m fitted.toml --report diagnose.html",
+                          "diagnose first.nc -m fitted.toml --try 'k * (ENGTRQ - 50) / 100'"});
   return [options] { run(*options); };
 }
 

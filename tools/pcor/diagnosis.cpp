@@ -5,8 +5,10 @@
 
 #include <algorithm>
 
+#include <pcor/flight/flight.hpp>
 #include <pcor/model/formula.hpp>
 #include <pcor/words/error.hpp>
+#include <pcor/words/suggest.hpp>
 #include <pcor/words/utc.hpp>
 #include "comparison.hpp"
 
@@ -120,14 +122,11 @@ std::string option(const char* name, const std::string& value) {
 }  // namespace
 
 void add_candidate_options(CLI::App& command, CandidateOptions& options) {
-  command
-      .add_option(
-          "--try", options.formulas,
-          "test an effect of your own too: its formula, hPa at the static ports, with a coefficient k and "
-          "variables by netCDF name or by role: 'k * ENGTRQ / 100'; they are called try-1, try-2 ...")
-      ->type_name("FORMULA")
-      ->expected(1)
-      ->take_all();
+  add_list_option(
+      command, "--try", options.formulas,
+      "test an effect of your own too: its formula, hPa at the static ports, with a coefficient k and "
+      "variables by netCDF name or by role: 'k * ENGTRQ / 100'; they are called try-1, try-2 ...")
+      ->type_name("FORMULA");
   command
       .add_option("--candidates", options.file,
                   "a model whose formula effects are tested too, where MODEL lacks them")
@@ -153,7 +152,20 @@ ModelEffect formula_effect(const std::string& id, const std::string& formula, co
   return effect;
 }
 
-std::vector<ModelEffect> candidate_formulas(const CandidateOptions& options, const ModelFile& model) {
+void require_known_variables(const ModelEffect& effect, const std::string& option,
+                             const std::vector<std::string>& variables, const std::string& place) {
+  const auto formula = Formula::parse(effect.formula, effect.parameter_names);
+  for (const std::string& name : formula->variables()) {
+    if (quantity_named(name) != Quantity::count) continue;
+    if (std::find(variables.begin(), variables.end(), name) != variables.end()) continue;
+    const std::string meant = did_you_mean(name, variables);
+    throw Error(fmt::format("{} '{}': {} is neither a variable of {} nor a quantity; {}", option,
+                            effect.formula, name, place, meant.empty() ? "correct the formula" : meant));
+  }
+}
+
+std::vector<ModelEffect> candidate_formulas(const CandidateOptions& options, const ModelFile& model,
+                                            const std::vector<std::string>& flights) {
   std::vector<ModelEffect> candidates;
   const auto is_new = [&](const std::string& id) {
     const auto same = [&id](const ModelEffect& effect) { return effect.id == id; };
@@ -165,11 +177,21 @@ std::vector<ModelEffect> candidate_formulas(const CandidateOptions& options, con
       if (effect.is_formula() && is_new(effect.id)) candidates.push_back(effect);
     }
   }
+  if (options.formulas.empty()) return candidates;
+  std::vector<std::string> variables;
+  for (const std::string& path : flights) {
+    const Flight flight(path);
+    variables.insert(variables.end(), flight.variables().begin(), flight.variables().end());
+  }
+  std::sort(variables.begin(), variables.end());
+  variables.erase(std::unique(variables.begin(), variables.end()), variables.end());
+  const std::string place = flights.size() == 1 ? flights.front() : "any of the flights";
   std::size_t number = 0;
   for (const std::string& formula : options.formulas) {
     do ++number;
     while (!is_new(fmt::format("try-{}", number)));
     candidates.push_back(formula_effect(fmt::format("try-{}", number), formula, "--try"));
+    require_known_variables(candidates.back(), "--try", variables, place);
   }
   return candidates;
 }
@@ -185,36 +207,33 @@ std::string probability(double p) { return p < 0.001 ? "< 0.001" : fmt::format("
 
 void print_unexplained(const Unexplained& unexplained) {
   if (!unexplained.significant) return;
-  fmt::print("\nwhat no effect explains: {:.3f} hPa rms (p {}), of it {:.3f} hPa of slow drift{}{}\n",
-             unexplained.rms, probability(unexplained.p_value), unexplained.drift_rms,
-             unexplained.regime.empty() ? "" : "; most of it in ", unexplained.regime);
+  say("\nwhat no effect explains: {:.3f} hPa rms (p {}), of it {:.3f} hPa of slow drift{}{}\n",
+      unexplained.rms, probability(unexplained.p_value), unexplained.drift_rms,
+      unexplained.regime.empty() ? "" : "; most of it in ", unexplained.regime);
   if (!unexplained.variables.empty()) {
-    fmt::print("{:<20} {:<10} {:>6} {:>8} {:>20}  {:<32} {}\n", "it goes with", "unit", "R2", "p",
-               "hPa per unit", "formula", "what it is");
+    say("{:<20} {:<10} {:>6} {:>8} {:>20}  {:<32} {}\n", "it goes with", "unit", "R2", "p", "hPa per unit",
+        "formula", "what it is");
   }
   for (const TracedVariable& variable : unexplained.variables) {
-    fmt::print("{:<20} {:<10} {:>6.3f} {:>8} {:>20}  {:<32} {}\n", variable.name, variable.unit, variable.r2,
-               probability(variable.p_value),
-               fmt::format("{:.3g} +- {:.2g}", variable.slope, variable.slope_error), variable.formula,
-               variable.description);
+    say("{:<20} {:<10} {:>6.3f} {:>8} {:>20}  {:<32} {}\n", variable.name, variable.unit, variable.r2,
+        probability(variable.p_value), fmt::format("{:.3g} +- {:.2g}", variable.slope, variable.slope_error),
+        variable.formula, variable.description);
   }
   if (!unexplained.variables.empty()) {
     const TracedVariable& first = unexplained.variables.front();
-    fmt::print("{}\n", places_text(first));
+    say("{}\n", places_text(first));
   }
   for (const FlightStep& step : unexplained.steps) {
-    fmt::print("{} lies {:.3f} +- {:.3f} hPa {} the rest of the flights (p {})\n", step.flight,
-               std::abs(step.size), step.standard_error, step.size < 0.0 ? "below" : "above",
-               probability(step.p_value));
+    say("{} lies {:.3f} +- {:.3f} hPa {} the rest of the flights (p {})\n", step.flight, std::abs(step.size),
+        step.standard_error, step.size < 0.0 ? "below" : "above", probability(step.p_value));
   }
   if (!unexplained.computed.empty()) {
-    fmt::print(
-        "not looked at, because the files say that they are computed from the residual's own sensors: {}\n",
+    say("not looked at, because the files say that they are computed from the residual's own sensors: {}\n",
         fmt::join(unexplained.computed, ", "));
   }
   if (!unexplained.shares_noise.empty()) {
-    fmt::print("not looked at, because their noise is that of the residual: {}\n",
-               fmt::join(unexplained.shares_noise, ", "));
+    say("not looked at, because their noise is that of the residual: {}\n",
+        fmt::join(unexplained.shares_noise, ", "));
   }
 }
 

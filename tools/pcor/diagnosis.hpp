@@ -19,8 +19,10 @@ void add_candidate_options(CLI::App& command, CandidateOptions& options);
 
 /// The formula effects that the options name, without those that `model` has: try-1, try-2 ... for those of
 /// the command line, and those of the file of candidates.
-/// @throws Error if a formula cannot be read, with the place in it, or the file cannot be.
-std::vector<ModelEffect> candidate_formulas(const CandidateOptions& options, const ModelFile& model);
+/// @throws Error if a formula cannot be read, with the place in it, or the file cannot be; or if a formula of
+/// the command line names what is neither a quantity nor a variable of any of the flights.
+std::vector<ModelEffect> candidate_formulas(const CandidateOptions& options, const ModelFile& model,
+                                            const std::vector<std::string>& flights);
 
 /// The options as they stand on a command line, each with a blank before it.
 std::string command_line(const CandidateOptions& options);
@@ -28,6 +30,11 @@ std::string command_line(const CandidateOptions& options);
 /// An effect of the user's own at the static ports, with one coefficient k, which starts at 0.
 /// @throws Error that names `option`, if the formula cannot be read or does not use k.
 ModelEffect formula_effect(const std::string& id, const std::string& formula, const std::string& option);
+
+/// Makes sure that whatever the formula of `option` names is a quantity or one of `variables`, which are
+/// those of `place`. @throws Error that says what may have been meant.
+void require_known_variables(const ModelEffect& effect, const std::string& option,
+                             const std::vector<std::string>& variables, const std::string& place);
 
 /// "< 0.001", or the number.
 std::string probability(double p);

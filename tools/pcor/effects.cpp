@@ -32,8 +32,8 @@ const EffectFacts& find(const std::string& id) {
   for (const EffectFacts& facts : effect_facts) ids.emplace_back(facts.id);
   for (const EffectWithoutTrace& effect : effects_without_trace) ids.emplace_back(effect.id);
   const std::string hint = did_you_mean(id, ids);
-  throw Error(fmt::format("there is no effect '{}'{}{} 'pcor effects' lists them all", id,
-                          hint.empty() ? ";" : "; ", hint));
+  throw Error(fmt::format("there is no effect '{}'{}{} to list them: {} effects", id,
+                          hint.empty() ? ";" : "; ", hint, program()));
 }
 
 std::string names_of_needs(const EffectFacts& facts) {
@@ -89,30 +89,30 @@ std::string_view text_of(GasConstants constants) {
 
 void print_one(const EffectFacts& facts) {
   const WhereFacts& where = facts_of(facts.where);
-  fmt::print("{}: {}\n\n", facts.id, facts.title);
-  fmt::print("  family       {}\n  place        {}\n", facts.family, place_of(facts));
-  fmt::print("  formula      {}  [{}]\n  acts on      {}\n", facts.formula, where.unit, where.adds_to);
+  say("{}: {}\n\n", facts.id, facts.title);
+  say("  family       {}\n  place        {}\n", facts.family, place_of(facts));
+  say("  formula      {}  [{}]\n  acts on      {}\n", facts.formula, where.unit, where.adds_to);
   for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
     const ParameterFacts& parameter = facts.parameters[i];
     const std::string neutral =
         parameter.shape ? "shapes the effect" : fmt::format("neutral {}", parameter.neutral);
-    fmt::print("  parameter    {}  [{}], {}, from {} to {}, typically {}\n", parameter.name, parameter.unit,
-               neutral, parameter.lower, parameter.upper, parameter.typical);
+    say("  parameter    {}  [{}], {}, from {} to {}, typically {}\n", parameter.name, parameter.unit, neutral,
+        parameter.lower, parameter.upper, parameter.typical);
   }
   for (std::size_t i = 0; i < facts.scaling_count(); ++i) {
-    fmt::print("  or scaled by (p/700 hPa)^{} (q/70 hPa)^{}\n", facts.scalings[i].static_pressure,
-               facts.scalings[i].dynamic_pressure);
+    say("  or scaled by (p/700 hPa)^{} (q/70 hPa)^{}\n", facts.scalings[i].static_pressure,
+        facts.scalings[i].dynamic_pressure);
   }
-  if (facts.constants != GasConstants::any) fmt::print("  only in      {}\n", text_of(facts.constants));
-  fmt::print("  needs        {}\n", names_of_needs(facts));
-  fmt::print("  size         {}\n", facts.size);
-  fmt::print("  look-alikes  {}\n", facts.look_alikes);
-  fmt::print("  separated by {}\n", facts.manoeuvre);
-  fmt::print("  source       {}\n", facts.source);
-  fmt::print("  example      ");
+  if (facts.constants != GasConstants::any) say("  only in      {}\n", text_of(facts.constants));
+  say("  needs        {}\n", names_of_needs(facts));
+  say("  size         {}\n", facts.size);
+  say("  look-alikes  {}\n", facts.look_alikes);
+  say("  separated by {}\n", facts.manoeuvre);
+  say("  source       {}\n", facts.source);
+  say("  example      ");
   for (const auto& input : facts.example.inputs) {
     if (input.quantity == Quantity::count) break;
-    fmt::print("{} = {}, ", facts_of(input.quantity).name, input.value);
+    say("{} = {}, ", facts_of(input.quantity).name, input.value);
   }
   std::string example;
   std::string typical;
@@ -121,36 +121,38 @@ void print_one(const EffectFacts& facts) {
     example += fmt::format("{}{} = {}", separator, facts.parameters[i].name, facts.example.parameters[i]);
     typical += fmt::format("{}{} = {}", separator, facts.parameters[i].name, facts.parameters[i].typical);
   }
-  fmt::print("{} gives {} {}\n\nIn a model file:\n\n", example, facts.example.value, where.unit);
-  fmt::print("  [[effect]]\n  id = \"{}\"\n  parameters = {{ {} }}\n", facts.id, typical);
+  say("{} gives {} {}\n\nIn a model file:\n\n", example, facts.example.value, where.unit);
+  say("  [[effect]]\n  id = \"{}\"\n  parameters = {{ {} }}\n", facts.id, typical);
 }
 
 void print_all() {
-  fmt::print("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", "effect", "family", "place", "where", "what",
-             "formula");
+  say("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", "effect", "family", "place", "where", "what", "formula");
   for (const EffectFacts& facts : effect_facts) {
-    fmt::print("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", facts.id, facts.family, place_of(facts),
-               facts_of(facts.where).name, facts.title, facts.formula);
+    say("{:<18} {:<14} {:<13} {:<20} {:<70} {}\n", facts.id, facts.family, place_of(facts),
+        facts_of(facts.where).name, facts.title, facts.formula);
   }
-  fmt::print("\nKnown errors that no term of a model can describe\n\n");
-  for (const EffectWithoutTrace& effect : effects_without_trace)
-    fmt::print("{:<22} {}\n", effect.id, effect.title);
-  fmt::print("\nTo read more of one: pcor effects {}\n", effect_facts.front().id);
+  say("\nKnown errors that no term of a model can describe\n\n");
+  for (const EffectWithoutTrace& effect : effects_without_trace) say("{:<22} {}\n", effect.id, effect.title);
+  say("\n");
 }
 
 void run(const Options& options) {
   JsonResult json(options.common);
   if (const EffectWithoutTrace* const effect = find_without_trace(options.id)) {
     json.write(as_json(*effect));
-    if (wants_text(options.common))
-      fmt::print("{}: {}\n\nNo term of a model describes it: {}.\n", effect->id, effect->title,
-                 effect->reason);
+    if (wants_text(options.common)) {
+      say("{}: {}\n\nNo term of a model describes it: {}.\n", effect->id, effect->title, effect->reason);
+      say_written({options.common.json});
+    }
     return;
   }
   if (!options.id.empty()) {
     const EffectFacts& facts = find(options.id);
     json.write(as_json(facts));
-    if (wants_text(options.common)) print_one(facts);
+    if (wants_text(options.common)) {
+      print_one(facts);
+      say_written({options.common.json});
+    }
     return;
   }
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
@@ -158,7 +160,10 @@ void run(const Options& options) {
   nlohmann::ordered_json without_trace = nlohmann::ordered_json::array();
   for (const EffectWithoutTrace& effect : effects_without_trace) without_trace.push_back(as_json(effect));
   json.write({{"effects", all}, {"without_trace", without_trace}});
-  if (wants_text(options.common)) print_all();
+  if (!wants_text(options.common)) return;
+  print_all();
+  say_written({options.common.json});
+  say("To read more of one: {} effects {}\n", program(), effect_facts.front().id);
 }
 
 }  // namespace
@@ -169,6 +174,7 @@ std::function<void()> add_effects(CLI::App& program) {
       program.add_subcommand("effects", "List the catalogue of effects, or all that is known of one");
   command->add_option("id", options->id, "an effect, e.g. static-lag")->type_name("ID");
   add_common_options(*command, options->common, false);
+  add_examples(*command, {"effects", "effects static-qp"});
   return [options] { run(*options); };
 }
 

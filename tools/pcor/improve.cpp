@@ -77,50 +77,48 @@ nlohmann::ordered_json as_json(const Improvement& improvement, const Options& op
 
 void print(const Improvement& improvement, const ChosenReferences& references, const Options& options) {
   print_references(references);
-  fmt::print("reference: {}\n", improvement.fit.reference_text);
-  fmt::print("fitted to {} samples; not used: {}\n", improvement.fit.samples,
-             mask_text(improvement.fit.masks));
+  say("reference: {}\n", improvement.fit.reference_text);
+  say("fitted to {} samples; not used: {}\n", improvement.fit.samples, mask_text(improvement.fit.masks));
   print_flaps_out(improvement.fit.flaps_out, "the fit");
-  fmt::print("\n");
+  say("\n");
   const auto figure = [](double rms) { return std::isnan(rms) ? std::string() : fmt::format("{:.4f}", rms); };
-  fmt::print("{:<24} {:>10} {:>10} {:>10} {:>13}\n", "rms, hPa", "training", "held out", "noise",
-             "coefficients");
-  fmt::print("{:<24} {:>10} {:>10}\n", "as it came", figure(improvement.given_rms_train),
-             figure(improvement.given_rms_holdout));
+  say("{:<24} {:>10} {:>10} {:>10} {:>13}\n", "rms, hPa", "training", "held out", "noise", "coefficients");
+  say("{:<24} {:>10} {:>10}\n", "as it came", figure(improvement.given_rms_train),
+      figure(improvement.given_rms_holdout));
   bool is_averaged = false;
   for (const ImproveStep& step : improvement.steps) {
-    fmt::print("{:<24} {:>10.4f} {:>10.4f} {:>10.4f} {:>13}\n",
-               step.added.empty() ? "refitted" : "+ " + step.added, step.rms_train, step.rms_holdout,
-               step.noise_rms, step.terms);
+    say("{:<24} {:>10.4f} {:>10.4f} {:>10.4f} {:>13}\n", step.added.empty() ? "refitted" : "+ " + step.added,
+        step.rms_train, step.rms_holdout, step.noise_rms, step.terms);
     is_averaged = is_averaged || !step.rivals.empty();
   }
   if (is_averaged) {
-    fmt::print("{:<24} {:>10} {:>10}\n", "averaged over rivals", figure(improvement.rms_train),
-               figure(improvement.rms_holdout));
+    say("{:<24} {:>10} {:>10}\n", "averaged over rivals", figure(improvement.rms_train),
+        figure(improvement.rms_holdout));
   }
   if (!options.holdout.empty()) {
     std::vector<std::string> names;
     for (const std::string& path : options.holdout)
       names.push_back(std::filesystem::path(path).filename().string());
-    fmt::print("held out: {}\n", fmt::join(names, ", "));
+    say("held out: {}\n", fmt::join(names, ", "));
   } else if (improvement.holdout_is_flights) {
-    fmt::print("held out: of every flight the last {:.0f} %\n", 100.0 * (1.0 - options.training_share));
+    say("held out: of every flight the last {:.0f} %\n", 100.0 * (1.0 - options.training_share));
   } else {
-    fmt::print(
-        "held out are five parts of the flights in turn, without outliers; name whole flights with "
+    say("held out are five parts of the flights in turn, without outliers; name whole flights with "
         "--holdout\n");
   }
-  fmt::print("\n");
+  say("\n");
   for (const ImproveStep& step : improvement.steps) {
-    fmt::print("{}\n", step.learnt);
+    say("{}\n", step.learnt);
     if (const std::string text = rivals_text(step); !text.empty())
-      fmt::print("  the coefficients above are as if it alone were there; {}\n", text);
+      say("  the coefficients above are as if it alone were there; {}\n", text);
   }
-  fmt::print("stopped: {}\n", improvement.why_stopped);
+  say("stopped: {}\n", improvement.why_stopped);
   print_unexplained(improvement.steps.back().diagnosis.unexplained);
-  for (const std::string& note : improvement.fit.notes) fmt::print("\nNote: {}.\n", note);
-  fmt::print("\nwrote {}\nTo apply it: pcor process {} -m {} -o corrected.nc\n", options.output,
-             quoted(options.comparison.flights.front()), quoted(options.output));
+  for (const std::string& note : improvement.fit.notes) say("\nNote: {}.\n", note);
+  say("\n");
+  say_written({options.output, options.common.report, options.common.json});
+  say("To apply it: {} process {} -m {} -o corrected.nc\n", program(),
+      quoted(options.comparison.flights.front()), quoted(options.output));
 }
 
 ImproveOptions improve_options(const Options& options, const ModelFile& model) {
@@ -130,7 +128,7 @@ ImproveOptions improve_options(const Options& options, const ModelFile& model) {
   improve_with.refit.loss = *loss_named(options.loss);
   improve_with.refit.training_share = options.training_share;
   improve_with.refit.holdout.assign(options.holdout.begin(), options.holdout.end());
-  improve_with.formulas = candidate_formulas(options.candidates, model);
+  improve_with.formulas = candidate_formulas(options.candidates, model, options.comparison.flights);
   improve_with.trace_variables = options.trace_variables;
   return improve_with;
 }
@@ -154,13 +152,13 @@ void run(const Options& options) {
     improvement = improve(flight_paths(options.comparison), model, references.used, improve_with);
   }
   refuse_worse(improvement.worse, options.force, improvement.model);
-  save_model(improvement.model, options.output, inputs);
+  deliver(improvement.model, options.output, inputs);
   if (!options.common.report.empty())
     write_report_of_run(improvement_report(improvement, model),
                         {{options.model, options.output}, options.comparison.flights, options.holdout},
                         options.common.report);
   json.write(as_json(improvement, options));
-  if (wants_text(options.common)) print(improvement, references, options);
+  if (wants_text(options.common, {options.output})) print(improvement, references, options);
 }
 
 }  // namespace
@@ -173,13 +171,14 @@ std::function<void()> add_improve(CLI::App& program) {
   command->add_option("-m,--model", options->model, "the model to begin with")
       ->required()
       ->type_name("MODEL.toml");
-  command->add_option("-o,--output", options->output, "the best model, whole or not at all")
+  command
+      ->add_option("-o,--output", options->output,
+                   "the best model, whole or not at all; - for standard output")
       ->required()
       ->type_name("BEST.toml");
-  command->add_option("--holdout", options->holdout, "a flight that is not fitted, but tests every step")
-      ->type_name("T.nc")
-      ->expected(1)
-      ->take_all();
+  add_list_option(*command, "--holdout", options->holdout,
+                  "a flight that is not fitted, but tests every step")
+      ->type_name("T.nc");
   command
       ->add_option("--training-share", options->training_share,
                    "fit only this share of every flight, its first part; the rest tests every step")
@@ -197,6 +196,9 @@ std::function<void()> add_improve(CLI::App& program) {
       ->capture_default_str();
   add_force_option(*command, options->force);
   add_common_options(*command, options->common);
+  add_examples(
+      *command,
+      {"improve first.nc second.nc -m model.toml --holdout third.nc --trace-variables -o best.toml"});
   return [options] { run(*options); };
 }
 

@@ -91,43 +91,43 @@ void print_head(const Inspection& flight) {
   for (const std::string& part : {flight.project, flight.flight, flight.aircraft, flight.institution}) {
     if (!part.empty()) who.push_back(part);
   }
-  fmt::print("{}: {}\n", flight.path,
+  say("{}: {}\n", flight.path,
              who.empty() ? "it does not say whose flight it is" : fmt::format("{}", fmt::join(who, ", ")));
-  fmt::print("{} to {} UTC, {} records of {:g} s, {} gap{} in time\n", utc_text(flight.time.first),
+  say("{} to {} UTC, {} records of {:g} s, {} gap{} in time\n", utc_text(flight.time.first),
              utc_text(flight.time.last), flight.records, flight.time.step, flight.time.gap_count,
              flight.time.gap_count == 1 ? "" : "s");
   std::vector<std::string> rates;
   for (const auto& [rate, count] : flight.rates)
     rates.push_back(fmt::format("{} of {} Hz", count, rate / flight.time.step));
-  fmt::print("variables: {}\n", fmt::join(rates, ", "));
+  say("variables: {}\n", fmt::join(rates, ", "));
   if (flight.alike.empty()) {
-    fmt::print("names are looked for as in files of {}, since the file is like none that is known\n",
+    say("names are looked for as in files of {}, since the file is like none that is known\n",
                flight.family_title);
   } else if (flight.alike.size() > 1) {
-    fmt::print(
+    say(
         "it is like the files of {}; names are looked for as in those of {}; say which in the model by "
         "roles\n",
         fmt::join(flight.alike, " and of "), flight.family);
   } else {
-    fmt::print("names are those of {} ({})\n", flight.family_title, flight.family);
+    say("names are those of {} ({})\n", flight.family_title, flight.family);
   }
 }
 
 void print_roles(const Inspection& flight) {
-  fmt::print("\n{:<33} {:<12} {:<10} {:>4} {:>8}  {}\n", "role", "variable", "unit", "Hz", "present",
+  say("\n{:<33} {:<12} {:<10} {:>4} {:>8}  {}\n", "role", "variable", "unit", "Hz", "present",
              "also there");
   for (const InspectedRole& role : flight.roles) {
-    fmt::print("{:<33} {:<12} {:<10} {:>4g} {:>7.1f}%  {}\n", role.role,
+    say("{:<33} {:<12} {:<10} {:>4g} {:>7.1f}%  {}\n", role.role,
                role.variable + (role.is_verified ? "" : " ?"), role.unit, role.rate / flight.time.step,
                100.0 * role.present, fmt::join(role.others, " "));
   }
   const bool doubt = std::any_of(flight.roles.begin(), flight.roles.end(),
                                  [](const InspectedRole& role) { return !role.is_verified; });
   if (doubt)
-    fmt::print(
+    say(
         "?: no public document of this aircraft was found that has the name; make sure of what it is\n");
   for (const InspectedRole& role : flight.roles) {
-    if (!role.trap.empty()) fmt::print("{}: {}\n", role.variable, role.trap);
+    if (!role.trap.empty()) say("{}: {}\n", role.variable, role.trap);
   }
 }
 
@@ -135,9 +135,9 @@ void print_missing(const Inspection& flight) {
   bool any = false;
   for (const MissingRole& role : flight.missing) {
     if (role.cost.empty() && role.effects.empty()) continue;
-    if (!any) fmt::print("\n{:<33} what cannot be done without it\n", "missing");
+    if (!any) say("\n{:<33} what cannot be done without it\n", "missing");
     any = true;
-    fmt::print("{:<33} {}{}{}\n", role.role, role.cost, role.cost.empty() || role.effects.empty() ? "" : "; ",
+    say("{:<33} {}{}{}\n", role.role, role.cost, role.cost.empty() || role.effects.empty() ? "" : "; ",
                role.effects.empty() ? "" : fmt::format("no effects {}", fmt::join(role.effects, ", ")));
   }
 }
@@ -149,12 +149,12 @@ void print_flown(const Inspection& flight) {
     ++count;
     time += interval.end - interval.begin;
   }
-  if (!flown.empty()) fmt::print("\n{:<18} {:>5} {:>8}\n", "flown", "times", "minutes");
+  if (!flown.empty()) say("\n{:<18} {:>5} {:>8}\n", "flown", "times", "minutes");
   for (const auto& [regime, sum] : flown)
-    fmt::print("{:<18} {:>5} {:>8.1f}\n", facts_of(regime).name, sum.first, sum.second / 60.0);
+    say("{:<18} {:>5} {:>8.1f}\n", facts_of(regime).name, sum.first, sum.second / 60.0);
   for (const FrozenSpan& span : flight.frozen) {
     const std::vector<double>& time = flight.samples->time;
-    fmt::print("{} stands still from {} to {}\n", facts_of(span.quantity).name,
+    say("{} stands still from {} to {}\n", facts_of(span.quantity).name,
                utc_text(time[span.first], "%H:%M:%S"),
                utc_text(time[span.first + span.count - 1], "%H:%M:%S"));
   }
@@ -165,14 +165,14 @@ void print(const Inspection& flight) {
   print_roles(flight);
   print_missing(flight);
   print_flown(flight);
-  if (!flight.laws.empty()) fmt::print("\nlaws for this aircraft\n");
+  if (!flight.laws.empty()) say("\nlaws for this aircraft\n");
   for (const InspectedLaw& law : flight.laws) {
-    fmt::print("  {}: {}{}\n", law.path.stem().string(), law.name,
+    say("  {}: {}{}\n", law.path.stem().string(), law.name,
                !law.has_variables ? "; the flight does not record its pressures"
                : !law.is_in_time  ? "; stated for another time"
                                   : "; fits the flight's pressures and its date");
   }
-  for (const std::string& note : flight.notes) fmt::print("\nNote: {}.\n", note);
+  for (const std::string& note : flight.notes) say("\nNote: {}.\n", note);
 }
 
 /// What to do next, as a command to paste.
@@ -185,18 +185,18 @@ std::string next_step(const Options& options, const Inspection& flight) {
     std::string reference;
     if (flight.model->variables.count(Quantity::lams_airspeed) == 0) {
       if (flight.corrected_pressure.empty())
-        return fmt::format("To see what else can be said of its pressures: pcor check {}", path);
+        return fmt::format("To see what else can be said of its pressures: {} check {}", program(), path);
       reference = " --reference " + quoted("pressure:" + flight.corrected_pressure);
     }
-    return fmt::format("To fit a law: pcor refit {} -m {} -o fitted.toml{}", path, quoted(options.model),
+    return fmt::format("To fit a law: {} refit {} -m {} -o fitted.toml{}", program(), path, quoted(options.model),
                        reference);
   }
   const auto fits = std::find_if(flight.laws.begin(), flight.laws.end(),
                                  [](const InspectedLaw& law) { return law.has_variables && law.is_in_time; });
   if (fits != flight.laws.end())
-    return fmt::format("To correct it: pcor process {} -m {} -o corrected.nc", path,
+    return fmt::format("To correct it: {} process {} -m {} -o corrected.nc", program(), path,
                        quoted(fits->path.stem().string()));
-  return fmt::format("To have a model to start from: pcor inspect {} --write-model model.toml", path);
+  return fmt::format("To have a model to start from: {} inspect {} --write-model model.toml", program(), path);
 }
 
 void run(const Options& options) {
@@ -213,7 +213,7 @@ void run(const Options& options) {
         inspect_flight(flight, laws, options.time_stamp == "middle" ? TimeStamp::middle : TimeStamp::begin));
     result["flights"].push_back(as_json(all.back()));
     if (!wants_text(options.common)) continue;
-    if (all.size() > 1) fmt::print("\n");
+    if (all.size() > 1) say("\n");
     print(all.back());
   }
   const Inspection& first = all.front();
@@ -221,14 +221,14 @@ void run(const Options& options) {
     if (!first.model)
       throw Error(fmt::format("{}: no model can be written: {}", first.path, first.notes.front()));
     save_model(*first.model, options.model, inputs);
-    if (wants_text(options.common)) fmt::print("\nwrote {}\n", options.model);
+    if (wants_text(options.common)) say("\nwrote {}\n", options.model);
   }
   if (!options.common.report.empty()) {
     write_report(inspection_report(all), options.common.report);
-    if (wants_text(options.common)) fmt::print("\nwrote {}\n", options.common.report);
+    if (wants_text(options.common)) say("\nwrote {}\n", options.common.report);
   }
   json.write(result);
-  if (wants_text(options.common)) fmt::print("\n{}\n", next_step(options, first));
+  if (wants_text(options.common)) say("\n{}\n", next_step(options, first));
 }
 
 }  // namespace

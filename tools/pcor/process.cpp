@@ -107,14 +107,14 @@ void print_flags(const Flags& flagged) {
   bool any = false;
   for (std::size_t i = 0; i < quality_facts.size(); ++i) {
     if (flagged[i] == 0) continue;
-    if (!any) fmt::print("\n{:>9}  {:<32} {}\n", "samples", "quality bit", "meaning");
+    if (!any) say("\n{:>9}  {:<32} {}\n", "samples", "quality bit", "meaning");
     any = true;
-    fmt::print("{:>9}  {:<32} {}\n", flagged[i], quality_facts[i].name, quality_facts[i].meaning);
+    say("{:>9}  {:<32} {}\n", flagged[i], quality_facts[i].name, quality_facts[i].meaning);
   }
 }
 
 void print_hint(const ProcessedFlight& flight) {
-  fmt::print("To look at the result: ncdump -v {} {} | less\n", flight.summary.outputs.front(),
+  say("To look at the result: ncdump -v {} {} | less\n", flight.summary.outputs.front(),
              quoted(flight.output.string()));
 }
 
@@ -127,26 +127,25 @@ void print(const ProcessedFlight& of) {
     if (!flight.empty()) flight += ' ';
     flight += part;
   }
-  fmt::print("{}{}{} to {} UTC: {} records, {} sample{} in a record\n", flight, flight.empty() ? "" : ", ",
+  say("{}{}{} to {} UTC: {} records, {} sample{} in a record\n", flight, flight.empty() ? "" : ", ",
              utc_text(summary.first_time), utc_text(summary.last_time), summary.records, summary.rate,
              summary.rate == 1 ? "" : "s");
-  fmt::print("corrected {} of {} samples", summary.corrected, summary.samples);
+  say("corrected {} of {} samples", summary.corrected, summary.samples);
   if (summary.in_flight > 0) {
-    fmt::print(
+    say(
         "; in flight, at a dynamic pressure of {:.0f} hPa and more, {} with delta-p {:.2f} hPa in the "
         "mean, {:.2f} to {:.2f} hPa",
         summary.flying_dynamic_pressure, summary.in_flight, summary.mean_defect, summary.least_defect,
         summary.greatest_defect);
   } else if (summary.corrected > 0) {
-    fmt::print("; none of them in flight, at a dynamic pressure of {:.0f} hPa and more",
+    say("; none of them in flight, at a dynamic pressure of {:.0f} hPa and more",
                summary.flying_dynamic_pressure);
   }
-  fmt::print("\n");
-  if (summary.gaps > 0) fmt::print("{} gap{} in time\n", summary.gaps, summary.gaps == 1 ? "" : "s");
+  say("\n");
+  if (summary.gaps > 0) say("{} gap{} in time\n", summary.gaps, summary.gaps == 1 ? "" : "s");
   print_flags(summary.flagged);
-  for (const std::string& note : summary.notes) fmt::print("\nNote: {}.\n", note);
-  fmt::print("\nwrote {} to {}\n", fmt::join(summary.outputs, " "), of.output.string());
-  print_hint(of);
+  for (const std::string& note : summary.notes) say("\nNote: {}.\n", note);
+  say("\nwrote {} to {}\n", fmt::join(summary.outputs, " "), of.output.string());
 }
 
 /// Several flights as a table, a row as soon as a flight is done, and at the end what they have in common.
@@ -158,25 +157,24 @@ class Table {
 
   void add(const ProcessedFlight& flight) {
     if (!has_head_) {
-      fmt::print("{:<{}} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "flight", width_, "samples", "corrected",
+      say("{:<{}} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "flight", width_, "samples", "corrected",
                  "delta-p", "least", "greatest");
     }
     has_head_ = true;
     const ProcessSummary& summary = flight.summary;
-    fmt::print("{:<{}} ", flight.input.filename().string(), width_);
+    say("{:<{}} ", flight.input.filename().string(), width_);
     if (flight.state != FlightState::processed) {
-      fmt::print("{}{}\n", name_of(flight.state), flight.reason.empty() ? "" : ": " + flight.reason);
+      say("{}{}\n", name_of(flight.state), flight.reason.empty() ? "" : ": " + flight.reason);
     } else if (summary.in_flight == 0) {
-      fmt::print("{:>9} {:>9} {:>9}\n", summary.samples, summary.corrected, "no flight");
+      say("{:>9} {:>9} {:>9}\n", summary.samples, summary.corrected, "no flight");
     } else {
-      fmt::print("{:>9} {:>9} {:>9.2f} {:>9.2f} {:>9.2f}\n", summary.samples, summary.corrected,
+      say("{:>9} {:>9} {:>9.2f} {:>9.2f} {:>9.2f}\n", summary.samples, summary.corrected,
                  summary.mean_defect, summary.least_defect, summary.greatest_defect);
     }
-    std::fflush(stdout);
   }
 
   static void end(const std::vector<ProcessedFlight>& flights, const std::string& folder) {
-    fmt::print("delta-p: the mean in flight, hPa, with the least and the greatest\n");
+    say("delta-p: the mean in flight, hPa, with the least and the greatest\n");
     Flags flagged{};
     std::map<std::string, std::size_t> notes;
     for (const ProcessedFlight& flight : flights) {
@@ -185,15 +183,11 @@ class Table {
     }
     print_flags(flagged);
     for (const auto& [note, count] : notes) {
-      fmt::print("\nNote, {} of {} flights: {}.\n", count, flights.size(), note);
+      say("\nNote, {} of {} flights: {}.\n", count, flights.size(), note);
     }
-    fmt::print("\n{} flights: {} processed into {}, {} up to date, {} unreadable\n", flights.size(),
+    say("\n{} flights: {} processed into {}, {} up to date, {} unreadable\n", flights.size(),
                count_of(flights, FlightState::processed), folder, count_of(flights, FlightState::up_to_date),
                count_of(flights, FlightState::unreadable));
-    const auto done = std::find_if(flights.begin(), flights.end(), [](const ProcessedFlight& each) {
-      return each.state == FlightState::processed;
-    });
-    if (done != flights.end()) print_hint(*done);
   }
 
  private:
@@ -301,7 +295,7 @@ void run(const Options& options) {
   }
   if (!text || many) return;
   if (flights.front().state == FlightState::processed) return print(flights.front());
-  fmt::print("{} is up to date: this version made it of this flight with this model and these options\n",
+  say("{} is up to date: this version made it of this flight with this model and these options\n",
              flights.front().output.string());
 }
 
@@ -320,6 +314,7 @@ std::function<void()> add_process(CLI::App& program) {
                    "the file to write, whole or not at all; of several flights the folder, where each gets a "
                    "file of its own name")
       ->required()
+      ->check(is_file_name())
       ->type_name("OUT.nc");
   command->add_flag("--if-stale", options->if_stale,
                     "leave an output alone that was made of the same flight, model and options by this "
@@ -349,6 +344,8 @@ std::function<void()> add_process(CLI::App& program) {
   command->add_flag("--hydrostatic", options->hydrostatic,
                     "write HYDSTEP, the change of hydrostatic height per kelvin from sample to sample");
   add_common_options(*command, options->common, false);
+  add_examples(*command, {"process third.nc -m best.toml -o corrected.nc",
+                          "process third.nc -m best.toml --all --suffix _NEW -o everything.nc"});
   return [options] { run(*options); };
 }
 

@@ -154,12 +154,12 @@ nlohmann::ordered_json as_json(const RefitResult& result) {
 }
 
 void print_flights(const std::vector<FlightFit>& flights) {
-  fmt::print("\n{:<32} {:>8} {:>10} {:>10} {:>10} {:>10} {:>9}\n", "flight, hPa", "samples", "rms before",
-             "rms after", "bias after", "scatter", "noise");
+  say("\n{:<32} {:>8} {:>10} {:>10} {:>10} {:>10} {:>9}\n", "flight, hPa", "samples", "rms before",
+      "rms after", "bias after", "scatter", "noise");
   for (const FlightFit& flight : flights) {
-    fmt::print("{:<32} {:>8} {:>10.3f} {:>10.3f} {:>+10.3f} {:>10.3f} {:>9.3f}\n",
-               flight.flight + (flight.holdout ? " (held out)" : ""), flight.after.samples, flight.before.rms,
-               flight.after.rms, flight.after.bias, flight.after.scatter(), flight.after.noise_rms);
+    say("{:<32} {:>8} {:>10.3f} {:>10.3f} {:>+10.3f} {:>10.3f} {:>9.3f}\n",
+        flight.flight + (flight.holdout ? " (held out)" : ""), flight.after.samples, flight.before.rms,
+        flight.after.rms, flight.after.bias, flight.after.scatter(), flight.after.noise_rms);
   }
 }
 
@@ -168,7 +168,7 @@ void print_further(const std::vector<FlightFit>& further) {
   for (auto first = further.begin(); first != further.end();) {
     const auto end = std::find_if(
         first, further.end(), [&](const FlightFit& flight) { return flight.reference != first->reference; });
-    fmt::print("\nreference {}", first->reference);
+    say("\nreference {}", first->reference);
     print_flights({first, end});
     first = end;
   }
@@ -176,13 +176,13 @@ void print_further(const std::vector<FlightFit>& further) {
 
 void print_result(const RefitResult& result, const ChosenReferences& references) {
   print_references(references);
-  for (const std::string& warning : result.warnings) fmt::print("Warning: {}.\n\n", warning);
-  fmt::print("reference: {}\n", result.reference_text);
-  fmt::print("fitted to {} samples; not used: {}\n", result.samples, mask_text(result.masks));
+  for (const std::string& warning : result.warnings) say("Warning: {}.\n\n", warning);
+  say("reference: {}\n", result.reference_text);
+  say("fitted to {} samples; not used: {}\n", result.samples, mask_text(result.masks));
   print_flaps_out(result.flaps_out, "the fit");
-  fmt::print("\n");
-  fmt::print("{:<36} {:>13} {:>13} {:>13} {:>13}  {}\n", "coefficient", "before", "after", "std. error",
-             "by jackknife", "unit");
+  say("\n");
+  say("{:<36} {:>13} {:>13} {:>13} {:>13}  {}\n", "coefficient", "before", "after", "std. error",
+      "by jackknife", "unit");
   for (const FittedParameter& p : result.parameters) {
     const std::string error = !p.fitted                      ? "held"
                               : p.at_bound                   ? "at bound"
@@ -190,43 +190,41 @@ void print_result(const RefitResult& result, const ChosenReferences& references)
                                                              : fmt::format("{:.3g}", p.standard_error);
     const std::string jackknife =
         std::isnan(p.jackknife_error) ? "" : fmt::format("{:.3g}", p.jackknife_error);
-    fmt::print("{:<36} {:>13.6g} {:>13.6g} {:>13} {:>13}  {}\n", p.name, p.start, p.value, error, jackknife,
-               p.unit);
+    say("{:<36} {:>13.6g} {:>13.6g} {:>13} {:>13}  {}\n", p.name, p.start, p.value, error, jackknife, p.unit);
   }
-  fmt::print(
-      "\nrms {:.3f} hPa ({:.5f} of p), before {:.3f}; robust standard deviation {:.3f}; noise {:.3f} hPa; {} "
+  say("\nrms {:.3f} hPa ({:.5f} of p), before {:.3f}; robust standard deviation {:.3f}; noise {:.3f} hPa; {} "
       "outliers\n",
       result.rms, result.rms_over_pressure, result.rms_before, result.bulk_rms, result.noise_rms,
       result.outliers);
-  fmt::print(
-      "R2 {:.4f}; condition number {:.0f}\nwith memory and drift of the noise, {} samples tell as much of a "
+  say("R2 {:.4f}; condition number {:.0f}\nwith memory and drift of the noise, {} samples tell as much of a "
       "mean as {:.0f} independent ones, and the standard errors allow for it\n",
       result.r_squared, result.condition_number, result.samples,
       static_cast<double>(result.samples) / result.samples_per_independent);
   if (result.omissions.size() > 1) {
-    fmt::print("\n{:<36} {:>10} {:>10}\n", "left out, the others refitted", "rms, hPa", "R2");
+    say("\n{:<36} {:>10} {:>10}\n", "left out, the others refitted", "rms, hPa", "R2");
     for (const Omission& omission : result.omissions)
-      fmt::print("{:<36} {:>10.3f} {:>10.4f}\n", omission.effect, omission.rms, omission.r_squared);
+      say("{:<36} {:>10.3f} {:>10.4f}\n", omission.effect, omission.rms, omission.r_squared);
   }
   bool any = false;
   for (std::size_t a = 0; a < result.covariance_names.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
       const double r = result.covariance[a][b] / std::sqrt(result.covariance[a][a] * result.covariance[b][b]);
       if (!(std::abs(r) > 0.9)) continue;
-      if (!any) fmt::print("\ncorrelations above 0.9\n");
+      if (!any) say("\ncorrelations above 0.9\n");
       any = true;
-      fmt::print("  {} and {}: {:+.3f}\n", result.covariance_names[b], result.covariance_names[a], r);
+      say("  {} and {}: {:+.3f}\n", result.covariance_names[b], result.covariance_names[a], r);
     }
   }
   print_flights(result.flights);
   print_further(result.further);
-  for (const std::string& note : result.notes) fmt::print("\nNote: {}.\n", note);
+  for (const std::string& note : result.notes) say("\nNote: {}.\n", note);
 }
 
 void print_next_step(const Options& options) {
+  say_written({options.output, options.reference_output});
   if (options.reference_output.empty()) {
-    fmt::print("\nwrote {}\nTo see where it still fails: pcor compare {} -m {} -m {}\n", options.output,
-               command_line(options.comparison), quoted(options.model), quoted(options.output));
+    say("To see where it still fails: {} compare {} -m {} -m {}\n", program(),
+        command_line(options.comparison), quoted(options.model), quoted(options.output));
     return;
   }
   ComparisonOptions fitted = options.comparison;
@@ -237,8 +235,8 @@ void print_next_step(const Options& options) {
     if (colon != std::string::npos && reference.substr(colon) == before)
       reference = reference.substr(0, colon) + ":" + options.reference_output;
   }
-  fmt::print("\nwrote {} and {}\nTo see where they still fail: pcor compare {} -m {}\n", options.output,
-             options.reference_output, command_line(fitted), quoted(options.output));
+  say("To see where they still fail: {} compare {} -m {}\n", program(), command_line(fitted),
+      quoted(options.output));
 }
 
 void write_fit_report(const RefitResult& result, const ModelFile& model, const References& references,
@@ -254,6 +252,8 @@ void write_fit_report(const RefitResult& result, const ModelFile& model, const R
     if (result.reference && system != nullptr && system->variables == result.reference->variables)
       reference = reference->with_model(*result.reference);
   }
+  Progress bar("comparing for the report", !options.common.quiet);
+  compare_options.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
   const bool holds_out = !options.holdout.empty() || options.training_share < 1.0;
   const std::string part = holds_out ? ", fitted and held-out samples" : "";
   const Comparison comparison = compare(
@@ -284,12 +284,17 @@ void run(const Options& options) {
   }
   if (!options.common.report.empty()) write_fit_report(result, model, references.used, options);
   json.write(as_json(result));
-  if (wants_text(options.common)) print_result(result, references);
+  const bool with_text = wants_text(options.common, {options.output, options.reference_output});
+  if (with_text) {
+    print_result(result, references);
+    say("\n");
+    say_written({options.common.report, options.common.json});
+  }
   refuse_worse(result.worse, options.force, result.model);
   if (result.reference) refuse_worse(result.worse, options.force, *result.reference);
-  save_model(result.model, options.output, inputs);
-  if (result.reference) save_model(*result.reference, options.reference_output, inputs);
-  if (wants_text(options.common)) print_next_step(options);
+  deliver(result.model, options.output, inputs);
+  if (result.reference) deliver(*result.reference, options.reference_output, inputs);
+  if (with_text) print_next_step(options);
 }
 
 }  // namespace
@@ -299,7 +304,9 @@ std::function<void()> add_refit(CLI::App& program) {
   CLI::App* command = program.add_subcommand("refit", "Fit the free coefficients of a model to measurements");
   add_comparison_options(*command, options->comparison);
   command->add_option("-m,--model", options->model, "the model to fit")->required()->type_name("MODEL.toml");
-  command->add_option("-o,--output", options->output, "the fitted model, whole or not at all")
+  command
+      ->add_option("-o,--output", options->output,
+                   "the fitted model, whole or not at all; - for standard output")
       ->required()
       ->type_name("FITTED.toml");
   command
@@ -311,23 +318,21 @@ std::function<void()> add_refit(CLI::App& program) {
                    "loss function, which limits the weight of outliers; none: least squares")
       ->check(CLI::IsMember({"tukey", "huber", "soft-l1", "cauchy", "none"}))
       ->capture_default_str();
-  command
-      ->add_option("--fix", options->fix,
-                   "hold a coefficient, or all of an effect, at its value, e.g. static-qp.a2")
+  add_list_option(*command, "--fix", options->fix,
+                  "hold a coefficient, or all of an effect, at its value, e.g. static-qp.a2")
       ->type_name("NAME");
-  command->add_option("--free", options->free, "fit a coefficient that the model file holds fixed")
+  add_list_option(*command, "--free", options->free, "fit a coefficient that the model file holds fixed")
       ->type_name("NAME");
-  command
-      ->add_option(
-          "--stage", options->stages,
-          "fit these coefficients to these regimes alone, each interval with an offset of its own, the "
-          "others to all samples, again and again until nothing moves: 'pitch manoeuvre: static-alpha'")
+  add_list_option(
+      *command, "--stage", options->stages,
+      "fit these coefficients to these regimes alone, each interval with an offset of its own, the "
+      "others to all samples, again and again until nothing moves: 'pitch manoeuvre: static-alpha'")
       ->type_name("REGIMES: NAMES");
   command->add_flag(
       "--no-drift", options->no_drift,
       "take no slow change of the residuals for drift of the sensors: the fit follows all of it, and "
       "its errors are those by jackknife, where they are larger");
-  command->add_option("--holdout", options->holdout, "a flight that is not fitted, but tests the fit")
+  add_list_option(*command, "--holdout", options->holdout, "a flight that is not fitted, but tests the fit")
       ->type_name("T.nc");
   command
       ->add_option("--training-share", options->training_share,
@@ -348,6 +353,11 @@ std::function<void()> add_refit(CLI::App& program) {
       ->capture_default_str();
   add_force_option(*command, options->force);
   add_common_options(*command, options->common);
+  add_examples(
+      *command,
+      {"refit first.nc second.nc -m model.toml -o fitted.toml --report refit.html",
+       "refit first.nc second.nc --holdout third.nc -m model.toml -o fitted.toml",
+       "refit first.nc second.nc -m model.toml --stage 'pitch manoeuvre: static-alpha' -o staged.toml"});
   return [options] { run(*options); };
 }
 

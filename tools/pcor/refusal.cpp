@@ -20,7 +20,7 @@ void refuse_worse(const std::string& worse, bool force, ModelFile& model) {
   all.erase(std::remove_if(all.begin(), all.end(), [](const auto& entry) { return entry.first == "forced"; }),
             all.end());
   if (worse.empty()) return;
-  if (!force) throw Error(fmt::format("nothing was written: {}; --force writes it all the same", worse));
+  if (!force) throw Error(fmt::format("no model was written: {}; --force writes it all the same", worse));
   all.emplace_back("forced", ProvenanceValue{worse});
 }
 

@@ -56,20 +56,21 @@ nlohmann::ordered_json as_json(const SimulationSummary& summary, const Options& 
 }
 
 void print(const SimulationSummary& summary, const Options& options) {
-  fmt::print("{}, {}, {} to {} UTC: {} records, seed {}\n\n", summary.name, summary.aircraft,
-             utc_text(summary.first_time), utc_text(summary.last_time), summary.records, summary.seed);
-  fmt::print("{:<16} {:>8}  {:>8} {:>8} {:>8} {:>12} {:>12}\n", "leg", "begin", "end", "m", "hPa", "TAS m/s",
-             "alpha deg");
+  say("{}, {}, {} to {} UTC: {} records, seed {}\n\n", summary.name, summary.aircraft,
+      utc_text(summary.first_time), utc_text(summary.last_time), summary.records, summary.seed);
+  say("{:<16} {:>8}  {:>8} {:>8} {:>8} {:>12} {:>12}\n", "leg", "begin", "end", "m", "hPa", "TAS m/s",
+      "alpha deg");
   for (const LegFlown& leg : summary.legs) {
-    fmt::print("{:<16} {:>8}  {:>8} {:>8.0f} {:>8.1f} {:>12} {:>12}\n", leg.kind,
-               utc_text(leg.first_time, "%H:%M:%S"), utc_text(leg.last_time, "%H:%M:%S"), leg.altitude,
-               leg.pressure, fmt::format("{:.0f} to {:.0f}", leg.least_speed, leg.greatest_speed),
-               fmt::format("{:.1f} to {:.1f}", leg.least_attack, leg.greatest_attack));
+    say("{:<16} {:>8}  {:>8} {:>8.0f} {:>8.1f} {:>12} {:>12}\n", leg.kind,
+        utc_text(leg.first_time, "%H:%M:%S"), utc_text(leg.last_time, "%H:%M:%S"), leg.altitude, leg.pressure,
+        fmt::format("{:.0f} to {:.0f}", leg.least_speed, leg.greatest_speed),
+        fmt::format("{:.1f} to {:.1f}", leg.least_attack, leg.greatest_attack));
   }
-  if (!summary.effects.empty()) fmt::print("\nsimulated errors: {}\n", fmt::join(summary.effects, ", "));
-  fmt::print("\nwrote {} variables, and the true values as TRUE_..., to {}\n", summary.variables.size(),
-             options.output);
-  fmt::print("To see where a model fails on it: pcor compare {} -m MODEL.toml\n", quoted(options.output));
+  if (!summary.effects.empty()) say("\nsimulated errors: {}\n", fmt::join(summary.effects, ", "));
+  say("\nwrote {} variables, and the true values as TRUE_..., to {}\n", summary.variables.size(),
+      options.output);
+  say_written({options.common.json});
+  say("To see where a model fails on it: {} compare {} -m MODEL.toml\n", program(), quoted(options.output));
 }
 
 void run(const Options& options) {
@@ -101,11 +102,14 @@ std::function<void()> add_simulate(CLI::App& program) {
       ->type_name("SCENARIO.toml");
   command->add_option("-o,--output", options->output, "the file to write, whole or not at all")
       ->required()
+      ->check(is_file_name())
       ->type_name("OUT.nc");
   command->add_option("--seed", options->seed, "seed of the random numbers in place of the scenario's")
       ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()))
       ->type_name("N");
   add_common_options(*command, options->common, false);
+  add_examples(*command, {"simulate data/scenarios/c130-hidden.toml -o first.nc",
+                          "simulate data/scenarios/c130-hidden.toml --seed 102 -o second.nc"});
   return [options] { run(*options); };
 }
 

@@ -140,82 +140,81 @@ nlohmann::ordered_json as_json(const CalibrationInTurn& result) {
 }
 
 void print_flights(const TemperatureResult& result) {
-  fmt::print("{:<28} {:>8} {:>10} {:>9} {:>9} {:>11} {:>10}\n", "flight", "samples", "stretches", "coldest",
-             "warmest", "rms before", "rms after");
+  say("{:<28} {:>8} {:>10} {:>9} {:>9} {:>11} {:>10}\n", "flight", "samples", "stretches", "coldest",
+      "warmest", "rms before", "rms after");
   for (const FlightHeights& flight : result.flights) {
     if (!flight.left_out.empty()) {
-      fmt::print("{:<28} left out: {}\n", flight.flight, flight.left_out);
+      say("{:<28} left out: {}\n", flight.flight, flight.left_out);
       continue;
     }
-    fmt::print("{:<28} {:>8} {:>10} {:>7.1f} C {:>7.1f} C {:>9.2f} m {:>8.2f} m\n", flight.flight,
-               flight.samples, flight.stretches, flight.least_temperature, flight.greatest_temperature,
-               flight.rms_before, flight.rms_after);
+    say("{:<28} {:>8} {:>10} {:>7.1f} C {:>7.1f} C {:>9.2f} m {:>8.2f} m\n", flight.flight, flight.samples,
+        flight.stretches, flight.least_temperature, flight.greatest_temperature, flight.rms_before,
+        flight.rms_after);
   }
 }
 
 void print_parts(const TemperatureResult& result) {
-  fmt::print("\n{:<28} {:>11} {:>20} {:>12}\n", "part", "temperature", "by itself", "of all");
+  say("\n{:<28} {:>11} {:>20} {:>12}\n", "part", "temperature", "by itself", "of all");
   for (const std::vector<PartCorrection>* parts : {&result.parts_by_flight, &result.parts_by_climb}) {
     for (const PartCorrection& part : *parts)
-      fmt::print("{:<28} {:>9.1f} C {:>18} K {:>+10.3f} K\n", part.part, part.temperature,
-                 with_error(part.correction, part.standard_error), part.common);
+      say("{:<28} {:>9.1f} C {:>18} K {:>+10.3f} K\n", part.part, part.temperature,
+          with_error(part.correction, part.standard_error), part.common);
   }
 }
 
 void print_law_errors(const TemperatureResult& result) {
   for (const LawError& error : result.law_errors)
-    fmt::print("By the heights {} of {} lacks {}, a range of {:.2f} hPa over the flights: it is taken off.\n",
-               error.parameter, error.effect, with_error(error.change, error.standard_error), error.range);
+    say("By the heights {} of {} lacks {}, a range of {:.2f} hPa over the flights: it is taken off.\n",
+        error.parameter, error.effect, with_error(error.change, error.standard_error), error.range);
 }
 
 void print(const TemperatureResult& result) {
-  for (const std::string& warning : result.warnings) fmt::print("Warning: {}.\n\n", warning);
+  for (const std::string& warning : result.warnings) say("Warning: {}.\n\n", warning);
   print_flights(result);
-  fmt::print("\nT corrected = T + a0 + a1 t + ..., t in degC\n");
-  fmt::print("{:<4} {:>12} {:>22} {:>24} {:>27} {:>5}\n", "", "likelihood",
-             result.pressure_error > 0.0 ? "std. error" : "std. error, noise only", "likelihood interval",
-             "least squares on height", "unit");
+  say("\nT corrected = T + a0 + a1 t + ..., t in degC\n");
+  say("{:<4} {:>12} {:>22} {:>24} {:>27} {:>5}\n", "", "likelihood",
+      result.pressure_error > 0.0 ? "std. error" : "std. error, noise only", "likelihood interval",
+      "least squares on height", "unit");
   for (std::size_t k = 0; k < result.likelihood.coefficients.size(); ++k) {
-    fmt::print("a{:<3} {:>+12.5g} {:>22.2g} {:>24} {:>27} {:>5}\n", k, result.likelihood.coefficients[k],
-               result.likelihood.standard_errors[k], profile_text(result.profile[k]),
-               fmt::format("{:+.4g} +- {:.2g}", result.least_squares.coefficients[k],
-                           result.least_squares.standard_errors[k]),
-               coefficient_unit(k));
+    say("a{:<3} {:>+12.5g} {:>22.2g} {:>24} {:>27} {:>5}\n", k, result.likelihood.coefficients[k],
+        result.likelihood.standard_errors[k], profile_text(result.profile[k]),
+        fmt::format("{:+.4g} +- {:.2g}", result.least_squares.coefficients[k],
+                    result.least_squares.standard_errors[k]),
+        coefficient_unit(k));
   }
-  fmt::print("Least squares takes heights for independent: its standard errors are too small.\n{}.\n",
-             pressure_error_text(result));
+  say("Least squares takes heights for independent: its standard errors are too small.\n{}.\n",
+      pressure_error_text(result));
   print_law_errors(result);
-  fmt::print("Least squares would add {} K, errors of the law taken off.\n",
-             with_error(result.least_squares_add, result.least_squares_add_error));
-  fmt::print("\n{:>12} {:>22}\n", "temperature", "correction");
+  say("Least squares would add {} K, errors of the law taken off.\n",
+      with_error(result.least_squares_add, result.least_squares_add_error));
+  say("\n{:>12} {:>22}\n", "temperature", "correction");
   for (const TemperatureCorrection& at : result.corrections)
-    fmt::print("{:>10.1f} C {:>20} K\n", at.temperature, with_error(at.correction, at.standard_error));
+    say("{:>10.1f} C {:>20} K\n", at.temperature, with_error(at.correction, at.standard_error));
   print_parts(result);
-  fmt::print(
-      "\nnoise of the GPS height: {:.2f} m in a sample, {:.2f} m correlated over {:.0f} s; the hydrostatic "
+  say("\nnoise of the GPS height: {:.2f} m in a sample, {:.2f} m correlated over {:.0f} s; the hydrostatic "
       "height drifts by {:.3f} m in a minute\n",
       result.gps_noise, result.gps_wander, result.gps_wander_time, result.drift);
-  fmt::print("\n{:<12} {:>16} {:>26}\n", "-2 ln L", "all flights", "held-out flights");
+  say("\n{:<12} {:>16} {:>26}\n", "-2 ln L", "all flights", "held-out flights");
   for (const DegreeChoice& choice : result.degrees)
-    fmt::print("{:<12} {:>16.1f} {:>26}\n", degree_name(choice.degree), choice.deviance,
-               std::isnan(choice.held_out)
-                   ? "-"
-                   : fmt::format("{:.1f} +- {:.1f}", choice.held_out, choice.held_out_error));
-  for (const std::string& note : result.notes) fmt::print("\nNote: {}.\n", note);
+    say("{:<12} {:>16.1f} {:>26}\n", degree_name(choice.degree), choice.deviance,
+        std::isnan(choice.held_out)
+            ? "-"
+            : fmt::format("{:.1f} +- {:.1f}", choice.held_out, choice.held_out_error));
+  for (const std::string& note : result.notes) say("\nNote: {}.\n", note);
 }
 
 void print(const CalibrationInTurn& result) {
-  fmt::print("{:<6} {:>10} {:>22} {:>24}  {}\n", "round", "rms, hPa", "change of delta-p, hPa",
-             "change of temperature, K", "coefficients");
+  say("{:<6} {:>10} {:>22} {:>24}  {}\n", "round", "rms, hPa", "change of delta-p, hPa",
+      "change of temperature, K", "coefficients");
   for (std::size_t i = 0; i < result.rounds.size(); ++i) {
     const CalibrationRound& round = result.rounds[i];
     std::string coefficients;
     for (const double a : round.coefficients) coefficients += fmt::format("{:+.5g} ", a);
-    fmt::print("{:<6} {:>10.4f} {:>22.4f} {:>24.4f}  {}\n", i + 1, round.rms_hpa, round.defect_change,
-               round.temperature_change, coefficients);
+    say("{:<6} {:>10.4f} {:>22.4f} {:>24.4f}  {}\n", i + 1, round.rms_hpa, round.defect_change,
+        round.temperature_change, coefficients);
   }
-  fmt::print("{}\n\n", result.converged ? "pressure and temperature agree with each other"
-                                        : "they still change: use the result with care");
+  say("{}\n\n", result.converged ? "pressure and temperature agree with each other"
+                                 : "they still change: use the result with care");
 }
 
 /// The first flight that took part, as it was named.
@@ -240,12 +239,13 @@ void run(const Options& options) {
   TemperatureResult result;
   CalibrationInTurn in_turn;
   {
-    Progress bar("reading", !options.common.quiet && !options.iterate);
+    Progress bar(options.iterate ? "fitting and calibrating in turn" : "reading", !options.common.quiet);
     with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
     if (options.iterate) {
       RefitOptions refit_with;
       refit_with.mask = with.mask;
       refit_with.time_stamp = with.time_stamp;
+      refit_with.progress = with.progress;
       const References references = references_to_fit(options.comparison, model).used;
       in_turn = calibrate_in_turn(flight_paths(options.comparison), model, references, refit_with, with);
       result = in_turn.temperature;
@@ -263,21 +263,23 @@ void run(const Options& options) {
     all["converged"] = in_turn.converged;
   }
   json.write(all);
-  if (wants_text(options.common)) {
+  const bool with_text = wants_text(options.common, {options.output});
+  if (with_text) {
     if (options.iterate) print(in_turn);
     print(result);
     if (!result.worse.empty())
-      fmt::print(
-          "\nIt is no better than none yet: add flights that climb and descend by 3 km and more, there and "
+      say("\nIt is no better than none yet: add flights that climb and descend by 3 km and more, there and "
           "back along the same way\n");
+    say("\n");
+    say_written({options.common.report, options.common.json});
   }
   refuse_worse(result.worse, options.force, result.model);
-  save_model(result.model, options.output, inputs);
-  if (!wants_text(options.common)) return;
-  fmt::print("\nwrote {}\n", options.output);
+  deliver(result.model, options.output, inputs);
+  if (!with_text) return;
+  say_written({options.output});
   if (result.worse.empty())
-    fmt::print("To apply it: pcor process {} -m {} -o OUT.nc\n", quoted(first_used(result, options)),
-               quoted(options.output));
+    say("To apply it: {} process {} -m {} -o corrected.nc\n", program(), quoted(first_used(result, options)),
+        quoted(options.output));
 }
 
 }  // namespace
@@ -290,7 +292,9 @@ std::function<void()> add_temperature(CLI::App& program) {
   command->add_option("-m,--model", options->model, "the model whose pressures and thermometer are used")
       ->required()
       ->type_name("MODEL.toml");
-  command->add_option("-o,--output", options->output, "the model with the correction, whole or not at all")
+  command
+      ->add_option("-o,--output", options->output,
+                   "the model with the correction, whole or not at all; - for standard output")
       ->required()
       ->type_name("FITTED.toml");
   command->add_option("--degree", options->degree, "highest power of the temperature in the correction")
@@ -314,7 +318,7 @@ std::function<void()> add_temperature(CLI::App& program) {
       ->check(is_amount());
   command
       ->add_option("--min-climb-rate", options->least_climb_rate,
-                   "m/s; slower climbs and descents are left out")
+                   "climbs and descents that are slower are left out, m/s")
       ->check(is_amount())
       ->capture_default_str();
   command->add_flag("--skip-returning", options->skip_returning,
@@ -326,6 +330,8 @@ std::function<void()> add_temperature(CLI::App& program) {
                     "refit the pressures and calibrate the temperature in turn until neither changes");
   add_force_option(*command, options->force);
   add_common_options(*command, options->common);
+  add_examples(*command,
+               {"temperature climbs.nc -m data/scenarios/models/c130-psfd-eq18.toml -o calibrated.toml"});
   return [options] { run(*options); };
 }
 

@@ -1,0 +1,328 @@
+#!/usr/bin/env python3
+"""The command line as people expect one: options, outputs, hints, help, the terminal and the shell.
+
+    command_line_test.py TOOL SOURCE_DIRECTORY
+"""
+
+import fcntl
+import os
+import pty
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import termios
+import tomllib
+import unittest
+
+sys.dont_write_bytecode = True  # no __pycache__ in the source directory
+import comparison_test  # noqa: E402
+from comparison_test import FLIGHTS, ONE, TWO, ComparisonTest  # noqa: E402
+from tool_test import SOURCE, TOOL  # noqa: E402
+
+THREE = FLIGHTS / "three.nc"
+
+
+def setUpModule():
+    scenario = FLIGHTS / "scenario.toml"
+    scenario.write_text(comparison_test.SCENARIO)
+    for output, seed in ((ONE, 3), (TWO, 4), (THREE, 5)):
+        subprocess.run([TOOL, "simulate", scenario, "-o", output, "--seed", str(seed), "--quiet"], check=True)
+
+
+def tearDownModule():
+    comparison_test.MADE.cleanup()
+
+
+class Lists(ComparisonTest):
+    """An option of several values takes one each time: what stands behind it is a flight."""
+
+    def test_held_out_flights_swallow_no_flight(self):
+        fit = self.json_of("refit", "--holdout", THREE, ONE, TWO, "-m", self.model(), "-o", self.path / "out.toml")
+        self.assertEqual([(flight["name"], flight["holdout"]) for flight in fit["flights"]],
+                         [("one.nc", False), ("two.nc", False), ("three.nc", True)])
+
+    def test_every_list_swallows_no_flight(self):
+        model, output = self.model(), self.path / "out.toml"
+        for command, *option in (("refit", "--exclude", "turn"), ("refit", "--fix", "static-qp"),
+                                 ("refit", "--free", "static-qp"), ("refit", "--reference", "lams"),
+                                 ("refit", "--stage", "pitch manoeuvre: static-alpha"),
+                                 ("compare", "--exclude", "turn"), ("diagnose", "--not-variable", "ENGTRQ"),
+                                 ("diagnose", "--try", "k * ENGTRQ / 100")):
+            with self.subTest(option):
+                more = ("-o", output) if command == "refit" else ("--no-file-variables",) * (command == "diagnose")
+                self.done(command, *option, ONE, "-m", model, *more, "--quiet")
+        self.done("compare", "-m", model, ONE, "--quiet")
+
+    def test_lists_are_given_by_repeating(self):
+        fit = self.json_of("refit", ONE, "--holdout", TWO, "--holdout", THREE, "-m", self.model(), "-o",
+                           self.path / "out.toml")
+        self.assertEqual([flight["name"] for flight in fit["flights"] if flight["holdout"]], ["two.nc", "three.nc"])
+
+    def test_a_glob_of_held_out_flights_fits_none_of_them(self):
+        """`refit one.nc --holdout t*.nc`: the shell makes two names of it, and the second would be fitted."""
+        for command in ("refit", "improve"):
+            self.refused(command, ONE, "--holdout", THREE, TWO, "-m", self.model(), "-o", self.path / "out.toml",
+                         words=["--holdout", f"takes one flight, {THREE}", str(TWO), "before each"], status=2)
+
+
+class Outputs(ComparisonTest):
+    def assert_no_file_called_dash(self):
+        self.assertFalse((self.path / "-").exists())
+
+    def test_a_model_goes_to_standard_output(self):
+        for command in (("add", "static-lag"), ("refit", ONE), ("improve", ONE)):
+            with self.subTest(command[0]):
+                result = self.done(*command, "-m", self.model(), "-o", "-", cwd=self.path)
+                self.assertEqual(tomllib.loads(result.stdout)["format"], "pcor-model/1")
+                self.assertEqual(result.stderr, "")
+                self.assert_no_file_called_dash()
+
+    def test_a_calibrated_model_goes_to_standard_output(self):
+        """Twenty minutes tell too little of a thermometer: the model is written by force, and says so."""
+        model = self.model(lambda toml: toml)
+        result = self.done("temperature", ONE, "-m", model, "-o", "-", "--force", cwd=self.path)
+        self.assertIn("forced", tomllib.loads(result.stdout)["provenance"])
+        self.assert_no_file_called_dash()
+
+    def test_two_results_do_not_mix_on_standard_output(self):
+        self.refused("refit", ONE, "-m", self.model(), "-o", "-", "--json", "-", words=["asked for twice"])
+        self.refused("refit", ONE, "-m", self.model(), "-o", "-", "--refit-reference", "-", words=["asked for twice"])
+
+    def test_other_files_do_not_go_to_standard_output(self):
+        model, scenario = self.model(), SOURCE / "data/scenarios/c130-short.toml"
+        for command in (("process", ONE, "-m", model, "-o", "-"), ("simulate", scenario, "-o", "-"),
+                        ("compare", ONE, "-m", model, "--residuals", "-"), ("compare", ONE, "-m", model, "--report", "-")):
+            with self.subTest(command[0]):
+                result = self.run_tool(*command, cwd=self.path)
+                self.assertEqual((result.returncode, result.stdout), (2, ""))
+                self.assertRegex(result.stderr, r"^pcor: --\w+: standard output, '-', takes models and JSON alone")
+                self.assert_no_file_called_dash()
+
+    def test_every_file_is_announced(self):
+        """Of each command: the words of its line, and that all that it wrote and nothing else is in it."""
+        model = self.model()
+        before = set(os.listdir(self.path))
+        report, result = ("--report", "r.html"), ("--json", "r.json")
+        scenario = SOURCE / "data/scenarios/c130-short.toml"
+        for command in (("compare", ONE, TWO, "-m", model, "--residuals", "res.nc", *report, *result),
+                        ("refit", ONE, "-m", model, "-o", "o.toml", *report, *result),
+                        ("refit", ONE, "-m", model, "-o", "o.toml", "--reference", f"static:{comparison_test.OTHER_SYSTEM}",
+                         "--refit-reference", "second.toml"),
+                        ("diagnose", ONE, "-m", model, *report, *result), ("effects", *result),
+                        ("effects", "static-lag", *result), ("effects", "lams-fold", *result),
+                        ("add", "static-lag", "-m", model, "-o", "o.toml", *result),
+                        ("improve", ONE, "-m", model, "-o", "o.toml", *report, *result),
+                        ("check", ONE, "-m", model, *report, *result),
+                        ("temperature", ONE, "-m", model, "-o", "o.toml", "--force", *report, *result),
+                        ("process", ONE, "-m", model, "-o", "o.nc", *result),
+                        ("simulate", scenario, "-o", "o.nc", *result)):
+            with self.subTest(command[0]):
+                text = self.done(*command, cwd=self.path).stdout
+                lines = " ".join(line for line in text.splitlines() if line.startswith("wrote "))
+                written = set(os.listdir(self.path)) - before
+                self.assertTrue(written)
+                self.assertEqual(set(re.findall(r"[\w-]+\.(?:nc|toml|html|json)", lines)), written)
+                for name in written:
+                    (self.path / name).unlink()
+
+    def test_what_a_refused_fit_wrote_is_announced(self):
+        result = self.run_tool("temperature", ONE, "-m", self.model(), "-o", "o.toml", "--report", "r.html", cwd=self.path)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("no model was written", result.stderr)
+        self.assertIn("\nwrote r.html\n", result.stdout)
+
+
+class Hints(ComparisonTest):
+    def test_commands_begin_with_the_program_as_it_was_called(self):
+        folder = self.path / "my tools"
+        folder.mkdir()
+        (folder / "pcor").symlink_to(TOOL)
+        self.model()
+        self.link(ONE, "one.nc")
+        for command in (("compare", "one.nc", "-m", "model.toml"), ("diagnose", "one.nc", "-m", "model.toml"),
+                        ("check", "one.nc", "-m", "model.toml"), ("effects",),
+                        ("add", "static-lag", "-m", "model.toml", "--flight", "one.nc", "-o", "o.toml"),
+                        ("refit", "one.nc", "-m", "model.toml", "-o", "o.toml")):
+            with self.subTest(command[0]):
+                result = subprocess.run(["my tools/pcor", *command], cwd=self.path, capture_output=True, text=True)
+                hint = re.search(r": ('my tools/pcor' .*)\n$", result.stdout)
+                self.assertTrue(hint, result.stdout[-300:])
+                again = subprocess.run(hint.group(1), shell=True, cwd=self.path, capture_output=True, text=True)
+                self.assertEqual(again.returncode, 0, again.stderr)
+        for arguments in ((), ("refitt",), ("refit", "--modle"), ("refit",)):
+            result = subprocess.run(["my tools/pcor", *arguments], cwd=self.path, capture_output=True, text=True)
+            self.assertRegex(result.stderr, r": 'my tools/pcor' .*--help\n$")
+
+    def test_every_command_tells_its_version(self):
+        version = self.run_tool("--version").stdout
+        self.assertRegex(version, r"^pcor \d")
+        for command in ("compare", "refit", "diagnose", "effects", "add", "improve", "check", "process", "temperature",
+                        "simulate"):
+            self.assertEqual(self.done(command, "--version").stdout, version)
+
+
+def commands_of(text):
+    """The sub-commands in the help of the program."""
+    return re.findall(r"^  (\w+) ", text[text.index("Subcommands:"):], flags=re.MULTILINE)
+
+
+class Help(ComparisonTest):
+    def test_every_help_ends_with_examples(self):
+        for command in commands_of(self.done("--help").stdout):
+            text = self.done(command, "--help").stdout
+            examples = text[text.index("\nExamples:\n"):].strip().splitlines()[1:]
+            self.assertIn(len(examples), (1, 2, 3))
+            for example in examples:
+                self.assertTrue(example.startswith(f"  {TOOL} {command}"), example)
+
+    def test_old_names_work_and_tell_the_new_ones(self):
+        second = comparison_test.OTHER_SYSTEM
+        now = self.done("check", ONE, "-m", self.model(), "--reference", f"static:{second}")
+        old = self.done("check", ONE, "-m", self.model(), "--second", second)
+        self.assertEqual(now.stdout, old.stdout)
+        self.assertEqual((now.stderr, old.stderr),
+                         ("", "pcor: --second is called --reference static:OTHER.toml now, and works for the time being\n"))
+        arguments = ("diagnose", ONE, "-m", self.model(), "--no-file-variables")
+        brief, now, old = (self.done(*arguments, *more) for more in ((), ("--full",), ("--all",)))
+        self.assertEqual(now.stdout, old.stdout)
+        self.assertLess(len(brief.stdout), len(now.stdout))
+        self.assertIn("--full", old.stderr)
+        for command, name in (("check", "--second"), ("diagnose", "--all")):
+            self.assertNotIn(name, self.done(command, "--help").stdout)
+
+    def test_check_takes_no_reference_but_a_second_system(self):
+        self.refused("check", ONE, "-m", self.model(), "--reference", "lams", words=["'lams'", "static:OTHER.toml"], status=2)
+
+    def test_the_documented_intervals_are_read(self):
+        (example,) = re.findall(r"```toml\n(.*?)```", (SOURCE / "docs/intervals.md").read_text(), flags=re.DOTALL)
+        example = example.replace("first.nc", ONE.name).replace("20:30", "20:11").replace("20:31", "20:12")
+        intervals = self.write("intervals.toml", example)
+        masks = self.compare("--intervals", intervals)["masks"]
+        self.assertEqual(masks["excluded"], 60)
+
+
+class Terminal(ComparisonTest):
+    """What a terminal of a stated width shows: a pseudo-terminal stands in for it."""
+
+    def shown(self, width, *arguments, stated=""):
+        master, slave = pty.openpty()
+        fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, width, 0, 0))
+        environment = {key: value for key, value in os.environ.items() if key != "COLUMNS"}
+        if stated:
+            environment["COLUMNS"] = stated
+        with subprocess.Popen([TOOL, *arguments], stdout=slave, stderr=subprocess.DEVNULL, env=environment) as run:
+            os.close(slave)
+            text = b""
+            while True:
+                try:
+                    part = os.read(master, 65536)
+                except OSError:  # Linux says so that the other side is closed.
+                    break
+                if not part:
+                    break
+                text += part
+        os.close(master)
+        self.assertEqual(run.returncode, 0)
+        return text.decode().replace("\r\n", "\n")
+
+    def test_lines_are_folded_at_the_width(self):
+        plain = self.done("refit", "--help").stdout
+        self.assertGreater(max(map(len, plain.splitlines())), 300)
+        for width, stated in ((80, ""), (100, ""), (200, "72")):
+            text = self.shown(width, "refit", "--help", stated=stated)
+            prose = text[: text.index("Examples:")]
+            self.assertLessEqual(max(map(len, prose.splitlines())), int(stated or width))
+            self.assertEqual(text.split(), plain.split())
+
+    def test_rows_of_tables_are_broken_between_columns(self):
+        plain = self.done("effects").stdout
+        text = self.shown(80, "effects")
+        self.assertLessEqual(max(map(len, text.splitlines()[:-1])), 80)
+        self.assertEqual(text.split(), plain.split())
+        self.assertRegex(text, r"(?m)^static-lag +lag +static-line +static-line\n +pneumatic lag of the static line\n")
+
+    def test_a_command_to_copy_stays_whole(self):
+        model = self.model()
+        text = self.shown(60, "compare", ONE, "-m", model)
+        command = text.strip().splitlines()[-1]
+        self.assertRegex(command, rf"^  {re.escape(str(TOOL))} (process|refit) ")
+        self.assertEqual(command.strip(), self.done("compare", ONE, "-m", model).stdout.strip().splitlines()[-1].split(": ")[-1])
+
+
+class Shell(ComparisonTest):
+    def completed(self, *words, end="printf '%s\\n' \"${COMPREPLY[@]}\""):
+        """What bash offers for the last of the words of a command line; or what `end` prints of it."""
+        script = self.write("pcor.bash", self.done("completion", "bash").stdout)
+        subprocess.run(["bash", "-n", script], check=True)
+        line = " ".join(f"'{word}'" for word in ("pcor", *words))
+        ask = f"source {script}; COMP_WORDS=({line}); COMP_CWORD={len(words)}; _pcor; {end}"
+        result = subprocess.run(["bash", "-c", ask], cwd=self.path, check=True, capture_output=True, text=True)
+        self.assertEqual(result.stderr, "")
+        return [word for word in result.stdout.split("\n") if word]
+
+    def test_sub_commands_are_completed(self):
+        commands = commands_of(self.done("--help").stdout)
+        self.assertLessEqual(set(commands), set(self.completed("")))
+        self.assertEqual(self.completed("ref"), ["refit"])
+
+    def test_options_are_completed(self):
+        self.assertEqual(self.completed("refit", "--ho"), ["--holdout"])
+        for command in commands_of(self.done("--help").stdout):
+            known = re.findall(r"^ +(?:-\w,)?(--[\w-]+)", self.done(command, "--help").stdout, flags=re.MULTILINE)
+            self.assertLessEqual(set(known), set(self.completed(command, "-")))
+        self.assertNotIn("--second", self.completed("check", "-"))
+
+    def test_values_are_completed(self):
+        self.assertEqual(self.completed("refit", "--loss", "hu"), ["huber"])
+        self.assertEqual(self.completed("refit", "--exclude", "pitch"), ["pitch manoeuvre"])
+        self.assertEqual(self.completed("effects", "static-qp"), ["static-qp"])
+        self.assertIn("total:", self.completed("compare", "one.nc", "--reference", ""))
+        self.assertEqual(self.completed("refit", "--min-airspeed", ""), [])
+        self.assertEqual(self.completed("refit", "--loss", "=", "hu"), ["huber"])
+
+    def test_files_are_completed(self):
+        for name in ("one.nc", "two.nc", "law.toml", "page.html", "notes.txt"):
+            self.write(name, "")
+        (self.path / "flights").mkdir()
+        self.assertEqual(set(self.completed("refit", "")), {"one.nc", "two.nc", "flights"})
+        self.assertEqual(set(self.completed("refit", "one.nc", "-m", "")), {"law.toml", "flights"})
+        self.assertEqual(self.completed("refit", "one.nc", "--holdout", "t"), ["two.nc"])
+        self.assertEqual(self.completed("refit", "--reference", "static", ":", "l"), ["law.toml"])
+        self.assertEqual(self.completed("process", "one.nc", "--json", "no"), ["notes.txt"])
+
+    def test_a_colon_is_not_quoted(self):
+        """Readline quotes what it takes for file names, as it should where they hold blanks."""
+        for words, quotes in (("check", "--reference", "st"), False), (("refit", "--exclude", "pit"), True):
+            told = self.completed(*words, end='compopt() { echo "$*"; }; _pcor')
+            self.assertEqual("filenames" in told, quotes, words)
+
+    def test_zsh_can_read_its_completion(self):
+        script = self.done("completion", "zsh").stdout
+        self.assertTrue(script.startswith("#compdef pcor\n"))
+        for command in commands_of(self.done("--help").stdout):
+            self.assertIn(f"      {command}) _arguments", script)
+        if shutil.which("zsh"):
+            subprocess.run(["zsh", "-n", self.write("_pcor", script)], check=True)
+
+    def test_manual_pages(self):
+        self.done("man", "--folder", self.path)
+        pages = {f"pcor-{command}.1" for command in commands_of(self.done("--help").stdout)} | {"pcor.1"}
+        self.assertEqual(set(os.listdir(self.path)), pages)
+        self.assertEqual(self.done("man", "refit").stdout, (self.path / "pcor-refit.1").read_text())
+        refit = (self.path / "pcor-refit.1").read_text()
+        for words in ("\\fB\\-m\\fR, \\fB\\-\\-model\\fR \\fIMODEL.toml\\fR", ".SH EXAMPLES", "  pcor refit first.nc"):
+            self.assertIn(words, refit)
+        for checker in (["groff", "-man", "-ww", "-z"], ["mandoc", "-Tlint", "-Wwarning"]):
+            if shutil.which(checker[0]):
+                for page in pages:
+                    result = subprocess.run([*checker, self.path / page], capture_output=True, text=True)
+                    self.assertEqual((result.returncode, result.stdout, result.stderr), (0, "", ""), page)
+
+    def test_no_page_of_what_is_no_sub_command(self):
+        self.refused("man", "refitt", words=["refitt"])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

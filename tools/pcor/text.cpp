@@ -1,0 +1,147 @@
+#include "text.hpp"
+
+#include <fmt/ranges.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
+namespace pcor::tool {
+namespace {
+
+constexpr std::size_t least_width = 20;
+constexpr auto none = std::string_view::npos;
+
+std::string& program_name() {
+  static std::string name = "pcor";
+  return name;
+}
+
+/// The width of the terminal that standard output is, which COLUMNS may state; 0 where it is none.
+std::size_t terminal_width() {
+  if (isatty(fileno(stdout)) != 1) return 0;
+  winsize size{};
+  long width = ioctl(fileno(stdout), TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+  if (const char* const stated = std::getenv("COLUMNS")) width = std::atol(stated);
+  return width <= 0 ? 0 : std::max(least_width, static_cast<std::size_t>(width));
+}
+
+/// How many columns a line has: what stands between two blanks or more.
+std::size_t columns_in(std::string_view line) {
+  std::size_t columns = 0;
+  for (std::size_t at = line.find_first_not_of(' '); at != none; at = line.find_first_not_of(' ', at)) {
+    ++columns;
+    at = line.find("  ", at);
+  }
+  return columns;
+}
+
+/// Where the lines after the first one begin.
+std::size_t hanging_indent(std::string_view line, std::size_t width) {
+  const std::size_t indent = line.find_first_not_of(' ');
+  const std::size_t gap = line.find("  ", indent);
+  const std::size_t column = gap == none ? none : line.find_first_not_of(' ', gap);
+  if (column != none && column <= width / 2) return column;
+  return indent > width / 4 ? std::min(indent, width / 2) : indent + 2;
+}
+
+/// How many bytes of `text` make `width` letters of UTF-8 at most.
+std::size_t bytes_of(std::string_view text, std::size_t width) {
+  std::size_t letters = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool begins_letter = (static_cast<unsigned char>(text[i]) & 0xC0U) != 0x80U;
+    if (begins_letter && ++letters > width) return i;
+  }
+  return text.size();
+}
+
+/// Takes a first line of at most `width` letters off `text`, of a row of a table whole columns; a longer word
+/// stays whole.
+std::string_view take_line(std::string_view& text, std::size_t width, bool is_row) {
+  const std::size_t fits = bytes_of(text, width);
+  if (fits == text.size()) return std::exchange(text, {});
+  const std::size_t begin = text.find_first_not_of(' ');
+  std::size_t blank = is_row ? text.rfind("  ", fits) : none;
+  if (blank == none || blank < begin) blank = text.rfind(' ', fits);
+  if (blank == none || blank < begin) blank = text.find(' ', fits);
+  const std::string_view line = text.substr(0, blank);
+  const std::size_t next = blank == none ? none : text.find_first_not_of(' ', blank);
+  text = next == none ? std::string_view{} : text.substr(next);
+  return line.substr(0, line.find_last_not_of(' ') + 1);
+}
+
+}  // namespace
+
+const std::string& program() { return program_name(); }
+
+void set_program(const std::string& name_as_called) { program_name() = quoted(name_as_called); }
+
+std::string quoted(const std::string& word) {
+  const bool plain =
+      !word.empty() &&
+      word.find_first_not_of(
+          ""
+          "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+./:,=@%") == std::string::npos;
+  if (plain) return word;
+  std::string text = "'";
+  for (const char letter : word) {
+    if (letter == '\'') {
+      text += "'\\''";
+    } else {
+      text += letter;
+    }
+  }
+  return text + "'";
+}
+
+std::string folded(std::string_view line, std::size_t width) {
+  if (bytes_of(line, width) == line.size()) return std::string(line);
+  const std::size_t command = line.find(": " + program() + " ");
+  std::string_view rest = line.substr(0, command == none ? none : command + 1);
+  const std::size_t indent = hanging_indent(line, width);
+  const bool is_row = columns_in(line) > 2;
+  std::string text(take_line(rest, width, is_row));
+  while (!rest.empty()) text += fmt::format("\n{:{}}{}", "", indent, take_line(rest, width - indent, is_row));
+  if (command != none) text += fmt::format("\n  {}", line.substr(command + 2));
+  return text;
+}
+
+namespace {
+
+/// The begin of a line whose end is still to come; it can be folded only as a whole.
+std::string& unfinished_line() {
+  static std::string line;
+  return line;
+}
+
+}  // namespace
+
+void say_text(std::string_view text) {
+  static const std::size_t width = terminal_width();
+  if (width == 0) {
+    fmt::print("{}", text);
+    return;
+  }
+  for (std::size_t end = text.find('\n'); end != none; end = text.find('\n')) {
+    fmt::print("{}\n", folded(unfinished_line().append(text.substr(0, end)), width));
+    unfinished_line().clear();
+    text.remove_prefix(end + 1);
+  }
+  unfinished_line().append(text);
+}
+
+void finish_text() {
+  if (!unfinished_line().empty()) fmt::print("{}", unfinished_line());
+  unfinished_line().clear();
+}
+
+void say_written(const std::vector<std::string>& files) {
+  std::vector<std::string> written;
+  std::copy_if(files.begin(), files.end(), std::back_inserter(written),
+               [](const std::string& file) { return !file.empty() && file != "-"; });
+  if (!written.empty()) say("wrote {}\n", fmt::join(written, ", "));
+}
+
+}  // namespace pcor::tool

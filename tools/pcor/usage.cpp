@@ -1,0 +1,100 @@
+#include "usage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include <pcor/words/suggest.hpp>
+#include "command_tree.hpp"
+#include "text.hpp"
+
+namespace pcor::tool {
+namespace {
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::string with_hint(const std::string& message, const std::string& hint, const std::string& help) {
+  return fmt::format("pcor: {};{}{} to list them: {}", message, hint.empty() ? "" : " ", hint, help);
+}
+
+/// The long options of a command line that `command` does not have.
+std::vector<std::string> unknown_options(const CLI::App& command, const std::vector<std::string>& words,
+                                         std::vector<std::string>& known) {
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  }
+  std::vector<std::string> unknown;
+  for (const std::string& word : words) {
+    const std::string name = word.substr(0, word.find('='));
+    if (name.rfind("--", 0) == 0 && name != "--" && !contains(known, name)) unknown.push_back(name);
+  }
+  return unknown;
+}
+
+bool is_option(const std::string& word) { return word.size() > 1 && word[0] == '-'; }
+
+/// True where the word after `word` is its value.
+bool takes_next(const CLI::App& command, const std::string& word) {
+  if (!is_option(word) || word.find('=') != std::string::npos) return false;
+  const CLI::Option* const option = command.get_option_no_throw(word);
+  return option != nullptr && option->get_items_expected_max() > 0;
+}
+
+/// The sub-command that the first word of a command line names; null where there is none.
+const CLI::App* command_of(const CLI::App& program, const std::vector<std::string>& words) {
+  for (const CLI::App* each : program.get_subcommands({})) {
+    if (!words.empty() && each->get_name() == words.front()) return each;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::string usage_message(const CLI::App& program, const std::string& message,
+                          const std::vector<std::string>& words) {
+  const std::string help_of_all = tool::program() + " --help";
+  if (words.empty()) return fmt::format("pcor: no sub-command; to list them: {}", help_of_all);
+  const CLI::App* const command = command_of(program, words);
+  if (command == nullptr && words.front()[0] != '-') {
+    std::vector<std::string> names;
+    for (const CLI::App* each : shown_commands(program)) names.push_back(each->get_name());
+    return with_hint(fmt::format("there is no sub-command '{}'", words.front()),
+                     did_you_mean(words.front(), names), help_of_all);
+  }
+  const std::string help =
+      command == nullptr ? help_of_all : fmt::format("{} {} --help", tool::program(), words.front());
+  std::vector<std::string> known;
+  const std::vector<std::string> unknown =
+      unknown_options(command == nullptr ? program : *command, words, known);
+  if (!unknown.empty()) {
+    return with_hint(fmt::format("there is no option '{}'", unknown.front()),
+                     did_you_mean(unknown.front(), known), help);
+  }
+  return fmt::format("pcor: {}; to list the options: {}", message, help);
+}
+
+std::string flights_behind_holdout(const CLI::App& program, const std::vector<std::string>& words) {
+  const CLI::App* const command = command_of(program, words);
+  if (command == nullptr) return "";
+  bool has_flight = false;
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    if (!takes_next(*command, words[i])) {
+      has_flight = has_flight || !is_option(words[i]);
+      continue;
+    }
+    const bool lists = words[i] == "--holdout" && i + 2 < words.size() && !is_option(words[i + 2]);
+    if (lists && has_flight) {
+      return fmt::format(
+          "--holdout takes one flight, {}, and {} behind it would be fitted as those before it; say "
+          "--holdout "
+          "before each flight that is held out, or name all flights that are fitted in one place",
+          words[i + 1], words[i + 2]);
+    }
+    ++i;
+  }
+  return "";
+}
+
+}  // namespace pcor::tool
