@@ -103,7 +103,6 @@ Report inspection_report(const std::vector<Inspection>& flights) {
     for (const Interval& interval : flight.intervals)
       report.intervals.push_back({std::string(facts_of(interval.regime).name), interval.begin, interval.end});
   }
-  report.facts.emplace_back("Program", "pcor " PCOR_VERSION);
   if (!report.time.empty()) {
     FlightColumns columns(report, flights);
     const auto recorded = [](const char* series) {

@@ -10,8 +10,8 @@ namespace pcor::tool {
 AddCommand add_inspect, add_compare, add_refit, add_diagnose, add_effects, add_add, add_improve, add_check,
     add_process, add_temperature, add_simulate, add_completion, add_man;
 
-inline constexpr std::array commands{&add_inspect,  &add_compare,    &add_refit,   &add_diagnose, &add_effects,
-                                     &add_add,      &add_improve,    &add_check,   &add_process,  &add_temperature,
-                                     &add_simulate, &add_completion, &add_man};
+inline constexpr std::array commands{
+    &add_inspect, &add_compare, &add_refit,       &add_diagnose, &add_effects,    &add_add, &add_improve,
+    &add_check,   &add_process, &add_temperature, &add_simulate, &add_completion, &add_man};
 
 }  // namespace pcor::tool

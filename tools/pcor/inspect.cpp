@@ -14,6 +14,7 @@
 #include <pcor/words/utc.hpp>
 #include "command.hpp"
 #include "model_name.hpp"
+#include "report_origin.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -92,20 +93,19 @@ void print_head(const Inspection& flight) {
     if (!part.empty()) who.push_back(part);
   }
   say("{}: {}\n", flight.path,
-             who.empty() ? "it does not say whose flight it is" : fmt::format("{}", fmt::join(who, ", ")));
+      who.empty() ? "it does not say whose flight it is" : fmt::format("{}", fmt::join(who, ", ")));
   say("{} to {} UTC, {} records of {:g} s, {} gap{} in time\n", utc_text(flight.time.first),
-             utc_text(flight.time.last), flight.records, flight.time.step, flight.time.gap_count,
-             flight.time.gap_count == 1 ? "" : "s");
+      utc_text(flight.time.last), flight.records, flight.time.step, flight.time.gap_count,
+      flight.time.gap_count == 1 ? "" : "s");
   std::vector<std::string> rates;
   for (const auto& [rate, count] : flight.rates)
     rates.push_back(fmt::format("{} of {} Hz", count, rate / flight.time.step));
   say("variables: {}\n", fmt::join(rates, ", "));
   if (flight.alike.empty()) {
     say("names are looked for as in files of {}, since the file is like none that is known\n",
-               flight.family_title);
+        flight.family_title);
   } else if (flight.alike.size() > 1) {
-    say(
-        "it is like the files of {}; names are looked for as in those of {}; say which in the model by "
+    say("it is like the files of {}; names are looked for as in those of {}; say which in the model by "
         "roles\n",
         fmt::join(flight.alike, " and of "), flight.family);
   } else {
@@ -114,18 +114,16 @@ void print_head(const Inspection& flight) {
 }
 
 void print_roles(const Inspection& flight) {
-  say("\n{:<33} {:<12} {:<10} {:>4} {:>8}  {}\n", "role", "variable", "unit", "Hz", "present",
-             "also there");
+  say("\n{:<33} {:<12} {:<10} {:>4} {:>8}  {}\n", "role", "variable", "unit", "Hz", "present", "also there");
   for (const InspectedRole& role : flight.roles) {
     say("{:<33} {:<12} {:<10} {:>4g} {:>7.1f}%  {}\n", role.role,
-               role.variable + (role.is_verified ? "" : " ?"), role.unit, role.rate / flight.time.step,
-               100.0 * role.present, fmt::join(role.others, " "));
+        role.variable + (role.is_verified ? "" : " ?"), role.unit, role.rate / flight.time.step,
+        100.0 * role.present, fmt::join(role.others, " "));
   }
   const bool doubt = std::any_of(flight.roles.begin(), flight.roles.end(),
                                  [](const InspectedRole& role) { return !role.is_verified; });
   if (doubt)
-    say(
-        "?: no public document of this aircraft was found that has the name; make sure of what it is\n");
+    say("?: no public document of this aircraft was found that has the name; make sure of what it is\n");
   for (const InspectedRole& role : flight.roles) {
     if (!role.trap.empty()) say("{}: {}\n", role.variable, role.trap);
   }
@@ -138,7 +136,7 @@ void print_missing(const Inspection& flight) {
     if (!any) say("\n{:<33} what cannot be done without it\n", "missing");
     any = true;
     say("{:<33} {}{}{}\n", role.role, role.cost, role.cost.empty() || role.effects.empty() ? "" : "; ",
-               role.effects.empty() ? "" : fmt::format("no effects {}", fmt::join(role.effects, ", ")));
+        role.effects.empty() ? "" : fmt::format("no effects {}", fmt::join(role.effects, ", ")));
   }
 }
 
@@ -155,8 +153,7 @@ void print_flown(const Inspection& flight) {
   for (const FrozenSpan& span : flight.frozen) {
     const std::vector<double>& time = flight.samples->time;
     say("{} stands still from {} to {}\n", facts_of(span.quantity).name,
-               utc_text(time[span.first], "%H:%M:%S"),
-               utc_text(time[span.first + span.count - 1], "%H:%M:%S"));
+        utc_text(time[span.first], "%H:%M:%S"), utc_text(time[span.first + span.count - 1], "%H:%M:%S"));
   }
 }
 
@@ -168,9 +165,9 @@ void print(const Inspection& flight) {
   if (!flight.laws.empty()) say("\nlaws for this aircraft\n");
   for (const InspectedLaw& law : flight.laws) {
     say("  {}: {}{}\n", law.path.stem().string(), law.name,
-               !law.has_variables ? "; the flight does not record its pressures"
-               : !law.is_in_time  ? "; stated for another time"
-                                  : "; fits the flight's pressures and its date");
+        !law.has_variables ? "; the flight does not record its pressures"
+        : !law.is_in_time  ? "; stated for another time"
+                           : "; fits the flight's pressures and its date");
   }
   for (const std::string& note : flight.notes) say("\nNote: {}.\n", note);
 }
@@ -188,15 +185,16 @@ std::string next_step(const Options& options, const Inspection& flight) {
         return fmt::format("To see what else can be said of its pressures: {} check {}", program(), path);
       reference = " --reference " + quoted("pressure:" + flight.corrected_pressure);
     }
-    return fmt::format("To fit a law: {} refit {} -m {} -o fitted.toml{}", program(), path, quoted(options.model),
-                       reference);
+    return fmt::format("To fit a law: {} refit {} -m {} -o fitted.toml{}", program(), path,
+                       quoted(options.model), reference);
   }
   const auto fits = std::find_if(flight.laws.begin(), flight.laws.end(),
                                  [](const InspectedLaw& law) { return law.has_variables && law.is_in_time; });
   if (fits != flight.laws.end())
     return fmt::format("To correct it: {} process {} -m {} -o corrected.nc", program(), path,
                        quoted(fits->path.stem().string()));
-  return fmt::format("To have a model to start from: {} inspect {} --write-model model.toml", program(), path);
+  return fmt::format("To have a model to start from: {} inspect {} --write-model model.toml", program(),
+                     path);
 }
 
 void run(const Options& options) {
@@ -204,6 +202,7 @@ void run(const Options& options) {
   refuse_overwriting({options.model, options.common.json, options.common.report}, inputs);
   for (const std::string& output : {options.model, options.common.report}) require_writable(output);
   JsonResult json(options.common);
+  const bool text = wants_text(options.common, {options.model});
   nlohmann::ordered_json result;
   result["flights"] = nlohmann::ordered_json::array();
   const std::vector<std::filesystem::path> laws = named_models();
@@ -212,7 +211,7 @@ void run(const Options& options) {
     all.push_back(
         inspect_flight(flight, laws, options.time_stamp == "middle" ? TimeStamp::middle : TimeStamp::begin));
     result["flights"].push_back(as_json(all.back()));
-    if (!wants_text(options.common)) continue;
+    if (!text) continue;
     if (all.size() > 1) say("\n");
     print(all.back());
   }
@@ -220,15 +219,16 @@ void run(const Options& options) {
   if (!options.model.empty()) {
     if (!first.model)
       throw Error(fmt::format("{}: no model can be written: {}", first.path, first.notes.front()));
-    save_model(*first.model, options.model, inputs);
-    if (wants_text(options.common)) say("\nwrote {}\n", options.model);
+    deliver(*first.model, options.model, inputs);
   }
   if (!options.common.report.empty()) {
-    write_report(inspection_report(all), options.common.report);
-    if (wants_text(options.common)) say("\nwrote {}\n", options.common.report);
+    write_report_of_run(inspection_report(all), {{}, options.flights, {}}, options.common.report);
   }
   json.write(result);
-  if (wants_text(options.common)) say("\n{}\n", next_step(options, first));
+  if (!text) return;
+  say("\n");
+  say_written({options.model, options.common.report, options.common.json});
+  say("{}\n", next_step(options, first));
 }
 
 }  // namespace
@@ -250,6 +250,8 @@ std::function<void()> add_inspect(CLI::App& program) {
       ->check(CLI::IsMember({"begin", "middle"}))
       ->capture_default_str();
   add_common_options(*command, options->common);
+  add_examples(*command,
+               {"inspect first.nc --report inspect.html", "inspect first.nc --write-model mine.toml"});
   return [options] { run(*options); };
 }
 

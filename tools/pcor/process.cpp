@@ -115,7 +115,7 @@ void print_flags(const Flags& flagged) {
 
 void print_hint(const ProcessedFlight& flight) {
   say("To look at the result: ncdump -v {} {} | less\n", flight.summary.outputs.front(),
-             quoted(flight.output.string()));
+      quoted(flight.output.string()));
 }
 
 /// All that is to be said of one flight.
@@ -128,18 +128,17 @@ void print(const ProcessedFlight& of) {
     flight += part;
   }
   say("{}{}{} to {} UTC: {} records, {} sample{} in a record\n", flight, flight.empty() ? "" : ", ",
-             utc_text(summary.first_time), utc_text(summary.last_time), summary.records, summary.rate,
-             summary.rate == 1 ? "" : "s");
+      utc_text(summary.first_time), utc_text(summary.last_time), summary.records, summary.rate,
+      summary.rate == 1 ? "" : "s");
   say("corrected {} of {} samples", summary.corrected, summary.samples);
   if (summary.in_flight > 0) {
-    say(
-        "; in flight, at a dynamic pressure of {:.0f} hPa and more, {} with delta-p {:.2f} hPa in the "
+    say("; in flight, at a dynamic pressure of {:.0f} hPa and more, {} with delta-p {:.2f} hPa in the "
         "mean, {:.2f} to {:.2f} hPa",
         summary.flying_dynamic_pressure, summary.in_flight, summary.mean_defect, summary.least_defect,
         summary.greatest_defect);
   } else if (summary.corrected > 0) {
     say("; none of them in flight, at a dynamic pressure of {:.0f} hPa and more",
-               summary.flying_dynamic_pressure);
+        summary.flying_dynamic_pressure);
   }
   say("\n");
   if (summary.gaps > 0) say("{} gap{} in time\n", summary.gaps, summary.gaps == 1 ? "" : "s");
@@ -157,8 +156,8 @@ class Table {
 
   void add(const ProcessedFlight& flight) {
     if (!has_head_) {
-      say("{:<{}} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "flight", width_, "samples", "corrected",
-                 "delta-p", "least", "greatest");
+      say("{:<{}} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "flight", width_, "samples", "corrected", "delta-p",
+          "least", "greatest");
     }
     has_head_ = true;
     const ProcessSummary& summary = flight.summary;
@@ -168,8 +167,8 @@ class Table {
     } else if (summary.in_flight == 0) {
       say("{:>9} {:>9} {:>9}\n", summary.samples, summary.corrected, "no flight");
     } else {
-      say("{:>9} {:>9} {:>9.2f} {:>9.2f} {:>9.2f}\n", summary.samples, summary.corrected,
-                 summary.mean_defect, summary.least_defect, summary.greatest_defect);
+      say("{:>9} {:>9} {:>9.2f} {:>9.2f} {:>9.2f}\n", summary.samples, summary.corrected, summary.mean_defect,
+          summary.least_defect, summary.greatest_defect);
     }
   }
 
@@ -186,8 +185,8 @@ class Table {
       say("\nNote, {} of {} flights: {}.\n", count, flights.size(), note);
     }
     say("\n{} flights: {} processed into {}, {} up to date, {} unreadable\n", flights.size(),
-               count_of(flights, FlightState::processed), folder, count_of(flights, FlightState::up_to_date),
-               count_of(flights, FlightState::unreadable));
+        count_of(flights, FlightState::processed), folder, count_of(flights, FlightState::up_to_date),
+        count_of(flights, FlightState::unreadable));
   }
 
  private:
@@ -293,10 +292,19 @@ void run(const Options& options) {
     throw Error(many ? fmt::format("none of the {} flights could be processed", flights.size())
                      : flights.front().reason);
   }
-  if (!text || many) return;
-  if (flights.front().state == FlightState::processed) return print(flights.front());
-  say("{} is up to date: this version made it of this flight with this model and these options\n",
-             flights.front().output.string());
+  if (!text) return;
+  const ProcessedFlight& first = flights.front();
+  if (!many && first.state == FlightState::processed) {
+    print(first);
+  } else if (!many) {
+    say("{} is up to date: this version made it of this flight with this model and these options\n",
+        first.output.string());
+  }
+  say_written({options.common.json});
+  const auto done = std::find_if(flights.begin(), flights.end(), [](const ProcessedFlight& each) {
+    return each.state == FlightState::processed;
+  });
+  if (done != flights.end()) print_hint(*done);
 }
 
 }  // namespace
