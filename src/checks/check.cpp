@@ -141,6 +141,12 @@ Checks check(const std::vector<std::filesystem::path>& flights, const std::optio
              const CheckOptions& options) {
   if (flights.empty()) throw Error("nothing to check; give at least one flight");
   require_each_once(flights);
+  if (options.second && options.second->variables.count(Quantity::static_pressure) == 0) {
+    throw Error(Error::Code::model,
+                fmt::format("model '{}': the model of a second system has to name its pressures; add "
+                            "static_pressure and dynamic_pressure to [variables]",
+                            options.second->model.name));
+  }
   Checks checks;
   CheckedFlights read;
   std::vector<std::pair<std::string, std::string>> aircraft;
@@ -164,12 +170,11 @@ Checks check(const std::vector<std::filesystem::path>& flights, const std::optio
       if (checks.model.empty()) checks.model = its_model->model.name;
       for (const std::string& note : read.back().air.notes) checks.notes.push_back(note);
       if (!model && its_model->variables.count(Quantity::recovery_temperature) > 0) {
-        checks.notes.push_back(
-            fmt::format("{}: without a model the recovery factor of {} is taken as {:g}, that of the C-130's "
-                        "TTRR; a model (-m) "
-                        "gives its own",
-                        checks.flights.back(), its_model->variables.at(Quantity::recovery_temperature),
-                        its_model->model.recovery.coefficients[0]));
+        checks.notes.push_back(fmt::format(
+            "{}: without a model the recovery factor of {} is taken as {:g}, by what is published of such "
+            "thermometers; a model (-m) gives its own",
+            checks.flights.back(), its_model->variables.at(Quantity::recovery_temperature),
+            its_model->model.recovery.coefficients[0]));
       }
     }
     if (options.progress) options.progress(aircraft.size(), flights.size());

@@ -207,9 +207,13 @@ void DiagnosisPanels::add_responses(const std::vector<std::string>& residuals, b
     step.curves.push_back({label, std::move(found.time), std::move(found.step)});
   }
   if (coherence.curves.empty()) return;
-  add(std::move(coherence));
-  add(std::move(delay));
-  add(std::move(step));
+  for (CurvePanel* const panel : {&coherence, &delay, &step}) {
+    // Where nothing is coherent no delay can be told.
+    const bool shows = std::any_of(panel->curves.begin(), panel->curves.end(), [](const ReportCurve& curve) {
+      return std::any_of(curve.y.begin(), curve.y.end(), [](double y) { return std::isfinite(y); });
+    });
+    if (shows) add(std::move(*panel));
+  }
 }
 
 void DiagnosisPanels::add_plane(std::string title, std::string caption, const std::string& colour) {

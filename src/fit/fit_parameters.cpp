@@ -34,6 +34,7 @@ void add_parameters(std::vector<FitParameter>& parameters, const ModelFile& file
       if (facts.memory.of == Quantity::count || facts.memory.parameter != p) continue;
       const auto& tried = facts.parameters[p].tried;
       parameter.tried.assign(tried.begin(), std::find(tried.begin(), tried.end(), 0.0));
+      parameter.tried.push_back(parameter.neutral);
     }
   }
 }

@@ -134,31 +134,37 @@ class Solver {
       std::vector<double> times = task_.parameters[wanted_[static_cast<std::size_t>(k)]].tried;
       if (times.empty()) continue;
       times.insert(times.begin(), unknowns_[k]);
-      const Eigen::VectorXd start = unknowns_;
       const auto [lower, upper] = std::pair(lower_[k], upper_[k]);
-      Eigen::VectorXd best = start;
-      double least = infinity;
-      std::unique_ptr<ceres::LossFunction> huber;
-      for (const double time : times) {
-        if (time < lower || time > upper) continue;
-        unknowns_ = start;
-        unknowns_[k] = lower_[k] = upper_[k] = time;
+      std::vector<Eigen::VectorXd> solutions;
+      double deviation = infinity;  // the least of all, so that the start has no say
+      const Eigen::VectorXd start = unknowns_;
+      const auto put = [&](const Eigen::VectorXd& unknowns) {
+        unknowns_ = unknowns;
         spread();
         flights_.prepare(solution_.values, solution_.offsets);
+      };
+      for (const double time : times) {
+        if (time < lower || time > upper) continue;
+        Eigen::VectorXd at = start;
+        at[k] = lower_[k] = upper_[k] = time;
+        put(at);
         linear_step(nullptr);
-        // Outliers have no say.
-        if (!huber) {
-          find_deviation();
-          huber = loss_function(Loss::huber, solution_.deviation);
-        }
+        find_deviation();
+        deviation = std::min(deviation, solution_.deviation);
+        solutions.push_back(unknowns_);
+      }
+      // Outliers have no say either.
+      const std::unique_ptr<ceres::LossFunction> huber = loss_function(Loss::huber, deviation);
+      Eigen::VectorXd best = start;
+      double least = infinity;
+      for (const Eigen::VectorXd& solution : solutions) {
+        put(solution);
         const double cost = flights_.reduce(solution_.values, solution_.offsets, huber.get()).cost;
-        if (cost < least) best = unknowns_;
+        if (cost < least) best = solution;
         least = std::min(least, cost);
       }
       std::tie(lower_[k], upper_[k]) = std::pair(lower, upper);
-      unknowns_ = best;
-      spread();
-      flights_.prepare(solution_.values, solution_.offsets);
+      put(best);
     }
   }
 

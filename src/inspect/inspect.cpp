@@ -53,13 +53,33 @@ std::string cost_of(std::string_view series) {
   return found == costs.end() ? std::string() : std::string(found->text);
 }
 
+/// What a quantity is found from where it is not recorded.
+std::vector<Quantity> sources_of(Quantity quantity) {
+  using Q = Quantity;
+  for (const Rate& each : rates) {
+    if (each.rate == quantity) return {each.quantity};
+  }
+  switch (quantity) {
+    case Q::wetness:
+      return {Q::liquid_water};
+    case Q::attack_ratio:
+      return {Q::attack_differential_pressure, Q::radome_dynamic_pressure};
+    case Q::sideslip_ratio:
+      return {Q::sideslip_differential_pressure, Q::radome_dynamic_pressure};
+    default:
+      return {quantity};
+  }
+}
+
 std::vector<std::string> effects_that_need(Quantity role) {
   std::vector<std::string> effects;
   for (const EffectFacts& facts : effect_facts) {
-    const auto end = facts.needs.begin() + static_cast<std::ptrdiff_t>(facts.need_count());
-    const bool by_rate =
-        role == Quantity::liquid_water && std::find(facts.needs.begin(), end, Quantity::wetness) != end;
-    if (by_rate || std::find(facts.needs.begin(), end, role) != end) effects.emplace_back(facts.id);
+    bool needs = false;
+    for (std::size_t i = 0; i < facts.need_count(); ++i) {
+      const std::vector<Quantity> sources = sources_of(facts.needs[i]);
+      needs = needs || std::find(sources.begin(), sources.end(), role) != sources.end();
+    }
+    if (needs) effects.emplace_back(facts.id);
   }
   return effects;
 }
@@ -227,12 +247,11 @@ class Look {
       try {
         const ModelFile file = read_model(path);
         if (!is_of_this_aircraft(file.model.aircraft)) continue;
-        InspectedLaw law{path, file.model.name, false, false};
-        const auto has = [&](Quantity role) {
-          const auto variable = file.variables.find(role);
-          return variable != file.variables.end() && flight_.has(variable->second);
-        };
-        law.has_variables = has(Quantity::static_pressure) && has(Quantity::dynamic_pressure);
+        InspectedLaw law{path, file.model.name, {}, false};
+        for (const auto& [role, variable] : file.variables) {
+          // A laser may be off.
+          if (role != Quantity::lams_airspeed && !flight_.has(variable)) law.lacks.push_back(variable);
+        }
         law.is_in_time = (file.law.valid_from.empty() || file.law.valid_from <= date) &&
                          (file.law.valid_to.empty() || date <= file.law.valid_to);
         result_.laws.push_back(std::move(law));
@@ -242,7 +261,7 @@ class Look {
     }
     std::stable_sort(result_.laws.begin(), result_.laws.end(),
                      [](const InspectedLaw& a, const InspectedLaw& b) {
-                       return a.has_variables + a.is_in_time > b.has_variables + b.is_in_time;
+                       return a.lacks.empty() + a.is_in_time > b.lacks.empty() + b.is_in_time;
                      });
   }
 

@@ -106,7 +106,10 @@ Report inspection_report(const std::vector<Inspection>& flights) {
   if (!report.time.empty()) {
     FlightColumns columns(report, flights);
     const auto recorded = [](const char* series) {
-      return [series](const Inspection& flight) { return read_usual(Flight(flight.path), series).values; };
+      return [series](const Inspection& inspected) {
+        const Flight flight(inspected.path);
+        return read_usual(flight, family_of(flight), series).values;
+      };
     };
     columns.add("altitude", "altitude", "m", [](const Inspection& f) { return f.samples->motion.altitude; });
     columns.add("airspeed", "true airspeed", "m/s",

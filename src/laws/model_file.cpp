@@ -111,7 +111,7 @@ ModelFile read_model(const fs::path& path) {
   ModelFile file = parse_model(text_of_file(path, "a model file"), path.string());
   // The names of an aircraft in a file of its own lie beside the model.
   if (const fs::path roles = file.roles_from; roles.extension() == ".toml" && roles.is_relative())
-    file.roles_from = (path.parent_path() / roles).string();
+    file.roles_from = fs::absolute(path.parent_path() / roles).lexically_normal().string();
   return file;
 }
 

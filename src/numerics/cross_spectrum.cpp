@@ -23,6 +23,7 @@ struct Sums {
   double second = 0.0;
   std::complex<double> product{};  // the first times the conjugate of the second
   double count = 0.0;
+  double frequencies = 1.0;
 
   Sums& operator+=(const Sums& other) {
     first += other.first;
@@ -34,9 +35,12 @@ struct Sums {
   double coherence() const {
     return first > 0.0 && second > 0.0 ? std::min(1.0, std::norm(product) / (first * second)) : 0.0;
   }
+  /// How many independent ones the sums are of. Segments overlap by half and neighbouring frequencies share
+  /// what Hann's window leaks.
+  double independent() const { return count / (frequencies > 1.0 ? 1.06 * 1.9 : 1.06); }
   /// Whether two series that do not know of each other reach that coherence too rarely.
   bool is_coherent() const {
-    return count > 1.0 && coherence() > 1.0 - std::pow(by_chance, 1.0 / (count - 1.0));
+    return independent() > 1.0 && coherence() > 1.0 - std::pow(by_chance, 1.0 / (independent() - 1.0));
   }
 };
 
@@ -71,7 +75,7 @@ std::vector<Sums> sums_of(const std::vector<double>& first, const std::vector<do
 }
 
 /// The delay, in samples, that the phases of neighbouring frequencies have in common: with it taken out a
-/// band can be summed without that its phases cancel.
+/// band can be summed without its phases cancelling.
 double common_delay(const std::vector<Sums>& sums) {
   std::complex<double> turn{};
   for (std::size_t k = 1; k + 2 < sums.size(); ++k) turn += sums[k + 1].product * std::conj(sums[k].product);
@@ -113,6 +117,7 @@ CrossSpectrum cross_spectrum(const std::vector<double>& first, const std::vector
   for (std::size_t from = 2; from + 1 < sums.size();) {
     const auto to = std::min(sums.size() - 1, std::max(from + 1, from + from / 4));
     Sums band;
+    band.frequencies = static_cast<double>(to - from);
     for (std::size_t k = from; k < to; ++k) {
       band += sums[k];
       band.product += sums[k].product *
@@ -120,7 +125,7 @@ CrossSpectrum cross_spectrum(const std::vector<double>& first, const std::vector
     }
     const double frequency = 0.5 * static_cast<double>(from + to - 1) / (segment_length * step);
     const double coherence = band.coherence();
-    const double phase_error = std::sqrt((1.0 - coherence) / (2.0 * band.count * coherence));
+    const double phase_error = std::sqrt((1.0 - coherence) / (2.0 * band.independent() * coherence));
     const bool coherent = band.is_coherent();
     spectrum.period.push_back(1.0 / frequency);
     spectrum.coherence.push_back(coherence);

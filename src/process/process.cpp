@@ -285,6 +285,8 @@ FileDescription Processing::describe() const {
   description.attributes.emplace_back("pcor_time_stamp", flight_.time_stamp() == TimeStamp::begin
                                                              ? "begin of the record"
                                                              : "middle of the record");
+  if (!summary_.notes.empty())
+    description.attributes.push_back({"pcor_notes", fmt::format("{}", fmt::join(summary_.notes, "; "))});
   return description;
 }
 

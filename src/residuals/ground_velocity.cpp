@@ -10,8 +10,9 @@ GroundVelocity read_ground_velocity(const Flight& flight, const ModelFile& model
   GroundVelocity velocity{read_role(flight, model, Quantity::ground_speed),
                           read_role(flight, model, Quantity::ground_track)};
   if (!velocity.speed.values.empty() && !velocity.track.values.empty()) return velocity;
-  const RecordedSeries east = read_usual(flight, "ground_speed_east");
-  const RecordedSeries north = read_usual(flight, "ground_speed_north");
+  const AircraftFamily& family = family_of(model, flight);
+  const RecordedSeries east = read_usual(flight, family, "ground_speed_east");
+  const RecordedSeries north = read_usual(flight, family, "ground_speed_north");
   if (east.values.empty() || north.values.empty()) return {};
   const std::string both = east.variable + " and " + north.variable;
   velocity = {{both}, {both}};

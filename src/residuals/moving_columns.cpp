@@ -75,10 +75,11 @@ void find_moving_columns(const Model& model, const double* parameters, const std
       }
     }
     const std::vector<double> above = over(at + little);
-    const std::vector<double> below = over(at - little);
+    const double lower = memory.of == Quantity::wetness ? std::max(0.0, at - little) : at - little;
+    const std::vector<double> below = over(lower);
     moving->at = at;
     for (std::size_t i = 0; i < values.size(); ++i) {
-      const double slope = (above[i] - below[i]) / (2.0 * little);
+      const double slope = (above[i] - below[i]) / (at + little - lower);
       moving->slope[i] = std::isfinite(slope) ? slope : 0.0;  // beside a gap
     }
     // In place: what reads the column keeps its address.

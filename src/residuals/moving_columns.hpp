@@ -11,8 +11,8 @@ namespace pcor::internal {
 /// What an effect of a model finds over a time; nothing for a formula.
 Memory memory_of(const ModelEffect& effect);
 
-/// How wet the thermometer is in each record (`Wetness`); a gap in time is a new begin. @param liquid_water
-/// g/m3 @param time of the records, s @param step s @param drying s, below zero as zero
+/// How wet the thermometer is in each record (`Wetness`); after a gap in time it begins anew. @param
+/// liquid_water g/m3 @param time of the records, s @param step s @param drying s, below zero as zero
 std::vector<double> wetness_of(const std::vector<double>& liquid_water, const std::vector<double>& time,
                                double step, double drying);
 
@@ -39,6 +39,9 @@ class ColumnsAt {
  public:
   /// The model and the samples have to outlive it.
   ColumnsAt(const ModelOnSamples& model, const FlightSamples& samples, const double* parameters);
+
+  ColumnsAt(const ColumnsAt&) = delete;
+  ColumnsAt& operator=(const ColumnsAt&) = delete;
 
   const std::vector<Batch::Input>& inputs() const { return inputs_; }
 

@@ -42,12 +42,25 @@ ModelFile bare_pair(const std::string& static_pressure, const std::string& dynam
   return pair;
 }
 
+/// A second system, whose pressures nobody can guess.
+ModelFile read_system(const std::string& path) {
+  ModelFile system = read_model(path);
+  if (system.variables.count(Quantity::static_pressure) == 0) {
+    throw Error(
+        Error::Code::model,
+        fmt::format("{}: the model of a second system has to name its pressures; add static_pressure and "
+                    "dynamic_pressure to [variables]",
+                    path));
+  }
+  return system;
+}
+
 /// Of a file, or of two variables with a + between them.
 Pointer read_total_pressure(const std::string& system, const ModelFile&) {
   const std::size_t plus = system.find('+');
   const bool is_pair = plus != std::string::npos && !std::filesystem::exists(system);
   return total_pressure_reference(is_pair ? bare_pair(system.substr(0, plus), system.substr(plus + 1))
-                                          : read_model(system));
+                                          : read_system(system));
 }
 
 /// How a text names a reference: "form" or, where it takes an argument, "form:argument".
@@ -62,7 +75,7 @@ struct Form {
 constexpr std::array<Form, 6> forms{{
     {"lams", "", "the laser air-motion sensor", read_lams},
     {"static", "OTHER.toml", "a second static system, by its model",
-     [](const std::string& file, const ModelFile&) { return static_system_reference(read_model(file)); }},
+     [](const std::string& file, const ModelFile&) { return static_system_reference(read_system(file)); }},
     {"pressure", "VARIABLE", "a recorded static pressure",
      [](const std::string& variable, const ModelFile&) { return pressure_reference(variable); }},
     {"total", "OTHER.toml", "the total pressure of a second system, by its model, or of STATIC+DYNAMIC",

@@ -86,7 +86,8 @@ FlightMotion read_motion(const Flight& flight, const ModelFile& model, FlightSam
   motion.time = samples.time;
   motion.airspeed = measured_airspeed(samples.model);
   motion.altitude = read(Quantity::altitude);
-  if (motion.altitude.empty()) motion.altitude = take("altitude", read_usual(flight, "other_altitude"));
+  if (motion.altitude.empty())
+    motion.altitude = take("altitude", read_usual(flight, family_of(model, flight), "other_altitude"));
   motion.vertical_speed = read(Quantity::vertical_speed);
   motion.roll = read(Quantity::roll);
   motion.pitch = read(Quantity::pitch);

@@ -39,8 +39,7 @@ std::vector<double> read_values(const Flight& flight, const std::string& variabl
   return values;
 }
 
-RecordedSeries read_usual(const Flight& flight, std::string_view name) {
-  const AircraftFamily& family = family_of(flight);
+RecordedSeries read_usual(const Flight& flight, const AircraftFamily& family, std::string_view name) {
   RecordedSeries series;
   for (const std::string& variable : family.names_of(name))
     try_variable(flight, variable, family.unit_of(variable), series_named(name)->unit, series);

@@ -23,7 +23,7 @@ std::vector<double> read_values(const Flight& flight, const std::string& variabl
 
 /// The first of the usual variables of a series that is there, has values and a unit that fits.
 /// @param name of the series (`series_named`)
-RecordedSeries read_usual(const Flight& flight, std::string_view name);
+RecordedSeries read_usual(const Flight& flight, const AircraftFamily& family, std::string_view name);
 
 /// The series of a role: the model's variable in the unit that the model states, else the usual one.
 RecordedSeries read_role(const Flight& flight, const ModelFile& model, Quantity role);

@@ -26,7 +26,7 @@ class Completion {
   ModelFile complete(std::vector<std::string>& notes) {
     take_pressures();
     take_temperature();
-    if (!has(Quantity::vapor_pressure) && !has(Quantity::dew_point)) {
+    if (!has(Quantity::vapor_pressure) && !has(Quantity::dew_point) && !has(Quantity::frost_point)) {
       if (!take(Quantity::vapor_pressure) && !take(Quantity::dew_point) && file_.model.moist) {
         file_.model.moist = false;
         traps_.push_back("no humidity is recorded: the air is taken as dry");
@@ -34,9 +34,7 @@ class Completion {
     }
     for (std::size_t i = 0; i < role_count; ++i) {
       const auto role = static_cast<Quantity>(i);
-      const bool chosen_above = role == Quantity::vapor_pressure || role == Quantity::dew_point ||
-                                role == Quantity::ambient_temperature;
-      if (!chosen_above && !has(role)) take(role);
+      if (!is_chosen_above(role) && !has(role)) take(role);
     }
     notes.push_back(fmt::format("roles by {}: {}", family_.name, fmt::join(taken_, ", ")));
     for (std::string& trap : traps_) notes.push_back(std::move(trap));
@@ -44,6 +42,15 @@ class Completion {
   }
 
  private:
+  /// Taken already, or found by the model itself.
+  bool is_chosen_above(Quantity role) const {
+    if (role == Quantity::attack) return file_.model.attack_radome.is_calibrated();
+    if (role == Quantity::sideslip) return file_.model.sideslip_radome.is_calibrated();
+    if (role == Quantity::ambient_temperature)
+      return file_.model.lams.approach != LamsApproach::with_temperature;
+    return role == Quantity::vapor_pressure || role == Quantity::dew_point || role == Quantity::frost_point;
+  }
+
   bool has(Quantity role) const { return file_.variables.count(role) != 0; }
 
   bool is_there(Quantity role, const std::string& variable) const {
@@ -110,10 +117,22 @@ class Completion {
   std::vector<std::string> traps_;
 };
 
+/// With the units that the aircraft's data state of the variables that the model names.
+ModelFile with_units(ModelFile model, const AircraftFamily& family) {
+  for (const auto& [role, variable] : model.variables) {
+    if (std::string unit = family.unit_of(variable); !unit.empty())
+      model.units.emplace(role, std::move(unit));
+  }
+  return model;
+}
+
 }  // namespace
 
 ModelFile with_roles(const ModelFile& model, const Flight& flight, std::vector<std::string>& notes) {
-  if (model.variables.count(Quantity::static_pressure) != 0) return model;
+  if (model.variables.count(Quantity::static_pressure) != 0 ||
+      model.variables.count(Quantity::dynamic_pressure) != 0) {
+    return model.roles_from.empty() ? model : with_units(model, family_named(model.roles_from));
+  }
   if (model.roles_from.empty()) {
     const std::vector<const AircraftFamily*> like = families_like(flight);
     if (like.size() > 1) {

@@ -13,6 +13,7 @@
 #include <pcor/words/error.hpp>
 #include "command.hpp"
 #include "diagnosis.hpp"
+#include "model_of_flight.hpp"
 #include "shaped_effect.hpp"
 
 namespace pcor::tool {
@@ -103,7 +104,13 @@ void run(const Options& options) {
   refuse_overwriting({options.output, options.common.json}, inputs);
   require_writable(options.output);
   JsonResult json(options.common);
-  const ModelFile model = read_model(options.model);
+  const ModelFile model = options.flight.empty()
+                              ? read_model(options.model)
+                              : read_model_for(options.model, {options.flight}, options.common);
+  if (model.variables.count(Quantity::static_pressure) == 0) {
+    throw Error(
+        fmt::format("{}: it leaves its variables to the flight; give one with --flight", options.model));
+  }
   std::vector<std::string> variables;
   if (!options.flight.empty()) variables = Flight(options.flight).variables();
   const ModelFile extended = with_effects(model, wanted_effects(options, variables), variables);

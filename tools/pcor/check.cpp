@@ -193,7 +193,7 @@ void print(const Checks& checks, const Options& options, bool has_laser) {
 
 std::vector<std::string> models_of(const Options& options) {
   std::vector<std::string> models;
-  for (const std::string& model : {options.model, options.second}) {
+  for (const std::string& model : {options.model, second_model(options)}) {
     if (!model.empty()) models.push_back(model);
   }
   return models;

@@ -80,7 +80,7 @@ nlohmann::ordered_json as_json(const Inspection& flight) {
   for (const InspectedLaw& law : flight.laws) {
     result["laws"].push_back({{"name", law.name},
                               {"model", law.path.string()},
-                              {"has_variables", law.has_variables},
+                              {"lacks", law.lacks},
                               {"is_in_time", law.is_in_time}});
   }
   result["notes"] = flight.notes;
@@ -165,7 +165,7 @@ void print(const Inspection& flight) {
   if (!flight.laws.empty()) say("\nlaws for this aircraft\n");
   for (const InspectedLaw& law : flight.laws) {
     say("  {}: {}{}\n", law.path.stem().string(), law.name,
-        !law.has_variables ? "; the flight does not record its pressures"
+        !law.lacks.empty() ? fmt::format("; the flight lacks {}", fmt::join(law.lacks, ", "))
         : !law.is_in_time  ? "; stated for another time"
                            : "; fits the flight's pressures and its date");
   }
@@ -189,10 +189,10 @@ std::string next_step(const Options& options, const Inspection& flight) {
                        quoted(options.model), reference);
   }
   const auto fits = std::find_if(flight.laws.begin(), flight.laws.end(),
-                                 [](const InspectedLaw& law) { return law.has_variables && law.is_in_time; });
+                                 [](const InspectedLaw& law) { return law.lacks.empty() && law.is_in_time; });
   if (fits != flight.laws.end())
-    return fmt::format("To correct it: {} process {} -m {} -o corrected.nc", program(), path,
-                       quoted(fits->path.stem().string()));
+    return fmt::format("To correct it by one of these laws: {} process {} -m {} -o corrected.nc", program(),
+                       path, quoted(fits->path.stem().string()));
   return fmt::format("To have a model to start from: {} inspect {} --write-model model.toml", program(),
                      path);
 }

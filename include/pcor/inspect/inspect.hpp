@@ -41,8 +41,8 @@ struct MissingRole {
 struct InspectedLaw {
   std::filesystem::path path;
   std::string name;
-  bool has_variables = false;  ///< the flight records the pressures that it corrects
-  bool is_in_time = false;     ///< the flight is within the time for which the law is stated to hold
+  std::vector<std::string> lacks{};  ///< variables of the model that the flight does not have
+  bool is_in_time = false;           ///< the flight is within the time for which the law is stated to hold
 };
 
 /// What a flight holds.

@@ -88,12 +88,15 @@ class BoundModel {
   std::size_t first_parameter_of(std::size_t effect) const { return effects_[effect].first_parameter; }
 
   /// The time, s, over which the model finds a quantity that remembers (`EffectFacts::memory`): the
-  /// coefficient of the effect that says so, 0 without one.
+  /// coefficient of the effect that says so; without it, as for a formula, its neutral value.
   double time_of(Quantity remembered) const {
     for (const Term& term : effects_) {
       if (term.effect >= catalogue_size) continue;
       const Memory& memory = effect_facts[term.effect].memory;
       if (memory.of == remembered) return parameters_[term.first_parameter + memory.parameter];
+    }
+    for (const EffectFacts& facts : effect_facts) {
+      if (facts.memory.of == remembered) return facts.parameters[facts.memory.parameter].neutral;
     }
     return 0.0;
   }

@@ -13,7 +13,8 @@ namespace pcor {
 ///     tau dw/dt = c - w     c = 1 in cloud, else 0;   tau = 1 s in cloud, the time of drying outside
 ///
 /// The result is the mean of w over the sample, exact where all of the sample is in cloud or none of it, so
-/// that all rates give the same. Before the first sample the probe was long where that is. A missing liquid
+/// that all rates give the same. Before the first sample the probe had long been in the cloud, or
+/// out of it, in which that sample is. A missing liquid
 /// water content gives NaN, and the probe dries meanwhile.
 class Wetness {
  public:

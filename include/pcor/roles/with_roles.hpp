@@ -11,7 +11,8 @@ namespace pcor {
 /// The model with the variables that it leaves open, by the names that the flight's aircraft has for them:
 /// those of `ModelFile::roles_from`, else of the aircraft that the flight's attributes and variables tell.
 ///
-/// A model that names its static and its dynamic pressure is complete, and returned as it is. Else its
+/// A model that names its pressures is complete: it gets the units alone that the data of its own aircraft
+/// (`roles_from`) state. Else its
 /// pressures are the first pair as measured that has values; every further role is the first of its names
 /// that has values, in the unit, and with the sign, that the aircraft's data state; the temperature is a
 /// recovery temperature where one is recorded, with the recovery factor of its thermometer unless the model
