@@ -45,8 +45,8 @@ struct AircraftFamily {
       units{};  ///< of variables whose files do not say it, or whose sign turns
   std::map<std::string, std::string> traps{};  ///< what a user of a variable should know, a sentence
 
-  /// The variables that hold a series, the likeliest first; empty where there is none. @param of the name of a role,
-  /// or of a series that no model reads (`series_named`)
+  /// The variables that hold a series, the likeliest first; empty where there is none. @param of the name of
+  /// a role, or of a series that no model reads (`series_named`)
   std::vector<std::string> names_of(std::string_view of) const;
 
   /// The unit of a variable where its files do not say it; empty where they do.

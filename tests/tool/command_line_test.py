@@ -106,8 +106,10 @@ class Outputs(ComparisonTest):
         before = set(os.listdir(self.path))
         report, result = ("--report", "r.html"), ("--json", "r.json")
         scenario = SOURCE / "data/scenarios/c130-short.toml"
-        for command in (("compare", ONE, TWO, "-m", model, "--residuals", "res.nc", *report, *result),
-                        ("refit", ONE, "-m", model, "-o", "o.toml", *report, *result),
+        for command in (("compare", ONE, TWO, "-m", model, "--residuals", "res.nc", "--table", "t.csv", *report,
+                         *result),
+                        ("refit", ONE, "-m", model, "-o", "o.toml", "--table", "t.csv", *report, *result),
+                        ("inspect", ONE, "--write-model", "o.toml", *report, *result),
                         ("refit", ONE, "-m", model, "-o", "o.toml", "--reference", f"static:{comparison_test.OTHER_SYSTEM}",
                          "--refit-reference", "second.toml"),
                         ("diagnose", ONE, "-m", model, *report, *result), ("effects", *result),
@@ -123,7 +125,7 @@ class Outputs(ComparisonTest):
                 lines = " ".join(line for line in text.splitlines() if line.startswith("wrote "))
                 written = set(os.listdir(self.path)) - before
                 self.assertTrue(written)
-                self.assertEqual(set(re.findall(r"[\w-]+\.(?:nc|toml|html|json)", lines)), written)
+                self.assertEqual(set(re.findall(r"[\w-]+\.(?:nc|toml|html|json|csv)", lines)), written)
                 for name in written:
                     (self.path / name).unlink()
 
@@ -159,7 +161,7 @@ class Hints(ComparisonTest):
         version = self.run_tool("--version").stdout
         self.assertRegex(version, r"^pcor \d")
         for command in ("compare", "refit", "diagnose", "effects", "add", "improve", "check", "process", "temperature",
-                        "simulate"):
+                        "inspect", "simulate"):
             self.assertEqual(self.done(command, "--version").stdout, version)
 
 

@@ -7,6 +7,7 @@ The flights are a quarter of an hour of a C-130 with the usual noise, some thous
 equation 18, which the model has too. Random numbers are fixed, so a test that passes does so on every run.
 """
 
+import csv
 import json
 import math
 import os
@@ -274,6 +275,19 @@ class Compare(ComparisonTest):
         self.assertEqual(addresses_in(text), set())
 
 
+class Table(ComparisonTest):
+    def test_has_a_row_for_each_flight_and_model(self):
+        table = self.path / "flights.csv"
+        both = self.compare("--table", table, flights=(ONE, TWO))
+        with open(table, newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([row["flight"] for row in rows], ["one.nc", "two.nc"])
+        self.assertEqual(sum(int(row["samples"]) for row in rows), both["models"][0]["samples"])
+        squares = sum(int(row["samples"]) * float(row["rms_hpa"]) ** 2 for row in rows)
+        self.assertAlmostEqual((squares / both["models"][0]["samples"]) ** 0.5 / both["models"][0]["rms_hpa"], 1.0,
+                               delta=1e-12)
+
+
 class ResidualFile(ComparisonTest):
     def residuals(self, *arguments):
         path = self.path / "residuals.nc"
@@ -429,6 +443,22 @@ class Refit(ComparisonTest):
         self.assertLessEqual({"effects", "rms_hpa", "r2", "samples", "condition_number"}, set(result))
         for effect in result["effects"]:
             self.assertLessEqual({"id", "parameters", "stderr"}, set(effect))
+
+    def test_the_table_has_what_each_flight_finds_alone(self):
+        table = self.path / "flights.csv"
+        self.refit("--table", table, "--holdout", STEADY, "--reference", "lams", flights=(ONE, TWO))
+        with open(table, newline="") as file:
+            rows = {row["flight"]: row for row in csv.DictReader(file)}
+        self.assertEqual({name: row["held_out"] for name, row in rows.items()},
+                         {"one.nc": "no", "two.nc": "no", "steady.nc": "yes"})
+        self.assertEqual(rows["steady.nc"]["static-qp.a2 alone"], "")
+        for flight in (ONE, TWO):
+            alone = self.refit("--reference", "lams", flights=(flight,))
+            for effect in alone["effects"]:
+                for name, value in effect["parameters"].items():
+                    column = f"{effect['id']}.{name} alone"
+                    self.assertEqual(float(rows[flight.name][column]), value)
+                    self.assertEqual(float(rows[flight.name][column + ", standard error"]), effect["stderr"][name])
 
     def test_finds_the_true_law(self):
         self.assert_true_law(self.refit(model=self.model(with_a0(0.01))))

@@ -11,6 +11,7 @@
 #include <pcor/compare/comparison_report.hpp>
 #include <pcor/words/utc.hpp>
 #include "comparison.hpp"
+#include "flight_table.hpp"
 #include "model_of_flight.hpp"
 #include "progress.hpp"
 #include "report_origin.hpp"
@@ -23,6 +24,7 @@ struct Options {
   ComparisonOptions comparison;
   std::vector<std::string> models;
   std::string residuals;
+  std::string table;
 };
 
 using tool::as_json;
@@ -173,7 +175,7 @@ void print(const Comparison& comparison, const ChosenReferences& references, con
   std::vector<std::string> written;
   for (std::size_t i = 0; !options.residuals.empty() && i < options.comparison.flights.size(); ++i)
     written.push_back(residual_file(options, i).string());
-  written.insert(written.end(), {options.common.report, options.common.json});
+  written.insert(written.end(), {options.common.report, options.table, options.common.json});
   say_written(written);
   const auto best = std::min_element(
       comparison.models.begin(), comparison.models.end(),
@@ -215,6 +217,28 @@ void name_by_file(std::vector<Contender>& contenders, const std::vector<std::str
   }
 }
 
+/// The residuals of each model on each flight.
+void write_flight_table(const Comparison& comparison, const std::string& path) {
+  FlightTable table({"flight", "model", "samples", "bias_hpa", "rms_hpa"});
+  for (const FlightResiduals& flight : comparison.flights) {
+    for (std::size_t m = 0; m < comparison.models.size(); ++m) {
+      double samples = 0.0;
+      double sum = 0.0;
+      double squares = 0.0;
+      for (std::size_t i = 0; i < flight.values[m].size(); ++i) {
+        const double value = flight.values[m][i];
+        if (std::isnan(value)) continue;
+        samples += 1.0;
+        sum += value;
+        squares += value * value;
+      }
+      table.add({flight.samples->name, comparison.models[m].name, fmt::format("{:.0f}", samples),
+                 cell(sum / samples), cell(std::sqrt(squares / samples))});
+    }
+  }
+  table.write(path);
+}
+
 std::string history_of(const Options& options) {
   std::string line = "pcor " PCOR_VERSION " compare " + command_line(options.comparison);
   for (const std::string& model : options.models) line += " -m " + quoted(model);
@@ -224,7 +248,7 @@ std::string history_of(const Options& options) {
 void run(const Options& options) {
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.insert(inputs.end(), options.models.begin(), options.models.end());
-  std::vector<std::filesystem::path> outputs{options.common.json, options.common.report};
+  std::vector<std::filesystem::path> outputs{options.common.json, options.common.report, options.table};
   if (!options.residuals.empty()) {
     for (std::size_t i = 0; i < options.comparison.flights.size(); ++i)
       outputs.push_back(residual_file(options, i));
@@ -260,6 +284,7 @@ void run(const Options& options) {
   if (!options.common.report.empty())
     write_report_of_run(comparison_report(comparison), {options.models, options.comparison.flights, {}},
                         options.common.report);
+  if (!options.table.empty()) write_flight_table(comparison, options.table);
   json.write(as_json(comparison));
   if (wants_text(options.common)) print(comparison, references, options);
 }
@@ -275,6 +300,11 @@ std::function<void()> add_compare(CLI::App& program) {
                   "a model of the pressure system, shown side by side")
       ->required()
       ->type_name("MODEL.toml");
+  command
+      ->add_option("--table", options->table,
+                   "write samples, bias and rms of each flight and model to FILE.csv")
+      ->check(is_file_name())
+      ->type_name("FILE.csv");
   command
       ->add_option("--residuals", options->residuals,
                    "write the residuals of every sample to a netCDF file; of several flights each to one of "

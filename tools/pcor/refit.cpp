@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <memory>
 #include <string>
 
 #include <pcor/fit/refit_report.hpp>
 #include <pcor/words/error.hpp>
 #include "comparison.hpp"
+#include "flight_table.hpp"
 #include "model_of_flight.hpp"
 #include "progress.hpp"
 #include "refusal.hpp"
@@ -25,6 +28,7 @@ struct Options {
   std::string model;
   std::string output;
   std::string reference_output;
+  std::string table;
   std::string loss = "tukey";
   std::vector<std::string> fix;
   std::vector<std::string> free;
@@ -264,13 +268,72 @@ void write_fit_report(const RefitResult& result, const ModelFile& model, const R
                       options.common.report);
 }
 
+/// The coefficients as each flight alone finds them. Those of a flight that cannot tell them are missing.
+void write_flight_table(const RefitResult& all, const ModelFile& model, const References& references,
+                        const RefitOptions& with, const Options& options) {
+  std::vector<std::string> columns{"flight",         "held_out",       "reference",
+                                   "samples",        "rms_before_hpa", "bias_after_hpa",
+                                   "bias_error_hpa", "rms_after_hpa",  "noise_rms_hpa"};
+  std::vector<std::string> fitted;
+  for (const FittedParameter& parameter : all.parameters) {
+    if (!parameter.fitted) continue;
+    fitted.push_back(parameter.name);
+    columns.push_back(parameter.name + " alone");
+    columns.push_back(parameter.name + " alone, standard error");
+  }
+  std::map<std::string, RefitResult> alone;
+  Progress bar("fitting each flight alone", !options.common.quiet);
+  RefitOptions own = with;
+  own.holdout.clear();
+  own.progress = nullptr;
+  const std::vector<std::filesystem::path> flights = flight_paths(options.comparison);
+  for (std::size_t i = 0; i < flights.size(); ++i) {
+    try {
+      alone.emplace(flights[i].filename().string(), refit({flights[i]}, model, references, own));
+    } catch (const Error& error) {
+      if (error.code() == Error::Code::file) throw;
+    }
+    bar.show(i + 1, flights.size());
+  }
+  FlightTable table(columns);
+  for (const FlightFit& flight : all.flights) {
+    std::vector<std::string> row{flight.flight,
+                                 flight.holdout ? "yes" : "no",
+                                 flight.reference,
+                                 std::to_string(flight.after.samples),
+                                 cell(flight.before.rms),
+                                 cell(flight.after.bias),
+                                 cell(flight.after.bias_error),
+                                 cell(flight.after.rms),
+                                 cell(flight.after.noise_rms)};
+    const auto found = alone.find(flight.flight);
+    for (const std::string& name : fitted) {
+      double value = std::numeric_limits<double>::quiet_NaN();
+      double error = value;
+      if (found != alone.end() && !flight.holdout) {
+        for (const FittedParameter& parameter : found->second.parameters) {
+          if (parameter.name != name) continue;
+          value = parameter.value;
+          error = parameter.standard_error;
+        }
+      }
+      row.push_back(cell(value));
+      row.push_back(cell(error));
+    }
+    table.add(std::move(row));
+  }
+  table.write(options.table);
+}
+
 void run(const Options& options) {
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.emplace_back(options.model);
   inputs.insert(inputs.end(), options.holdout.begin(), options.holdout.end());
-  refuse_overwriting({options.output, options.reference_output, options.common.json, options.common.report},
-                     inputs);
-  for (const std::string& output : {options.output, options.reference_output, options.common.report})
+  refuse_overwriting(
+      {options.output, options.reference_output, options.common.json, options.common.report, options.table},
+      inputs);
+  for (const std::string& output :
+       {options.output, options.reference_output, options.common.report, options.table})
     require_writable(output);
   JsonResult json(options.common);
   const ModelFile model = read_model_for(options.model, flight_paths(options.comparison), options.common);
@@ -283,12 +346,13 @@ void run(const Options& options) {
     result = refit(flight_paths(options.comparison), model, references.used, refit_with);
   }
   if (!options.common.report.empty()) write_fit_report(result, model, references.used, options);
+  if (!options.table.empty()) write_flight_table(result, model, references.used, refit_with, options);
   json.write(as_json(result));
   const bool with_text = wants_text(options.common, {options.output, options.reference_output});
   if (with_text) {
     print_result(result, references);
     say("\n");
-    say_written({options.common.report, options.common.json});
+    say_written({options.common.report, options.table, options.common.json});
   }
   refuse_worse(result.worse, options.force, result.model);
   if (result.reference) refuse_worse(result.worse, options.force, *result.reference);
@@ -309,6 +373,13 @@ std::function<void()> add_refit(CLI::App& program) {
                    "the fitted model, whole or not at all; - for standard output")
       ->required()
       ->type_name("FITTED.toml");
+  command
+      ->add_option("--table", options->table,
+                   "write a row for each flight to FILE.csv: its residuals before and after, and the "
+                   "coefficients that "
+                   "it finds alone")
+      ->check(is_file_name())
+      ->type_name("FILE.csv");
   command
       ->add_option("--refit-reference", options->reference_output,
                    "fit the model of the second static system too, and write it here")

@@ -86,8 +86,8 @@ struct ParameterFacts {
   /// True where it only shapes the effect, as the Mach number from which the effect acts does. It is neutral
   /// at its typical value, and the effect is absent, whatever the shape, when all others are neutral.
   bool shape = false;
-  /// Other values that nature may have, and 0 behind them: of a shape, and of a time over which a need is found
-  /// (`EffectFacts::memory`). A diagnosis tries them all, a fit begins at the best of them.
+  /// Other values that nature may have, and 0 behind them: of a shape, and of a time over which a need is
+  /// found (`EffectFacts::memory`). A diagnosis tries them all, a fit begins at the best of them.
   std::array<double, 10> tried{};
 };
 

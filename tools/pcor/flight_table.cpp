@@ -1,0 +1,41 @@
+#include "flight_table.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+
+#include <pcor/words/error.hpp>
+#include <pcor/words/replacement_file.hpp>
+
+namespace pcor::tool {
+namespace {
+
+std::string escaped(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char letter : text) {
+    if (letter == '"') quoted += '"';
+    quoted += letter;
+  }
+  return quoted + '"';
+}
+
+}  // namespace
+
+void FlightTable::write(const std::string& path) const {
+  ReplacementFile file(path);
+  std::ofstream stream(file.path(), std::ios::binary);
+  for (const std::vector<std::string>& row : rows_) {
+    for (std::size_t i = 0; i < row.size(); ++i) stream << (i == 0 ? "" : ",") << escaped(row[i]);
+    stream << "\r\n";
+  }
+  stream.close();
+  if (!stream)
+    throw Error(fmt::format("{}: cannot write the table; check the space and the permissions", path));
+  file.commit();
+}
+
+std::string cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : std::string(); }
+
+}  // namespace pcor::tool
