@@ -15,8 +15,6 @@
 namespace pcor::internal {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 /// The largest noise of delta-p that does no harm, hPa: the rms of the memo's fits (eq. 18 and 20).
 constexpr double size_that_matters = 0.3;
 constexpr std::size_t segment_length = 256;  // samples

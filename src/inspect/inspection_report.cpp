@@ -47,7 +47,7 @@ class FlightColumns {
     for (const char* name : names) {
       if (has(name)) there.emplace_back(name);
     }
-    if (!there.empty()) report_.items.push_back(TimePanel{title, caption, std::move(there)});
+    if (!there.empty()) report_.items.emplace_back(TimePanel{title, caption, std::move(there)});
   }
 
  private:
@@ -127,12 +127,12 @@ Report inspection_report(const std::vector<Inspection>& flights) {
     columns.add_time("Speed", "True airspeed and speed over the ground.", {"airspeed", "ground_speed"});
     columns.add_time("Attitude", "Pitch and roll.", {"pitch", "roll"});
     if (columns.has("latitude") && columns.has("longitude") && columns.has("altitude"))
-      report.items.push_back(PlanePanel{"Track", "The track over the ground, by its height.", "longitude",
-                                        "latitude", "altitude", false, false});
+      report.items.emplace_back(PlanePanel{"Track", "The track over the ground, by its height.", "longitude",
+                                           "latitude", "altitude", false, false});
   }
   for (const Inspection& flight : flights) {
-    if (!flight.roles.empty()) report.items.push_back(roles_of(flight));
-    if (!flight.missing.empty()) report.items.push_back(missing_of(flight));
+    if (!flight.roles.empty()) report.items.emplace_back(roles_of(flight));
+    if (!flight.missing.empty()) report.items.emplace_back(missing_of(flight));
   }
   return report;
 }

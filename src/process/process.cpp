@@ -286,7 +286,7 @@ FileDescription Processing::describe() const {
                                                              ? "begin of the record"
                                                              : "middle of the record");
   if (!summary_.notes.empty())
-    description.attributes.push_back({"pcor_notes", fmt::format("{}", fmt::join(summary_.notes, "; "))});
+    description.attributes.emplace_back("pcor_notes", fmt::format("{}", fmt::join(summary_.notes, "; ")));
   return description;
 }
 

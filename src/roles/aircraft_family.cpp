@@ -68,10 +68,10 @@ class Reader final : TomlReader {
   // Lists of two texts.
   std::vector<std::pair<std::string, std::string>> pairs(const Entry& entry) const {
     std::vector<std::pair<std::string, std::string>> all;
-    for (const toml::node& node : array(entry, "a list of pairs, [[\"A\", \"B\"]]")) {
+    for (const toml::node& node : array(entry, R"(a list of pairs, [["A", "B"]])")) {
       const std::vector<std::string> two =
-          texts(as<toml::array>(node, "a pair [\"A\", \"B\"] is wanted here"));
-      if (two.size() != 2) fail(node, "a pair has two texts; give it as [\"A\", \"B\"]");
+          texts(as<toml::array>(node, R"(a pair ["A", "B"] is wanted here)"));
+      if (two.size() != 2) fail(node, R"(a pair has two texts; give it as ["A", "B"])");
       all.emplace_back(two[0], two[1]);
     }
     return all;

@@ -20,8 +20,8 @@ namespace {
 /// One flight and the model that it completes.
 class Completion {
  public:
-  Completion(const ModelFile& model, const Flight& flight, const AircraftFamily& family)
-      : file_(model), flight_(flight), family_(family) {}
+  Completion(ModelFile model, const Flight& flight, const AircraftFamily& family)
+      : file_(std::move(model)), flight_(flight), family_(family) {}
 
   ModelFile complete(std::vector<std::string>& notes) {
     take_pressures();
@@ -29,7 +29,7 @@ class Completion {
     if (!has(Quantity::vapor_pressure) && !has(Quantity::dew_point) && !has(Quantity::frost_point)) {
       if (!take(Quantity::vapor_pressure) && !take(Quantity::dew_point) && file_.model.moist) {
         file_.model.moist = false;
-        traps_.push_back("no humidity is recorded: the air is taken as dry");
+        traps_.emplace_back("no humidity is recorded: the air is taken as dry");
       }
     }
     for (std::size_t i = 0; i < role_count; ++i) {

@@ -43,7 +43,7 @@ std::vector<std::string> notes_of_flights(const std::vector<FlightNote>& notes) 
     std::string names =
         flights.size() > most_names ? std::to_string(flights.size()) + " flights" : flights.front();
     for (std::size_t i = 1; i < flights.size() && flights.size() <= most_names; ++i)
-      names += ", " + flights[i];
+      names.append(", ").append(flights[i]);
     texts.push_back(names + ": " + note);
   }
   return texts;
