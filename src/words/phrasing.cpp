@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 namespace pcor::internal {
 
@@ -44,7 +45,8 @@ std::vector<std::string> notes_of_flights(const std::vector<FlightNote>& notes) 
         flights.size() > most_names ? std::to_string(flights.size()) + " flights" : flights.front();
     for (std::size_t i = 1; i < flights.size() && flights.size() <= most_names; ++i)
       names.append(", ").append(flights[i]);
-    texts.push_back(names + ": " + note);
+    names.append(": ").append(note);
+    texts.push_back(std::move(names));
   }
   return texts;
 }
