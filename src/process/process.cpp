@@ -26,6 +26,7 @@
 #include "process/origin.hpp"
 #include "roles/fast_series.hpp"
 #include "roles/model_inputs.hpp"
+#include "roles/recorded_series.hpp"
 
 namespace pcor {
 
@@ -179,11 +180,7 @@ ShortestPeriods Processing::choose_periods() {
   std::vector<double> time;
   for (const auto& [quantity, rate] : rates) {
     if (!chain_->derives(rate)) continue;
-    if (time.empty()) {
-      time.resize(flight_.records());
-      for (const RecordBlock block : blocks_of(flight_.records()))
-        flight_.read_sample_times(block, 1, time.data() + block.first);
-    }
+    if (time.empty()) time = record_times(flight_);
     const auto input = std::find_if(inputs_.begin(), inputs_.end(),
                                     [of = quantity](const Input& each) { return each.quantity == of; });
     const FastSeries series = read_fast(flight_, *input, flight_.variable(input->variable).rate);

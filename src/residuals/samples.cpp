@@ -243,9 +243,7 @@ FlightSamples read_samples(const Flight& flight, const ModelFile& model, const R
   samples.name = flight.path().filename().string();
   samples.aircraft = flight.aircraft();
   samples.step = flight.time().step;
-  samples.time.resize(flight.records());
-  for (const RecordBlock block : blocks_of(flight.records()))
-    flight.read_sample_times(block, 1, samples.time.data() + block.first);
+  samples.time = record_times(flight);
   samples.notes = notes_on_law(flight, model);
   samples.model = read_model_columns(flight, model, reference.reads_laser(), samples.time, samples.notes);
   samples.reference = reference.read(flight, samples.time, samples.notes);

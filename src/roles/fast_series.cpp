@@ -6,6 +6,7 @@
 #include <pcor/numerics/noise.hpp>
 #include <pcor/realtime/rate_filter.hpp>
 #include "numerics/missing.hpp"
+#include "roles/recorded_series.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -39,10 +40,7 @@ double clipped_variance(const std::vector<double>& values) {
 FastSeries read_fast(const Flight& flight, const ModelInput& input, int rate) {
   FastSeries series;
   series.in_record = static_cast<std::size_t>(rate);
-  series.values.resize(flight.records() * series.in_record);
-  for (const RecordBlock block : blocks_of(flight.records()))
-    flight.read_at_rate(rate, input.variable, block, input.conversion,
-                        series.values.data() + block.first * series.in_record);
+  series.values = read_values(flight, input.variable, input.conversion, rate);
   return series;
 }
 

@@ -32,11 +32,19 @@ void try_variable(const Flight& flight, const std::string& variable, const std::
 }  // namespace
 
 std::vector<double> read_values(const Flight& flight, const std::string& variable,
-                                const UnitConversion& conversion) {
-  std::vector<double> values(flight.records());
+                                const UnitConversion& conversion, int rate) {
+  const auto in_record = static_cast<std::size_t>(rate);
+  std::vector<double> values(flight.records() * in_record);
   for (const RecordBlock block : blocks_of(flight.records()))
-    flight.read_at_rate(1, variable, block, conversion, values.data() + block.first);
+    flight.read_at_rate(rate, variable, block, conversion, values.data() + block.first * in_record);
   return values;
+}
+
+std::vector<double> record_times(const Flight& flight) {
+  std::vector<double> times(flight.records());
+  for (const RecordBlock block : blocks_of(flight.records()))
+    flight.read_sample_times(block, 1, times.data() + block.first);
+  return times;
 }
 
 RecordedSeries read_usual(const Flight& flight, const AircraftFamily& family, std::string_view name) {

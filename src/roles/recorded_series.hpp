@@ -17,9 +17,12 @@ struct RecordedSeries {
   std::string without_unit{};  ///< the first variable that was passed over because the file gives it no unit
 };
 
-/// All values of a variable, converted. @throws Error if it is absent.
+/// All values of a variable, converted, at `rate` samples in a record. @throws Error if it is absent.
 std::vector<double> read_values(const Flight& flight, const std::string& variable,
-                                const UnitConversion& conversion);
+                                const UnitConversion& conversion, int rate = 1);
+
+/// The middles of all records, s since 1970 UTC.
+std::vector<double> record_times(const Flight& flight);
 
 /// The first of the usual variables of a series that is there, has values and a unit that fits.
 /// @param name of the series (`series_named`)

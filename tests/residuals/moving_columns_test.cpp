@@ -39,17 +39,26 @@ std::vector<double> parameters_with(const ModelFile& model, double seconds) {
   return parameters;
 }
 
-/// The short flight, its laser late by so much, without noise or with it.
-std::filesystem::path late_flight(const pcor::test::TemporaryDirectory& directory, double seconds,
-                                  bool noise) {
+/// The short flight with something more in its scenario, without noise or with it.
+std::filesystem::path short_flight_with(const pcor::test::TemporaryDirectory& directory,
+                                        const std::string& more, bool noise) {
   std::ifstream file(pcor::test::scenarios / "c130-short.toml");
   std::stringstream text;
-  text << file.rdbuf() << "\n[[effect]]\nid = \"clock-skew\"\non = \"VLAMS\"\nseconds = " << seconds << "\n";
-  std::ofstream(directory / "late.toml") << text.str();
-  pcor::Scenario scenario = pcor::read_scenario(directory / "late.toml");
+  text << file.rdbuf() << more;
+  std::ofstream(directory / "more.toml") << text.str();
+  pcor::Scenario scenario = pcor::read_scenario(directory / "more.toml");
   scenario.noise_on = noise;
-  pcor::simulate_flight(scenario, directory / "late.nc");
-  return directory / "late.nc";
+  pcor::simulate_flight(scenario, directory / "more.nc");
+  return directory / "more.nc";
+}
+
+/// Its laser late by so much.
+std::filesystem::path late_flight(const pcor::test::TemporaryDirectory& directory, double seconds,
+                                  bool noise) {
+  return short_flight_with(
+      directory,
+      "\n[[effect]]\nid = \"clock-skew\"\non = \"VLAMS\"\nseconds = " + std::to_string(seconds) + "\n",
+      noise);
 }
 
 TEST(MovingColumns, ChangeAsTheirSlopeSays) {
@@ -112,15 +121,11 @@ ModelFile with_wetting(double drying) {
 
 /// A flight through clouds of which the thermometer is wet for so long.
 std::filesystem::path wet_flight(const pcor::test::TemporaryDirectory& directory, double drying) {
-  std::ifstream file(pcor::test::scenarios / "c130-short.toml");
-  std::stringstream text;
-  text << file.rdbuf() << "\n[[atmosphere.cloud]]\nbase = 0\ntop = 9000\ncover = 0.3\n"
-       << "\n[[effect]]\nid = \"temp-wetting\"\nerror = -2.0\ndrying = " << drying << "\n";
-  std::ofstream(directory / "wet.toml") << text.str();
-  pcor::Scenario scenario = pcor::read_scenario(directory / "wet.toml");
-  scenario.noise_on = false;
-  pcor::simulate_flight(scenario, directory / "wet.nc");
-  return directory / "wet.nc";
+  return short_flight_with(directory,
+                           "\n[[atmosphere.cloud]]\nbase = 0\ntop = 9000\ncover = 0.3\n"
+                           "\n[[effect]]\nid = \"temp-wetting\"\nerror = -2.0\ndrying = " +
+                               std::to_string(drying) + "\n",
+                           false);
 }
 
 TEST(MovingColumns, KnowHowTheWetnessHangsOnTheDrying) {
