@@ -118,6 +118,7 @@ void NetcdfCopy::read(const Copied& variable, RecordBlock block, char* buffer) c
   const Slab slab(variable.shape, variable.over_time, block);
   source_.check(nc_get_vara(source_.id(), variable.from, slab.start.data(), slab.count.data(), buffer),
                 "cannot read " + source_.variable_name(variable.from));
+  source_.require_unchanged();
 }
 
 void NetcdfCopy::write(const Copied& variable, RecordBlock block, char* buffer) const {

@@ -76,6 +76,7 @@ bool is_netcdf(const std::filesystem::path& path) { return content_of(path) != C
 
 NetcdfFile NetcdfFile::open(const std::filesystem::path& path) {
   const std::string name = path.string();
+  const FileState state(path);
   if (content_of(path) == Content::classic) check_size_of_classic(path);
   int id = closed;
   std::size_t buffer = classic_buffer_bytes;
@@ -83,7 +84,7 @@ NetcdfFile NetcdfFile::open(const std::filesystem::path& path) {
   if (opened != NC_NOERR)
     throw Error(Error::Code::file, name + " is truncated or damaged (" + netcdf_reason(opened) +
                                        "); fetch it again from its source");
-  return {id, path, Use::reading};
+  return {id, path, Use::reading, state};
 }
 
 NetcdfFile NetcdfFile::create(const std::filesystem::path& path, const std::filesystem::path& shown_path,
@@ -100,6 +101,7 @@ NetcdfFile::NetcdfFile(NetcdfFile&& other) noexcept
     : id_(std::exchange(other.id_, closed)),
       path_(std::move(other.path_)),
       use_(other.use_),
+      state_(other.state_),
       fitted_(std::move(other.fitted_)) {}
 
 NetcdfFile::~NetcdfFile() {
@@ -108,6 +110,7 @@ NetcdfFile::~NetcdfFile() {
 
 void NetcdfFile::check(int status, const std::string& doing) const {
   if (status == NC_NOERR) return;
+  if (use_ == Use::reading) require_unchanged();
   std::string message = path_.string() + ": " + doing + ": " + netcdf_reason(status);
   if (use_ == Use::reading)
     throw Error(Error::Code::file, message + "; fetch the file again from its source");
@@ -118,6 +121,13 @@ void NetcdfFile::check(int status, const std::string& doing) const {
   if (full && status != ENOSPC) message += " (the disk is full)";
   throw Error(Error::Code::output, message + (full ? "; make room or choose another output"
                                                    : "; check the space and the permissions there"));
+}
+
+void NetcdfFile::require_unchanged() const {
+  if (FileState(path_) != state_)
+    throw Error(Error::Code::file, path_.string() +
+                                       " was replaced or changed while it was read; give the command again "
+                                       "when it stays as it is");
 }
 
 void NetcdfFile::close() { check(nc_close(std::exchange(id_, closed)), "cannot be closed"); }
@@ -270,6 +280,7 @@ void NetcdfFile::read(int variable, RecordBlock records, double* out) const {
   }
   check(nc_get_vara_double(id_, variable, start.data(), count.data(), out),
         "cannot read " + variable_name(variable));
+  require_unchanged();
 }
 
 }  // namespace pcor::internal

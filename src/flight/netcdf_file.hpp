@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "flight/file_state.hpp"
 #include "flight/flight_file.hpp"
 
 namespace pcor::internal {
@@ -16,7 +17,9 @@ bool is_netcdf(const std::filesystem::path& path);
 /// An open netCDF file: the netCDF C library behind errors of ours.
 class NetcdfFile final : public FlightFile {
  public:
-  /// Opens for reading. @throws Error if the file is damaged or truncated.
+  /// Opens for reading. The library opens a file by its name more than once, and another program may replace
+  /// or change it meanwhile: what is read is of the file as it was here, or an error.
+  /// @throws Error if the file is damaged or truncated.
   static NetcdfFile open(const std::filesystem::path& path);
 
   /// Creates a file, over what is there; `mode` is that of nc_create. Messages call it `shown_path`.
@@ -31,6 +34,10 @@ class NetcdfFile final : public FlightFile {
 
   /// @throws Error "<path>: <doing>: <reason>; <what to do>" unless `status` is NC_NOERR.
   void check(int status, const std::string& doing) const;
+
+  /// To be called after values were read. @throws Error if the file was replaced or changed since it was
+  /// opened.
+  void require_unchanged() const;
 
   /// Closes for good; errors that the library kept until now are thrown.
   void close();
@@ -59,11 +66,13 @@ class NetcdfFile final : public FlightFile {
  private:
   enum class Use { reading, writing };
 
-  NetcdfFile(int id, std::filesystem::path path, Use use) : id_(id), path_(std::move(path)), use_(use) {}
+  NetcdfFile(int id, std::filesystem::path path, Use use, FileState state = {})
+      : id_(id), path_(std::move(path)), use_(use), state_(state) {}
 
   int id_;
   std::filesystem::path path_;
   Use use_;
+  FileState state_;               // as it was opened for reading
   mutable std::set<int> fitted_;  // variables whose chunk cache is fit
 };
 

@@ -598,6 +598,34 @@ TEST_F(FlightWriterTest, ADirectoryThatCannotBeWrittenIsRefused) {
   EXPECT_THAT(message_of<Error>([] { FlightWriter("", NewFlight{midnight}, {}); }), HasSubstr("has no name"));
 }
 
+// Another program writes a new version of the flight while this one is read.
+TEST_F(FlightWriterTest, AnInputThatChangesMeanwhileIsRefusedAndTheEarlierOutputStays) {
+  for (const int kind : {0, NC_NETCDF4}) {
+    for (const bool renamed : {true, false}) {
+      const auto make = [kind](const std::filesystem::path& path, double pressure) {
+        NetcdfMaker maker(path, kind);
+        maker.time(sequence(51720, 20));
+        maker.series("PSFD", "hPa", std::vector<double>(20, pressure));
+      };
+      make(input, 850);
+      make(directory / "new.nc", 700);
+      std::ofstream(output) << "old";
+      const Flight flight(input);
+      FlightWriter writer(output, flight, {});
+      writer.copy("PSFD");
+      if (renamed) {
+        std::filesystem::rename(directory / "new.nc", input);
+      } else {
+        std::fstream(input, std::ios::binary | std::ios::in | std::ios::out)
+            << contents(directory / "new.nc");
+      }
+      EXPECT_THAT(message_of<Error>([&] { writer.finish(); }),
+                  AllOf(HasSubstr(input.string()), HasSubstr("was replaced or changed while it was read")));
+      EXPECT_EQ(contents(output), "old");
+    }
+  }
+}
+
 TEST_F(FlightWriterTest, AFileThatMayNotGrowLeavesNothing) {
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);

@@ -1,0 +1,33 @@
+#include "flight/file_state.hpp"
+
+#include <sys/stat.h>
+
+#include <tuple>
+
+namespace pcor::internal {
+namespace {
+
+std::int64_t nanoseconds(const timespec& time) {
+  return static_cast<std::int64_t>(time.tv_sec) * 1'000'000'000 + time.tv_nsec;
+}
+
+}  // namespace
+
+FileState::FileState(const std::filesystem::path& path) {
+  struct stat facts {};
+  if (::stat(path.c_str(), &facts) != 0) return;
+  device_ = facts.st_dev;
+  inode_ = facts.st_ino;
+  size_ = facts.st_size;
+  modified_ = nanoseconds(facts.st_mtim);
+  changed_ = nanoseconds(facts.st_ctim);
+}
+
+bool FileState::operator==(const FileState& other) const {
+  const auto all = [](const FileState& state) {
+    return std::tie(state.device_, state.inode_, state.size_, state.modified_, state.changed_);
+  };
+  return all(*this) == all(other);
+}
+
+}  // namespace pcor::internal

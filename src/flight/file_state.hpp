@@ -1,0 +1,28 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <filesystem>
+
+namespace pcor::internal {
+
+/// Which file a path names at a moment, and when it was last changed: two of them differ where the file was
+/// replaced or written to between. Of a path that names nothing it is that of no file.
+class FileState {
+ public:
+  FileState() = default;
+  explicit FileState(const std::filesystem::path& path);
+
+  bool operator==(const FileState& other) const;
+  bool operator!=(const FileState& other) const { return !(*this == other); }
+
+ private:
+  dev_t device_ = 0;
+  ino_t inode_ = 0;
+  off_t size_ = 0;
+  std::int64_t modified_ = 0;  // ns
+  std::int64_t changed_ = 0;   // ns; unlike the time of modification nobody sets it
+};
+
+}  // namespace pcor::internal
