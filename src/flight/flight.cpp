@@ -27,6 +27,11 @@ namespace {
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 constexpr double day = 86400;
 constexpr std::size_t most_gaps_listed = 1000;
+// Writers mark what they have no value of with 1e30, 1e35, 1e300, infinity. Nothing that is measured is as
+// much, in whatever unit.
+constexpr double no_value = 1e30;
+constexpr double most_samples_a_second = 1000, rounding = 1e-3;  // of the times of records
+constexpr std::size_t most_records = 100'000'000;  // more than a day has thousandths of a second
 
 /// A variable of the file, and what turns its stored numbers into values.
 struct Variable {
@@ -34,19 +39,39 @@ struct Variable {
   VariableInfo info;
   bool rate_dimension = false;         // (Time, spsN), also with N = 1
   std::vector<double> missing_values;  // as numbers of the stored type
+  std::array<double, 2> valid_range;   // of these
   UnitConversion unpacking;            // scale_factor and add_offset
+  std::optional<Error> refusal;        // of one whose numbers cannot be told
 };
 
 std::optional<int> rate_of_dimension(const FlightFile& file, int dimension) {
   const std::string name = file.dimension_name(dimension);
   if (name.rfind("sps", 0) != 0 || name.find_first_not_of("0123456789", 3) != std::string::npos)
     return std::nullopt;
-  return static_cast<int>(file.dimension_length(dimension));
+  const std::size_t length = file.dimension_length(dimension);
+  return length > std::numeric_limits<int>::max() ? std::nullopt : std::optional(static_cast<int>(length));
 }
 
-double number_or(const FlightFile& file, int variable, const char* attribute, double otherwise) {
+/// A number that packed values are turned with. @throws Error if the attribute is there and is none.
+double packing_number(const FlightFile& file, int variable, const char* attribute, double otherwise) {
+  const std::string text = file.text_attribute(variable, attribute);
+  if (text.empty()) return otherwise;
   const std::vector<double> numbers = file.number_attribute(variable, attribute);
-  return numbers.empty() ? otherwise : numbers.front();
+  const bool is_number = numbers.size() == 1 && std::isfinite(numbers.front());
+  if (is_number && (numbers.front() != 0 || otherwise == 0)) return numbers.front();
+  throw Error(Error::Code::variable,
+              fmt::format("{}: the attribute {} of {} is \"{}\", which values cannot be unpacked with; "
+                          "correct it with ncatted -a {},{},o,d,NUMBER {}",
+                          file.path().string(), attribute, file.variable_name(variable), text, attribute,
+                          file.variable_name(variable), file.path().string()));
+}
+
+/// Reads what turns the stored numbers into values.
+void describe_numbers(const FlightFile& file, Variable& variable) {
+  variable.missing_values = file.missing_values(variable.id);
+  variable.valid_range = file.valid_range(variable.id);
+  variable.unpacking = {packing_number(file, variable.id, "scale_factor", 1),
+                        packing_number(file, variable.id, "add_offset", 0)};
 }
 
 Variable describe(const FlightFile& file, int id, int time_dimension) {
@@ -74,8 +99,11 @@ Variable describe(const FlightFile& file, int id, int time_dimension) {
     variable.rate_dimension = true;
   }
   info.is_series = true;
-  variable.missing_values = file.missing_values(id);
-  variable.unpacking = {number_or(file, id, "scale_factor", 1), number_or(file, id, "add_offset", 0)};
+  try {
+    describe_numbers(file, variable);
+  } catch (const Error& error) {
+    variable.refusal = error;
+  }
   return variable;
 }
 
@@ -137,10 +165,19 @@ struct Flight::Implementation {
         time_stamp(stamp),
         source(find_time(*file)),
         records(file->dimension_length(source.dimension)) {
+    if (records > most_records)
+      throw Error(
+          Error::Code::file,
+          fmt::format("{} has {} records, and a flight has at most {}; cut it with ncks -d {},FIRST,LAST",
+                      path(), records, most_records, file->dimension_name(source.dimension)));
     for (int id = 0; id < file->variable_count(); ++id) {
       variables.push_back(describe(*file, id, source.dimension));
       names.push_back(variables.back().info.name);
-      index.emplace(names.back(), variables.size() - 1);
+      if (!index.emplace(names.back(), variables.size() - 1).second)
+        throw Error(Error::Code::file,
+                    fmt::format("{} has two variables {}, and nothing tells which is meant; fetch it again "
+                                "from its source",
+                                path(), names.back()));
     }
     scan_time();
   }
@@ -175,7 +212,10 @@ struct Flight::Implementation {
 
   Variable& find_series(const std::string& name) {
     Variable& variable = find(name);
-    if (variable.info.is_series) return variable;
+    if (variable.info.is_series) {
+      check_rate(variable.info);
+      return variable;
+    }
     std::string dimensions;
     for (const std::string& each : variable.info.dimensions)
       dimensions += (dimensions.empty() ? "" : ", ") + each;
@@ -184,6 +224,15 @@ struct Flight::Implementation {
         fmt::format(
             "{}: {}({}) is not a time series of numbers over (Time) or (Time, spsN); choose another variable",
             path(), name, dimensions));
+  }
+
+  void check_rate(const VariableInfo& info) const {
+    const double rate = info.rate / axis.step;
+    if (rate <= most_samples_a_second * (1 + rounding)) return;
+    throw Error(Error::Code::variable,
+                fmt::format("{}: {} has {:.6g} samples a second, {} in each record of {:.6g} s; flights are "
+                            "read with up to {:g} a second: average it, or correct the times of the records",
+                            path(), info.name, rate, info.rate, axis.step, most_samples_a_second));
   }
 
   void check_block(const std::string& name, RecordBlock block) const {
@@ -201,12 +250,15 @@ struct Flight::Implementation {
   static void clean(const Variable& variable, std::size_t count, double* values) {
     for (const double marker : variable.missing_values)
       for (std::size_t i = 0; i < count; ++i) values[i] = values[i] == marker ? missing : values[i];
-    const double scale = variable.unpacking.scale(), offset = variable.unpacking.offset();
-    for (std::size_t i = 0; i < count; ++i)
-      values[i] = std::isfinite(values[i]) ? values[i] * scale + offset : missing;
+    const auto [least, greatest] = variable.valid_range;
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool is_value = values[i] >= least && values[i] <= greatest && std::abs(values[i]) < no_value;
+      values[i] = is_value ? variable.unpacking(values[i]) : missing;
+    }
   }
 
   void read(Variable& variable, RecordBlock block, double* out) {
+    if (variable.refusal) throw Error(*variable.refusal);
     read_stored(variable, block, out);
     clean(variable, block.count * static_cast<std::size_t>(variable.info.rate), out);
   }
@@ -220,6 +272,9 @@ struct Flight::Implementation {
         throw Error(fmt::format("{}: the time of record {} is missing; leave that record out", path(),
                                 block.first + i));
       out[i] = out[i] * source.scale + source.offset;
+      if (!is_of_aviation(out[i]))
+        throw Error(fmt::format("{}: the time of record {} is {}; leave that record out", path(),
+                                block.first + i, utc_text(out[i])));
     }
     for (const std::size_t wrap : axis.midnight_wraps)
       for (std::size_t i = wrap > block.first ? wrap - block.first : 0; i < block.count; ++i) out[i] += day;
@@ -352,16 +407,22 @@ void Flight::require_values(const std::string& name) const {
                           path().string(), name, records()));
 }
 
-void Flight::read(const std::string& name, RecordBlock block, const UnitConversion& conversion,
-                  double* out) const {
+std::size_t Flight::read(const std::string& name, RecordBlock block, const UnitConversion& conversion,
+                         double* out) const {
   Variable& variable = implementation_->find_series(name);
   implementation_->read(variable, block, out);
+  std::size_t impossible = 0;
   const std::size_t count = block.count * static_cast<std::size_t>(variable.info.rate);
-  for (std::size_t i = 0; i < count; ++i) out[i] = conversion(out[i]);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double converted = conversion(out[i]);
+    impossible += std::isnan(converted) && !std::isnan(out[i]) ? 1 : 0;
+    out[i] = converted;
+  }
+  return impossible;
 }
 
-void Flight::read_at_rate(int rate, const std::string& name, RecordBlock block,
-                          const UnitConversion& conversion, double* out) const {
+std::size_t Flight::read_at_rate(int rate, const std::string& name, RecordBlock block,
+                                 const UnitConversion& conversion, double* out) const {
   Variable& variable = implementation_->find_series(name);
   const int own = variable.info.rate;
   if (rate == own) return read(name, block, conversion, out);
@@ -374,11 +435,17 @@ void Flight::read_at_rate(int rate, const std::string& name, RecordBlock block,
   std::vector<double>& values = implementation_->scratch;
   values.resize(block.count * static_cast<std::size_t>(own));
   implementation_->read(variable, block, values.data());
+  std::size_t impossible = 0;
+  for (double& value : values) {
+    if (std::isnan(value) || !std::isnan(conversion(value))) continue;
+    value = missing;
+    ++impossible;
+  }
   const auto wanted = block.count * static_cast<std::size_t>(rate);
   if (rate > own) {
     const auto held = static_cast<std::size_t>(rate / own);
     for (std::size_t i = 0; i < wanted; ++i) out[i] = conversion(values[i / held]);
-    return;
+    return impossible;
   }
   const int group = own / rate;
   const auto& circle = variable.info.modulus_range;
@@ -386,6 +453,7 @@ void Flight::read_at_rate(int rate, const std::string& name, RecordBlock block,
     const double* samples = values.data() + i * static_cast<std::size_t>(group);
     out[i] = conversion(circle ? mean_on_circle(samples, group, *circle) : mean(samples, group));
   }
+  return impossible;
 }
 
 void Flight::read_time_stamps(RecordBlock block, double* out) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -46,8 +47,15 @@ class FlightFile {
   /// True where the values are numbers.
   virtual bool is_numeric(int variable) const = 0;
 
+  /// The greatest number that the type of a numeric variable holds.
+  virtual double greatest_number(int variable) const = 0;
+
   /// The numbers that stand for missing values of a numeric variable, as `read` gives them.
   virtual std::vector<double> missing_values(int variable) const = 0;
+
+  /// The least and the greatest number of a numeric variable that is a value, as `read` gives them; infinite
+  /// where the file states none. @throws Error if what it states is no range.
+  virtual std::array<double, 2> valid_range(int variable) const = 0;
 
   /// Reads the stored numbers of some records, the first dimension, with all that belongs to them; of a
   /// variable without dimensions its number. @throws Error if they cannot be read.

@@ -445,7 +445,10 @@ namespace {
 
 NewFlight start_of(const Flight& input) {
   const auto* const netcdf = dynamic_cast<const NetcdfFile*>(&input.file());
-  return {input.time().first, input.time().whole_seconds, netcdf ? kind_of(*netcdf) : FileKind::netcdf4};
+  const TimeAxis& time = input.time();
+  const bool fits_integers =
+      time.whole_seconds && time.last - midnight_before(time.first) <= std::numeric_limits<int>::max();
+  return {time.first, fits_integers, netcdf ? kind_of(*netcdf) : FileKind::netcdf4};
 }
 
 }  // namespace

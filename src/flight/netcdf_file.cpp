@@ -6,9 +6,12 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <limits>
+#include <new>
 #include <string_view>
 #include <utility>
 
@@ -22,12 +25,21 @@ constexpr std::size_t chunk_cache_bytes = 1 << 18, chunk_cache_slots = 1009;
 
 enum class Content { classic, hdf5, other };
 
+/// What the library writes where nothing was; for bytes it is a value like any other.
 std::optional<double> default_fill(int type) {
   switch (type) {
     case NC_SHORT:
       return NC_FILL_SHORT;
+    case NC_USHORT:
+      return NC_FILL_USHORT;
     case NC_INT:
       return NC_FILL_INT;
+    case NC_UINT:
+      return NC_FILL_UINT;
+    case NC_INT64:
+      return static_cast<double>(NC_FILL_INT64);
+    case NC_UINT64:
+      return static_cast<double>(NC_FILL_UINT64);
     case NC_FLOAT:
       return static_cast<double>(NC_FILL_FLOAT);
     case NC_DOUBLE:
@@ -36,6 +48,28 @@ std::optional<double> default_fill(int type) {
       return std::nullopt;
   }
 }
+
+/// How many numbers an integer type has; nothing for other types.
+std::optional<double> span_of(int type) {
+  switch (type) {
+    case NC_BYTE:
+    case NC_UBYTE:
+      return 0x1p8;
+    case NC_SHORT:
+    case NC_USHORT:
+      return 0x1p16;
+    case NC_INT:
+    case NC_UINT:
+      return 0x1p32;
+    case NC_INT64:
+    case NC_UINT64:
+      return 0x1p64;
+    default:
+      return std::nullopt;
+  }
+}
+
+bool is_signed(int type) { return type == NC_BYTE || type == NC_SHORT || type == NC_INT || type == NC_INT64; }
 
 Content content_of(const std::filesystem::path& path) {
   char start[4] = {};
@@ -69,6 +103,12 @@ void check_size_of_classic(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+std::size_t elements(const std::vector<std::size_t>& shape) {
+  std::size_t product = 1;
+  for (const std::size_t length : shape) product *= length;
+  return product;
+}
 
 std::string netcdf_reason(int status) { return status > 0 ? std::strerror(status) : nc_strerror(status); }
 
@@ -110,6 +150,7 @@ NetcdfFile::~NetcdfFile() {
 
 void NetcdfFile::check(int status, const std::string& doing) const {
   if (status == NC_NOERR) return;
+  if (status == NC_ENOMEM || status == ENOMEM) throw std::bad_alloc();
   if (use_ == Use::reading) require_unchanged();
   std::string message = path_.string() + ": " + doing + ": " + netcdf_reason(status);
   if (use_ == Use::reading)
@@ -258,17 +299,83 @@ bool NetcdfFile::is_numeric(int variable) const {
   return type != NC_CHAR && type > NC_NAT && type < NC_STRING;
 }
 
+bool NetcdfFile::is_unsigned(int variable) const {
+  const int type = type_of(variable);
+  if (!is_signed(type)) return span_of(type).has_value();
+  const std::string text = text_attribute(variable, "_Unsigned");
+  return text == "true" || text == "True" || text == "TRUE";
+}
+
+void NetcdfFile::make_unsigned(int variable, double* numbers, std::size_t count) const {
+  if (!is_unsigned(variable)) return;
+  const double span = *span_of(type_of(variable));
+  for (std::size_t i = 0; i < count; ++i) numbers[i] += numbers[i] < 0 ? span : 0;
+}
+
+double NetcdfFile::greatest_number(int variable) const {
+  const std::optional<double> span = span_of(type_of(variable));
+  if (!span) return std::numeric_limits<double>::max();
+  return (is_unsigned(variable) ? *span : *span / 2) - 1;
+}
+
+std::vector<double> NetcdfFile::stored_numbers(int variable, const std::string& name) const {
+  std::vector<double> numbers = number_attribute(variable, name);
+  if (type_of(variable) == NC_FLOAT)
+    for (double& number : numbers) number = static_cast<double>(static_cast<float>(number));
+  make_unsigned(variable, numbers.data(), numbers.size());
+  return numbers;
+}
+
 std::vector<double> NetcdfFile::missing_values(int variable) const {
   const int type = type_of(variable);
   std::vector<double> values;
   for (const char* name : {"_FillValue", "missing_value", "MissingValue"})
-    for (const double value : number_attribute(variable, name))
-      values.push_back(type == NC_FLOAT ? static_cast<double>(static_cast<float>(value)) : value);
+    for (const double value : stored_numbers(variable, name))
+      if (!std::isnan(value)) values.push_back(value);
   if (values.empty() && (type == NC_FLOAT || type == NC_DOUBLE)) values.push_back(-32767);
-  if (const auto fill = default_fill(type)) values.push_back(*fill);
+  if (auto fill = default_fill(type)) {
+    make_unsigned(variable, &*fill, 1);
+    values.push_back(*fill);
+  }
   std::sort(values.begin(), values.end());
   values.erase(std::unique(values.begin(), values.end()), values.end());
   return values;
+}
+
+void NetcdfFile::refuse_attribute(int variable, const std::string& name, const std::string& why) const {
+  const std::string of = variable_name(variable);
+  throw Error(Error::Code::variable,
+              fmt::format("{}: the attribute {} of {} {}; correct it, or take it away with ncatted -a "
+                          "{},{},d,, {}",
+                          path_.string(), name, of, why, name, of, path_.string()));
+}
+
+std::array<double, 2> NetcdfFile::valid_range(int variable) const {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  constexpr struct {
+    const char* name;
+    std::size_t first, count;
+  } attributes[] = {{"valid_range", 0, 2}, {"valid_min", 0, 1}, {"valid_max", 1, 1}};
+  const int type = type_of(variable);
+  const bool is_packed =
+      type != NC_FLOAT && type != NC_DOUBLE &&
+      !(text_attribute(variable, "scale_factor") + text_attribute(variable, "add_offset")).empty();
+  std::array<double, 2> range{-infinity, infinity};
+  for (const auto& each : attributes) {
+    nc_type own_type = NC_NAT;
+    if (nc_inq_atttype(id_, variable, each.name, &own_type) != NC_NOERR) continue;
+    const std::vector<double> numbers = stored_numbers(variable, each.name);
+    if (numbers.size() != each.count)
+      refuse_attribute(variable, each.name, each.count == 1 ? "is not one number" : "is not two numbers");
+    if (is_packed && (own_type == NC_FLOAT || own_type == NC_DOUBLE))
+      refuse_attribute(
+          variable, each.name,
+          "has another type than the packed integers, so that it cannot be told whether it is of "
+          "these or of what they stand for");
+    std::copy(numbers.begin(), numbers.end(), range.begin() + each.first);
+    if (!(range[0] <= range[1])) refuse_attribute(variable, each.name, "leaves no value");
+  }
+  return range;
 }
 
 void NetcdfFile::read(int variable, RecordBlock records, double* out) const {
@@ -281,6 +388,7 @@ void NetcdfFile::read(int variable, RecordBlock records, double* out) const {
   check(nc_get_vara_double(id_, variable, start.data(), count.data(), out),
         "cannot read " + variable_name(variable));
   require_unchanged();
+  make_unsigned(variable, out, elements(count));
 }
 
 }  // namespace pcor::internal

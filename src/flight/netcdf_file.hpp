@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -60,10 +62,23 @@ class NetcdfFile final : public FlightFile {
   std::string text_attribute(int variable, const std::string& name) const override;
   std::vector<double> number_attribute(int variable, const std::string& name) const override;
   bool is_numeric(int variable) const override;
+  double greatest_number(int variable) const override;
   std::vector<double> missing_values(int variable) const override;
+  std::array<double, 2> valid_range(int variable) const override;
   void read(int variable, RecordBlock records, double* out) const override;
 
  private:
+  /// Whether the values are unsigned integers: by their type, or because the attribute _Unsigned says so.
+  bool is_unsigned(int variable) const;
+
+  /// Turns stored numbers of such a variable into what they stand for.
+  void make_unsigned(int variable, double* numbers, std::size_t count) const;
+
+  /// An attribute that states numbers of a variable, as `read` gives these.
+  std::vector<double> stored_numbers(int variable, const std::string& name) const;
+
+  [[noreturn]] void refuse_attribute(int variable, const std::string& name, const std::string& why) const;
+
   enum class Use { reading, writing };
 
   NetcdfFile(int id, std::filesystem::path path, Use use, FileState state = {})
@@ -75,6 +90,9 @@ class NetcdfFile final : public FlightFile {
   FileState state_;               // as it was opened for reading
   mutable std::set<int> fitted_;  // variables whose chunk cache is fit
 };
+
+/// The product of some lengths.
+std::size_t elements(const std::vector<std::size_t>& shape);
 
 /// What a netCDF status means in words.
 std::string netcdf_reason(int status);

@@ -45,12 +45,6 @@ FileKind kind_of(const NetcdfFile& file) {
   }
 }
 
-std::size_t elements(const std::vector<std::size_t>& shape) {
-  std::size_t product = 1;
-  for (const std::size_t length : shape) product *= length;
-  return product;
-}
-
 NetcdfOutput::NetcdfOutput(const std::filesystem::path& path, const std::filesystem::path& shown_path,
                            FileKind kind)
     : file_(NetcdfFile::create(path, shown_path, creation_mode(kind))),

@@ -14,9 +14,6 @@ namespace pcor::internal {
 /// How an open netCDF file is stored.
 FileKind kind_of(const NetcdfFile& file);
 
-/// The product of some lengths.
-std::size_t elements(const std::vector<std::size_t>& shape);
-
 /// A new netCDF file whose variables lie over an unlimited `Time`.
 class NetcdfOutput {
  public:

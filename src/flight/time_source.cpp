@@ -1,5 +1,6 @@
 #include "flight/time_source.hpp"
 
+#include <fmt/format.h>
 #include <pcor/units/units.hpp>
 #include <pcor/words/error.hpp>
 #include <pcor/words/utc.hpp>
@@ -18,6 +19,18 @@ constexpr double day = 86400;
 // Research flights in netCDF files: after 1971, so that seconds since midnight are not taken for 1970.
 bool is_plausible(double time) { return time >= 31536000. && time < 4102444800.; }
 
+// A date as the midnight it begins with, if there is such a date.
+std::optional<double> midnight_of(int year, int month, int day_of_month) {
+  std::tm fields{};
+  fields.tm_year = year - 1900;
+  fields.tm_mon = month - 1;
+  fields.tm_mday = day_of_month;
+  const auto midnight = static_cast<double>(timegm(&fields));
+  const bool same =
+      fields.tm_year == year - 1900 && fields.tm_mon == month - 1 && fields.tm_mday == day_of_month;
+  return same && year > 0 ? std::optional(midnight) : std::nullopt;
+}
+
 std::optional<double> first_value(const FlightFile& file, std::optional<int> variable) {
   if (!variable || !file.is_numeric(*variable)) return std::nullopt;
   const std::vector<int> dimensions = file.dimensions_of(*variable);
@@ -28,13 +41,48 @@ std::optional<double> first_value(const FlightFile& file, std::optional<int> var
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-// "seconds since 2004-02-18 00:00:00 +0000" as a conversion to seconds since 1970.
-std::optional<UnitConversion> epoch_conversion(const std::string& units) {
-  if (units.find("since") == std::string::npos) return std::nullopt;
-  try {
-    return UnitConversion::between(units, "seconds since 1970-01-01 00:00:00 UTC", {});
-  } catch (const Error&) {
+// What the units of a time say.
+struct Counting {
+  std::string of;  // for messages: the file and the variable
+  std::string how_to_state;
+  std::string units;
+  std::string calendar;
+};
+
+Counting counting_of(const FlightFile& file, int variable) {
+  const std::string name = file.variable_name(variable), path = file.path().string();
+  return {path + ": " + name,
+          "state the unit it is in with ncatted -a units," + name +
+              ",o,c,\"seconds since 2004-02-18 00:00:00 +0000\" " + path,
+          file.text_attribute(variable, "units"), file.text_attribute(variable, "calendar")};
+}
+
+// "seconds since 2004-02-18 00:00:00 +0000" as a conversion to seconds since 1970; nothing if there is no
+// such date. @throws Error if the date is followed by what is no time of day in a known zone, or is of a
+// calendar whose years have other days.
+std::optional<UnitConversion> epoch_conversion(const Counting& time) {
+  const std::size_t since = time.units.find("since ");
+  int year = 0, month = 0, day_of_month = 0;
+  if (since == std::string::npos ||
+      std::sscanf(time.units.c_str() + since + 6, "%5d-%3d-%3d", &year, &month, &day_of_month) != 3)
     return std::nullopt;
+  if (!midnight_of(year, month, day_of_month)) return std::nullopt;
+  constexpr int first_gregorian_year = 1583;
+  const bool is_gregorian = time.calendar.empty() || time.calendar == "standard" ||
+                            time.calendar == "gregorian" ||
+                            (time.calendar == "proleptic_gregorian" && year >= first_gregorian_year);
+  if (!is_gregorian)
+    throw Error(
+        fmt::format("{} counts from the year {} in the calendar \"{}\", whose days are not those of "
+                    "the standard calendar; write the time in that",
+                    time.of, year, time.calendar));
+  try {
+    return UnitConversion::between(time.units, "seconds since 1970-01-01 00:00:00 UTC", {});
+  } catch (const Error&) {
+    throw Error(
+        fmt::format("{} counts in \"{}\", where what follows the date is not a time of day in UTC or "
+                    "with an offset in hours; {}",
+                    time.of, time.units, time.how_to_state));
   }
 }
 
@@ -47,17 +95,11 @@ std::optional<double> base_time(const FlightFile& file) {
 std::optional<double> flight_date(const FlightFile& file) {
   const std::string text = file.text_attribute(FlightFile::whole_file, "FlightDate");
   int year = 0, month = 0, day_of_month = 0;
-  if (std::sscanf(text.c_str(), "%d/%d/%d", &month, &day_of_month, &year) != 3 &&
+  if (std::sscanf(text.c_str(), "%5d/%5d/%5d", &month, &day_of_month, &year) != 3 &&
       std::sscanf(text.c_str(), "%4d-%2d-%2d", &year, &month, &day_of_month) != 3)
     return std::nullopt;
-  std::tm fields{};
-  fields.tm_year = year - 1900;
-  fields.tm_mon = month - 1;
-  fields.tm_mday = day_of_month;
-  const auto midnight = static_cast<double>(timegm(&fields));
-  const bool same =
-      fields.tm_year == year - 1900 && fields.tm_mon == month - 1 && fields.tm_mday == day_of_month;
-  return same && is_plausible(midnight) ? std::optional(midnight) : std::nullopt;
+  const auto midnight = midnight_of(year, month, day_of_month);
+  return midnight && is_plausible(*midnight) ? midnight : std::nullopt;
 }
 
 // The start in TimeInterval ("14:22:00-15:13:00"), seconds since midnight.
@@ -76,6 +118,11 @@ std::optional<double> offset_of_seconds(double first_raw, double start) {
   return std::nullopt;
 }
 
+// The most seconds that the variable can count.
+double most_seconds(const FlightFile& file, int variable, const std::optional<UnitConversion>& epoch) {
+  return file.greatest_number(variable) * (epoch ? epoch->scale() : 1);
+}
+
 std::optional<int> find_time_variable(const FlightFile& file) {
   for (const char* name : {"Time", "time", "TIME"})
     if (const auto variable = file.find_variable(name); variable && file.dimensions_of(*variable).size() == 1)
@@ -84,6 +131,11 @@ std::optional<int> find_time_variable(const FlightFile& file) {
 }
 
 }  // namespace
+
+bool is_of_aviation(double time) {
+  constexpr double year_1900 = -2208988800., year_2200 = 7258118400.;
+  return time >= year_1900 && time < year_2200;
+}
 
 TimeSource find_time(const FlightFile& file) {
   const std::string path = file.path().string();
@@ -101,26 +153,34 @@ TimeSource find_time(const FlightFile& file) {
     throw Error(path + " has no records: its dimension " + file.dimension_name(source.dimension) +
                 " is empty; choose a file with data");
   const std::string name = file.variable_name(source.variable);
-  const std::string units = file.text_attribute(source.variable, "units");
+  const Counting counting = counting_of(file, source.variable);
+  const std::string& units = counting.units;
   const auto raw = first_value(file, source.variable);
   if (!raw)
     throw Error(path + ": the variable " + name + " is not numeric at record 0; repair the time axis");
 
   const auto base = base_time(file);
-  const auto epoch = epoch_conversion(units);
-  const bool units_hold = epoch && is_plausible((*epoch)(*raw));
   if (!time && base) {
     source.offset = *base;
     source.words = "base_time + time_offset";
     return source;
   }
+  const auto epoch = epoch_conversion(counting);
+  const double first = epoch ? (*epoch)(*raw) : 0;
+  const bool units_hold = epoch && is_plausible(first);
+  if (epoch && !is_of_aviation(first))
+    throw Error(fmt::format("{} counts in \"{}\" and begins with {}, which is the {}; {}", counting.of, units,
+                            *raw, utc_text(first), counting.how_to_state));
+  if (most_seconds(file, source.variable, epoch) < day)
+    throw Error(
+        fmt::format("{} is stored in integers that go up to {}, too few for the seconds of a day: who "
+                    "wrote it may have begun again there; have it written in 32 bits",
+                    counting.of, file.greatest_number(source.variable)));
   if (units_hold) {
     constexpr double week = 7 * day;
     if (epoch->scale() > week)
-      throw Error(path + ": " + name + " counts in \"" + units +
-                  "\", and months and years are not always as long; state the unit it is in with ncatted -a "
-                  "units," +
-                  name + ",o,c,\"seconds since 2004-02-18 00:00:00 +0000\" " + path);
+      throw Error(fmt::format("{} counts in \"{}\", and months and years are not always as long; {}",
+                              counting.of, units, counting.how_to_state));
     source.scale = epoch->scale();
     source.offset = std::round(epoch->offset() * 1000) / 1000;
     source.words = name + ", " + units;
@@ -142,9 +202,10 @@ TimeSource find_time(const FlightFile& file) {
       return source;
     }
   }
-  throw Error(path + ": " + name + " does not tell the time: its units are \"" + units +
-              "\" and there is no base_time or FlightDate that fits; state them with ncatted -a units," +
-              name + ",o,c,\"seconds since 2004-02-18 00:00:00 +0000\" " + path);
+  throw Error(
+      fmt::format("{} does not tell the time: its units are \"{}\" and there is no base_time or "
+                  "FlightDate that fits; {}",
+                  counting.of, units, counting.how_to_state));
 }
 
 }  // namespace pcor::internal

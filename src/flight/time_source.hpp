@@ -16,6 +16,9 @@ struct TimeSource {
   std::string words;
 };
 
+/// Whether a time, seconds since 1970 UTC, is of the years 1900 to 2199. No other flight is known.
+bool is_of_aviation(double time);
+
 /// Finds it, see Flight. @throws Error if the file has no records or does not tell the time.
 TimeSource find_time(const FlightFile& file);
 

@@ -48,7 +48,9 @@ class MemoryFile final : public FlightFile {
   }
   std::vector<double> number_attribute(int, const std::string&) const override { return {}; }
   bool is_numeric(int) const override { return true; }
+  double greatest_number(int) const override { return 1e300; }
   std::vector<double> missing_values(int) const override { return {-1.0}; }
+  std::array<double, 2> valid_range(int) const override { return {-1000.0, 1e10}; }
   void read(int variable, RecordBlock records, double* out) const override {
     const std::size_t rate = at(variable).values.size() / 3;
     std::copy_n(at(variable).values.begin() + static_cast<std::ptrdiff_t>(records.first * rate),

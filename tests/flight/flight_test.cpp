@@ -288,6 +288,119 @@ TEST_F(FlightTest, ATimeThatCannotBeToldSaysHowToStateIt) {
                                HasSubstr("ncatted -a units,Time")));
 }
 
+TEST_F(FlightTest, ACalendarWhoseYearsHaveOtherDaysIsRefused) {
+  const auto make = [this](const std::string& calendar, const std::string& units) {
+    NetcdfMaker maker(path());
+    const int time = maker.time({51720, 51721}, units, NC_DOUBLE);
+    maker.text(NC_GLOBAL, "FlightDate", "02/18/2004");
+    maker.text(time, "calendar", calendar);
+  };
+  const std::string units = "seconds since 2004-02-18 00:00:00 +0000";
+  for (const char* calendar : {"noleap", "365_day", "all_leap", "360_day", "julian", "tai"}) {
+    make(calendar, units);
+    EXPECT_THAT(refusal(), AllOf(HasSubstr("Time counts"), HasSubstr(calendar)));
+  }
+  for (const char* calendar : {"standard", "gregorian", "proleptic_gregorian"}) {
+    make(calendar, units);
+    EXPECT_EQ(utc_text(Flight(path()).time().first), "2004-02-18 14:22:00") << calendar;
+  }
+  // Before 1582 the standard calendar is the Julian one, two days apart.
+  make("proleptic_gregorian", "seconds since 1500-01-01");
+  EXPECT_THAT(refusal(), HasSubstr("from the year 1500"));
+}
+
+TEST_F(FlightTest, AZoneIsAnOffsetOrThatOfUtc) {
+  for (const char* zone : {"", " UTC", " GMT", " Z", "Z", " +0000", " +00:00"}) {
+    { NetcdfMaker(path()).time({51720, 51721}, std::string("seconds since 2004-02-18 00:00:00") + zone); }
+    EXPECT_EQ(utc_text(Flight(path()).time().first), "2004-02-18 14:22:00") << zone;
+  }
+  { NetcdfMaker(path()).time({51720, 51721}, "seconds since 2004-02-18 00:00:00 -07:00"); }
+  EXPECT_EQ(utc_text(Flight(path()).time().first), "2004-02-18 21:22:00");
+  for (const char* rest : {" MST", " (MST)", " Europe/Berlin"}) {
+    {
+      NetcdfMaker maker(path());
+      maker.text(NC_GLOBAL, "FlightDate", "02/18/2004");  // the day in that zone, so no help
+      maker.time({51720, 51721}, std::string("seconds since 2004-02-18 00:00:00") + rest);
+    }
+    EXPECT_THAT(refusal(), AllOf(HasSubstr(rest), HasSubstr("not a time of day in UTC"),
+                                 HasSubstr("ncatted -a units,Time")));
+  }
+}
+
+TEST_F(FlightTest, ADateThatDoesNotExistTellsNoTime) {
+  for (const char* date : {"2011-13-45", "2011-02-30", "2011-00-10", "2004-049", "0000-01-01"}) {
+    { NetcdfMaker(path()).time({51720, 51721}, std::string("seconds since ") + date); }
+    EXPECT_THAT(refusal(), AllOf(HasSubstr("does not tell the time"), HasSubstr(date)));
+  }
+  { NetcdfMaker(path()).time({51720, 51721}, "seconds since 2004-02-29"); }
+  EXPECT_EQ(utc_text(Flight(path()).time().first), "2004-02-29 14:22:00");
+}
+
+TEST_F(FlightTest, AYearBeforeOrAfterAllFlightsIsRefused) {
+  for (const char* units :
+       {"seconds since 1890-01-01", "seconds since 3011-11-17", "days since 1970-01-01"}) {
+    {
+      NetcdfMaker maker(path());
+      maker.text(NC_GLOBAL, "FlightDate", "02/18/2004");
+      maker.time({151720, 151721}, units);
+    }
+    EXPECT_THAT(refusal(), AllOf(HasSubstr(units), HasSubstr("ncatted -a units,Time")));
+  }
+  make_with_times({100, 101, 1e12}, NC_DOUBLE);
+  EXPECT_THAT(refusal(), HasSubstr("the time of record 2 is 1.00108e+12 s after 1970-01-01"));
+}
+
+// 20:05:00 in 16 bits is 01:52:44, and nothing in the file tells.
+TEST_F(FlightTest, ATimeInTooFewBitsForADayIsRefused) {
+  for (const int type : {NC_SHORT, NC_USHORT, NC_BYTE}) {
+    make_with_times({100, 101}, type);
+    EXPECT_THAT(refusal(), HasSubstr("too few for the seconds of a day"));
+  }
+}
+
+TEST_F(FlightTest, TwoVariablesOfOneNameAreRefused) {
+  {
+    NetcdfMaker maker(path(), 0);
+    maker.time({100, 101});
+    maker.series("PSFD", "hPa", {850, 851});
+    maker.series("PSFX", "hPa", {1, 2});
+  }
+  std::ostringstream text;
+  text << std::ifstream(path(), std::ios::binary).rdbuf();
+  std::string bytes = text.str();
+  bytes.replace(bytes.find("PSFX"), 4, "PSFD");
+  std::ofstream(path(), std::ios::binary) << bytes;
+  EXPECT_THAT(refusal(), HasSubstr("has two variables PSFD"));
+}
+
+TEST_F(FlightTest, MoreThanAThousandSamplesASecondAreRefusedWhenTheyAreRead) {
+  const auto make = [this](std::size_t rate, double step) {
+    NetcdfMaker maker(path());
+    maker.time({100, 100 + step}, "seconds since 2004-02-18 00:00:00 +0000", NC_DOUBLE);
+    maker.series("FAST", "hPa", std::vector<double>(2 * rate, 850), static_cast<int>(rate));
+  };
+  make(1000, 1);
+  EXPECT_EQ(read("FAST").size(), 2000U);
+  make(60000, 60);
+  EXPECT_EQ(read("FAST").size(), 120000U);
+  const auto refused = [this] { return pcor::test::message_of<Error>([&] { read("FAST"); }); };
+  make(1001, 1);
+  EXPECT_THAT(refused(), HasSubstr("FAST has 1001 samples a second, 1001 in each record of 1 s"));
+  make(1, 1e-6);
+  EXPECT_THAT(refused(),
+              AllOf(HasSubstr("FAST has 1.0"), HasSubstr("e+06 samples a second, 1 in each record")));
+}
+
+TEST_F(FlightTest, MoreRecordsThanAFlightCanHaveAreRefusedAtOnce) {
+  { NetcdfMaker(path(), NC_64BIT_DATA).time({100, 101}); }
+  std::fstream file(path(), std::ios::binary | std::ios::in | std::ios::out);
+  file.seekp(7);  // how many records: 2^35 more
+  file.put('\x08');
+  file.close();
+  std::filesystem::resize_file(path(), std::uintmax_t{1} << 40);  // a hole
+  EXPECT_THAT(refusal(), HasSubstr("and a flight has at most 100000000"));
+}
+
 TEST_F(FlightTest, TimeThatRunsBackwardsNamesTheRecordAndCountsThem) {
   make_with_times({100, 101, 102, 101, 102, 90, 91});
   EXPECT_THAT(refusal(),
@@ -478,6 +591,147 @@ TEST_F(FlightTest, EveryMarkOfMissingValuesBecomesNan) {
   }
   for (const char* name : {"FILL", "MISSING", "OLD", "DOUBLE", "BARE", "DEFAULT", "TEXT"})
     EXPECT_THAT(read(name), ElementsAre(IsNan(), IsNan(), IsNan(), IsNan(), 5)) << name;
+}
+
+TEST_F(FlightTest, TheDefaultFillOfEveryPackedTypeIsMissing) {
+  {
+    NetcdfMaker maker(path());
+    maker.time({100, 101});
+    const auto put = [&](const char* name, int type, double fill) {
+      const int number = maker.variable(name, type, {maker.time_dimension});
+      maker.numbers(number, "scale_factor", NC_DOUBLE, {0.5});
+      maker.values(number, {10, fill});
+    };
+    put("SHORT", NC_SHORT, NC_FILL_SHORT);
+    put("USHORT", NC_USHORT, NC_FILL_USHORT);
+    put("INT", NC_INT, NC_FILL_INT);
+    put("UINT", NC_UINT, NC_FILL_UINT);
+    put("INT64", NC_INT64, static_cast<double>(NC_FILL_INT64));
+    put("UINT64", NC_UINT64, 0);  // its fill is no double
+  }
+  {
+    int id = 0, number = 0;
+    nc_open(path().c_str(), NC_WRITE, &id);
+    nc_inq_varid(id, "UINT64", &number);
+    const std::size_t second = 1;
+    const unsigned long long fill = NC_FILL_UINT64;
+    nc_put_var1_ulonglong(id, number, &second, &fill);
+    nc_close(id);
+  }
+  for (const char* name : {"SHORT", "USHORT", "INT", "UINT", "INT64", "UINT64"})
+    EXPECT_THAT(read(name), ElementsAre(5, IsNan())) << name;
+}
+
+TEST_F(FlightTest, SignedIntegersThatAreCalledUnsignedAreReadAsSuch) {
+  {
+    NetcdfMaker maker(path(), 0);
+    maker.time({100, 101, 102, 103});
+    const auto put = [&](const char* name, int type, const std::vector<double>& stored) {
+      const int number = maker.variable(name, type, {maker.time_dimension});
+      maker.text(number, "_Unsigned", "true");
+      maker.numbers(number, "_FillValue", type, {-1});
+      maker.numbers(number, "valid_max", type, {-3});
+      maker.numbers(number, "scale_factor", NC_DOUBLE, {0.01});
+      maker.numbers(number, "add_offset", NC_DOUBLE, {500});
+      maker.values(number, stored);
+    };
+    put("BYTE", NC_BYTE, {100, -128, -1, -2});
+    put("SHORT", NC_SHORT, {100, -32768, -1, -2});
+    put("INT", NC_INT, {100, -4, -1, -2});
+  }
+  EXPECT_THAT(read("BYTE"), ElementsAre(501, DoubleEq(501.28), IsNan(), IsNan()));
+  EXPECT_THAT(read("SHORT"), ElementsAre(501, DoubleEq(827.68), IsNan(), IsNan()));
+  EXPECT_THAT(read("INT"), ElementsAre(501, DoubleEq(500 + 0.01 * 4294967292.), IsNan(), IsNan()));
+}
+
+TEST_F(FlightTest, WhatIsNotValidIsMissing) {
+  {
+    NetcdfMaker maker(path(), 0);
+    maker.time({100, 101, 102});
+    const int range = maker.series("RANGE", "hPa", {850, 99.9f, 5000});
+    maker.numbers(range, "valid_range", NC_FLOAT, {100, 1100});
+    const int least = maker.series("LEAST", "hPa", {850, 0.1f, 0.05f});
+    maker.numbers(least, "valid_min", NC_DOUBLE, {0.1});
+    const int greatest = maker.series("GREATEST", "hPa", {850, 0.1f, 5000});
+    maker.numbers(greatest, "valid_max", NC_FLOAT, {1100});
+    const int packed = maker.variable("PACKED", NC_SHORT, {maker.time_dimension});
+    maker.numbers(packed, "scale_factor", NC_DOUBLE, {0.5});
+    maker.numbers(packed, "valid_range", NC_SHORT, {10, 20});
+    maker.values(packed, {10, 20, 21});
+  }
+  EXPECT_THAT(read("RANGE"), ElementsAre(850, IsNan(), IsNan()));
+  EXPECT_THAT(read("LEAST"), ElementsAre(850, DoubleEq(static_cast<double>(0.1f)), IsNan()))
+      << "0.1 as a float is not below 0.1";
+  EXPECT_THAT(read("GREATEST"), ElementsAre(850, DoubleEq(static_cast<double>(0.1f)), IsNan()));
+  EXPECT_THAT(read("PACKED"), ElementsAre(5, 10, IsNan())) << "the range is that of the packed numbers";
+}
+
+TEST_F(FlightTest, WhatIsTooMuchToBeMeasuredIsMissing) {
+  {
+    NetcdfMaker maker(path());
+    maker.time({100, 101, 102, 103});
+    const int number = maker.variable("PSFD", NC_DOUBLE, {maker.time_dimension});
+    maker.values(number, {850, 1e30, -1e300, infinity});
+    const int packed = maker.variable("PACKED", NC_DOUBLE, {maker.time_dimension});
+    maker.numbers(packed, "scale_factor", NC_DOUBLE, {1e300});
+    maker.values(packed, {0, 1e10, 1e20, 1});
+  }
+  EXPECT_THAT(read("PSFD"), ElementsAre(850, IsNan(), IsNan(), IsNan()));
+  EXPECT_THAT(read("PACKED"), ElementsAre(0, IsNan(), IsNan(), 1e300));
+}
+
+TEST_F(FlightTest, NumbersThatCannotBeToldAreRefusedWhenTheyAreRead) {
+  {
+    NetcdfMaker maker(path());
+    maker.time({100, 101});
+    const auto put = [&](const char* name) {
+      const int number = maker.variable(name, NC_SHORT, {maker.time_dimension});
+      maker.values(number, {10, 11});
+      return number;
+    };
+    maker.text(put("SCALE"), "scale_factor", "text");
+    maker.numbers(put("ZERO"), "scale_factor", NC_DOUBLE, {0});
+    maker.numbers(put("NAN"), "add_offset", NC_DOUBLE, {missing});
+    maker.numbers(put("TWO"), "add_offset", NC_DOUBLE, {1, 2});
+    maker.numbers(put("RANGE"), "valid_range", NC_SHORT, {20, 10});
+    maker.numbers(put("ONE"), "valid_range", NC_SHORT, {20});
+    maker.text(put("TEXT"), "valid_min", "low");
+    const int packed = put("PACKED");
+    maker.numbers(packed, "scale_factor", NC_DOUBLE, {0.5});
+    maker.numbers(packed, "valid_max", NC_DOUBLE, {20});
+    maker.text(put("DIGITS"), "scale_factor", "0.5");
+  }
+  const auto refusal_of = [this](const char* name) {
+    return pcor::test::message_of<Error>([&] { read(name); });
+  };
+  EXPECT_THAT(refusal_of("SCALE"),
+              AllOf(HasSubstr(path().string()), HasSubstr("scale_factor of SCALE is \"text\""),
+                    HasSubstr("ncatted -a scale_factor,SCALE")));
+  EXPECT_THAT(refusal_of("ZERO"), HasSubstr("scale_factor of ZERO is \"0\""));
+  EXPECT_THAT(refusal_of("NAN"), HasSubstr("add_offset of NAN"));
+  EXPECT_THAT(refusal_of("TWO"), HasSubstr("add_offset of TWO is \"1, 2\""));
+  EXPECT_THAT(refusal_of("RANGE"), HasSubstr("valid_range of RANGE leaves no value"));
+  EXPECT_THAT(refusal_of("ONE"), HasSubstr("valid_range of ONE is not two numbers"));
+  EXPECT_THAT(refusal_of("TEXT"), HasSubstr("valid_min of TEXT is not one number"));
+  EXPECT_THAT(refusal_of("PACKED"),
+              HasSubstr("valid_max of PACKED has another type than the packed integers"));
+  EXPECT_THAT(read("DIGITS"), ElementsAre(5, 5.5));
+}
+
+TEST_F(FlightTest, WhatAConversionCallsImpossibleIsCountedAndTakesNoPartInAMean) {
+  {
+    NetcdfMaker maker(path());
+    maker.time({100, 101});
+    maker.series("PSFD", "hPa", {800, 802, 9999, 806, -9999, -32767}, 3);
+  }
+  const Flight flight(path());
+  const UnitConversion possible = UnitConversion(0.1, 0).within(1, 120);
+  std::vector<double> values(6);
+  EXPECT_EQ(flight.read("PSFD", {0, 2}, possible, values.data()), 2);
+  EXPECT_THAT(values, ElementsAre(80, DoubleEq(80.2), IsNan(), DoubleEq(80.6), IsNan(), IsNan()));
+  EXPECT_EQ(flight.read_at_rate(1, "PSFD", {0, 2}, possible, values.data()), 2);
+  EXPECT_THAT(values,
+              ElementsAre(DoubleEq(80.1), DoubleEq(80.6), testing::_, testing::_, testing::_, testing::_));
 }
 
 TEST_F(FlightTest, AVariableThatIsMissingThroughoutIsAnErrorWhenRequired) {

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <new>
 #include <sstream>
 #include <string>
 #include <system_error>
@@ -92,6 +93,11 @@ int main(int argc, char** argv) {
   } catch (const std::system_error& error) {
     // fmt::print throws it where the text does not go out.
     fmt::print(stderr, "pcor: standard output: {}; check the space where it goes\n", error.code().message());
+    return work_not_done;
+  } catch (const std::bad_alloc&) {
+    fmt::print(
+        stderr,
+        "pcor: the memory is exhausted; give fewer or shorter flights at a time, or a machine with more\n");
     return work_not_done;
   } catch (const std::exception& error) {
     fmt::print(stderr, "pcor: a fault of the program itself, please report it: {}\n", error.what());

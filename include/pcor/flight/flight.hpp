@@ -73,8 +73,9 @@ enum class TimeStamp { begin, middle };
 /// file is netCDF; another format is a class of its own beside that of netCDF.
 ///
 /// All reading is by blocks of records. Missing values, however the file marks them (`_FillValue`,
-/// `missing_value`, `MissingValue`, the default fill value, -32767 in a file that marks none, NaN,
-/// infinities), become NaN. `valid_range` is not applied. Objects of this class are not for use by several
+/// `missing_value`, `MissingValue`, the default fill value, -32767 in a file that marks none, NaN, what
+/// `valid_range`, `valid_min` and `valid_max` leave out, 1e30 and more), become NaN. `scale_factor`,
+/// `add_offset` and `_Unsigned` are applied. Objects of this class are not for use by several
 /// threads at once, nor are two of them: the netCDF library is not made for it.
 class Flight {
  public:
@@ -134,15 +135,19 @@ class Flight {
   void require_values(const std::string& name) const;
 
   /// Reads `block.count * rate` values at the variable's own rate, converted, into `out`. Missing is NaN.
-  /// @throws Error if the variable is absent, not a time series, or the block goes beyond the last record.
-  void read(const std::string& name, RecordBlock block, const UnitConversion& conversion, double* out) const;
+  /// @return how many recorded values are missing because the conversion calls them impossible
+  /// @throws Error if the variable is absent, not a time series, or has an attribute by which its numbers
+  /// cannot be told, if the block goes beyond the last record, or the file was replaced or changed meanwhile.
+  std::size_t read(const std::string& name, RecordBlock block, const UnitConversion& conversion,
+                   double* out) const;
 
   /// Reads `block.count * rate` values at the wanted rate. The variable's own rate is exact. A lower one is
   /// held constant over its interval. A higher one gives the mean of the values that are there (NaN if there
   /// are none); for an angle (`modulus_range`) the mean on the circle.
+  /// Impossible values, which are counted at the variable's own rate, take no part in a mean.
   /// @throws Error as `read`, and if neither rate is a multiple of the other.
-  void read_at_rate(int rate, const std::string& name, RecordBlock block, const UnitConversion& conversion,
-                    double* out) const;
+  std::size_t read_at_rate(int rate, const std::string& name, RecordBlock block,
+                           const UnitConversion& conversion, double* out) const;
 
   /// The times of the records as the file has them, seconds since 1970 UTC: `block.count` values.
   void read_time_stamps(RecordBlock block, double* out) const;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 
 namespace pcor {
@@ -11,7 +12,7 @@ struct UnitOwner {
   std::string role;      ///< what the model file calls it, e.g. "static_pressure"
 };
 
-/// A linear conversion between two units: `value * scale + offset`.
+/// A linear conversion between two units: `value * scale + offset`, of what is possible in the second one.
 class UnitConversion {
  public:
   /// The conversion that changes nothing.
@@ -25,13 +26,30 @@ class UnitConversion {
   /// are not related by a straight line (dBZ). The message says how to state the unit in the model file.
   static UnitConversion between(const std::string& from, const std::string& to, const UnitOwner& owner);
 
+  /// The same of which nothing less than `least` or more than `greatest` comes out, but NaN.
+  UnitConversion within(double least, double greatest) const {
+    UnitConversion limited = *this;
+    limited.least_ = least;
+    limited.greatest_ = greatest;
+    return limited;
+  }
+
   double scale() const { return scale_; }
   double offset() const { return offset_; }
-  double operator()(double value) const { return value * scale_ + offset_; }
+  double least() const { return least_; }
+  double greatest() const { return greatest_; }
+
+  double operator()(double value) const {
+    const double converted = value * scale_ + offset_;
+    return converted >= least_ && converted <= greatest_ ? converted
+                                                         : std::numeric_limits<double>::quiet_NaN();
+  }
 
  private:
   double scale_ = 1;
   double offset_ = 0;
+  double least_ = std::numeric_limits<double>::lowest();
+  double greatest_ = std::numeric_limits<double>::max();
 };
 
 /// A unit as real flight files spell it in the spelling of UDUNITS and CF: "C" is "degC", "M/s" is "m/s",
