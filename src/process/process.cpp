@@ -36,7 +36,8 @@ namespace {
 
 /// A variable of the file that the loop reads.
 struct Input : ModelInput {
-  std::vector<double> values;  // of one block
+  std::vector<double> values{};  // of one block
+  std::size_t impossible = 0;    // how many of all were
 };
 
 /// The place of a bit among `quality_facts`.
@@ -152,7 +153,7 @@ void Processing::choose_chain() {
 
 void Processing::choose_inputs() {
   for (ModelInput& input : model_inputs(flight_, file_, *chain_, roles_, summary_.notes)) {
-    inputs_.push_back({std::move(input), {}});
+    inputs_.push_back({std::move(input)});
   }
 }
 
@@ -460,7 +461,8 @@ void Processing::process_block(RecordBlock block, std::vector<double>& times) {
   const std::size_t samples = block.count * static_cast<std::size_t>(summary_.rate);
   for (Input& input : inputs_) {
     input.values.resize(samples);
-    flight_.read_at_rate(summary_.rate, input.variable, block, input.conversion, input.values.data());
+    input.impossible +=
+        flight_.read_at_rate(summary_.rate, input.variable, block, input.conversion, input.values.data());
   }
   times.resize(samples);
   flight_.read_sample_times(block, summary_.rate, times.data());
@@ -515,6 +517,7 @@ ProcessSummary Processing::run(const std::filesystem::path& output) {
   } else {
     summary_.mean_defect = summary_.least_defect = summary_.greatest_defect = missing<double>();
   }
+  for (const Input& input : inputs_) note_impossible(input, input.impossible, summary_.notes);
   if (summary_.corrected == 0) note("no sample could be corrected: see the quality bits");
   return summary_;
 }

@@ -150,10 +150,13 @@ void read_flaps(const Flight& flight, const ModelFile& model, double least_airsp
 }
 
 /// What is recorded, at some rate.
-ModelSamples read_inputs(const Flight& flight, const std::vector<ModelInput>& inputs, int rate) {
+ModelSamples read_inputs(const Flight& flight, const std::vector<ModelInput>& inputs, int rate,
+                         std::vector<std::string>& notes) {
   ModelSamples samples;
   for (const ModelInput& input : inputs) {
-    samples.columns.emplace_back(input.quantity, read_fast(flight, input, rate).values);
+    ReadValues read = read_values(flight, input.variable, input.conversion, rate);
+    note_impossible(input, read.impossible, notes);
+    samples.columns.emplace_back(input.quantity, std::move(read.values));
     samples.variables.emplace_back(input.quantity, input.variable);
     if (is_role(input.quantity)) samples.roles.push_back(input.quantity);
   }
@@ -170,7 +173,8 @@ FastSeries read_along_beam(const Flight& flight, const ModelFile& model,
       rate = std::max(rate, flight.variable(input.variable).rate);
   }
   if (rate == 1) return {airspeed_along_beam(model, records), 1};
-  ModelSamples fast = read_inputs(flight, inputs, rate);
+  std::vector<std::string> said_already;
+  ModelSamples fast = read_inputs(flight, inputs, rate, said_already);
   const auto in_record = static_cast<std::size_t>(rate);
   for (const auto& [quantity, values] : records.columns) {
     if (fast.find(quantity) != nullptr) continue;
@@ -195,7 +199,7 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelFile&
   if (!with_laser) roles.erase(std::remove(roles.begin(), roles.end(), Quantity::lams_airspeed), roles.end());
   const Chain chain = chain_of(model.model, roles);
   const std::vector<ModelInput> inputs = model_inputs(flight, model, chain, roles, notes);
-  ModelSamples samples = read_inputs(flight, inputs, 1);
+  ModelSamples samples = read_inputs(flight, inputs, 1, notes);
   const auto add = [&samples](Quantity quantity, std::vector<double> values) {
     samples.columns.emplace_back(quantity, std::move(values));
     samples.roles.push_back(quantity);

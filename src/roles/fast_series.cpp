@@ -40,7 +40,7 @@ double clipped_variance(const std::vector<double>& values) {
 FastSeries read_fast(const Flight& flight, const ModelInput& input, int rate) {
   FastSeries series;
   series.in_record = static_cast<std::size_t>(rate);
-  series.values = read_values(flight, input.variable, input.conversion, rate);
+  series.values = read_values(flight, input.variable, input.conversion, rate).values;
   return series;
 }
 

@@ -8,6 +8,7 @@
 #include <pcor/words/error.hpp>
 #include <pcor/words/suggest.hpp>
 #include <pcor/words/utc.hpp>
+#include "roles/possible_values.hpp"
 #include "roles/usual_variables.hpp"
 #include "words/quoting.hpp"
 
@@ -46,7 +47,8 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelFile& file
     const auto stated = file.units.find(role);
     const std::string unit = stated == file.units.end() ? family.unit_of(variable) : stated->second;
     if (flight.has(variable)) note_other_unit(flight.variable(variable), facts, unit, notes);
-    return flight.conversion(variable, std::string(facts.unit), std::string(facts.name), unit);
+    return possible_values(
+        flight.conversion(variable, std::string(facts.unit), std::string(facts.name), unit), facts.name);
   };
   std::vector<ModelInput> inputs;
   const auto always = {Quantity::recovery_temperature, Quantity::ambient_temperature,
@@ -81,6 +83,16 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelFile& file
   }
   for (const ModelInput& input : inputs) flight.require_values(input.variable);
   return inputs;
+}
+
+void note_impossible(const ModelInput& input, std::size_t samples, std::vector<std::string>& notes) {
+  if (samples == 0) return;
+  const std::string unit = is_role(input.quantity) ? fmt::format(" {}", facts_of(input.quantity).unit) : "";
+  notes.push_back(fmt::format("{} outside {:g} to {:g}{}, which is impossible, and {} taken as missing",
+                              samples == 1 ? fmt::format("a sample of {} lies", input.variable)
+                                           : fmt::format("{} samples of {} lie", samples, input.variable),
+                              input.conversion.least(), input.conversion.greatest(), unit,
+                              samples == 1 ? "is" : "are"));
 }
 
 std::vector<std::string> notes_on_law(const Flight& flight, const ModelFile& file) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,10 @@ struct ModelInput {
 /// @throws Error if a variable is absent or has no value, or its unit does not fit.
 std::vector<ModelInput> model_inputs(const Flight& flight, const ModelFile& file, const Chain& chain,
                                      const std::vector<Quantity>& roles, std::vector<std::string>& notes);
+
+/// Adds to `notes` that so many samples of an input are taken as missing because its conversion calls them
+/// impossible; nothing where there are none.
+void note_impossible(const ModelInput& input, std::size_t samples, std::vector<std::string>& notes);
 
 /// What a user should know of a law that was made for another time or aircraft than the flight's.
 std::vector<std::string> notes_on_law(const Flight& flight, const ModelFile& file);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <pcor/words/error.hpp>
+#include "roles/possible_values.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -12,14 +13,15 @@ namespace {
 /// Makes `variable` the series if none is so far, and it is there, has values and a unit that fits.
 /// @param stated the unit that the model states
 void try_variable(const Flight& flight, const std::string& variable, const std::string& stated,
-                  std::string_view unit, RecordedSeries& series) {
+                  const QuantityFacts& facts, RecordedSeries& series) {
   if (!series.values.empty() || !flight.has(variable) || !flight.variable(variable).is_series) return;
   const std::string own = stated.empty() ? flight.variable(variable).units : stated;
   if (own.empty() && series.without_unit.empty()) series.without_unit = variable;
   try {
+    const UnitConversion conversion =
+        UnitConversion::between(own, std::string(facts.unit), {variable, flight.path().string(), ""});
     std::vector<double> values =
-        read_values(flight, variable,
-                    UnitConversion::between(own, std::string(unit), {variable, flight.path().string(), ""}));
+        read_values(flight, variable, possible_values(conversion, facts.name)).values;
     if (std::all_of(values.begin(), values.end(), [](double x) { return std::isnan(x); })) return;
     series.variable = variable;
     series.values = std::move(values);
@@ -31,13 +33,16 @@ void try_variable(const Flight& flight, const std::string& variable, const std::
 
 }  // namespace
 
-std::vector<double> read_values(const Flight& flight, const std::string& variable,
-                                const UnitConversion& conversion, int rate) {
+ReadValues read_values(const Flight& flight, const std::string& variable, const UnitConversion& conversion,
+                       int rate) {
   const auto in_record = static_cast<std::size_t>(rate);
-  std::vector<double> values(flight.records() * in_record);
-  for (const RecordBlock block : blocks_of(flight.records()))
-    flight.read_at_rate(rate, variable, block, conversion, values.data() + block.first * in_record);
-  return values;
+  ReadValues read;
+  read.values.resize(flight.records() * in_record);
+  for (const RecordBlock block : blocks_of(flight.records())) {
+    read.impossible +=
+        flight.read_at_rate(rate, variable, block, conversion, read.values.data() + block.first * in_record);
+  }
+  return read;
 }
 
 std::vector<double> record_times(const Flight& flight) {
@@ -50,23 +55,23 @@ std::vector<double> record_times(const Flight& flight) {
 RecordedSeries read_usual(const Flight& flight, const AircraftFamily& family, std::string_view name) {
   RecordedSeries series;
   for (const std::string& variable : family.names_of(name))
-    try_variable(flight, variable, family.unit_of(variable), series_named(name)->unit, series);
+    try_variable(flight, variable, family.unit_of(variable), *series_named(name), series);
   return series;
 }
 
 RecordedSeries read_role(const Flight& flight, const ModelFile& model, Quantity role) {
-  const std::string_view unit = facts_of(role).unit;
+  const QuantityFacts& facts = facts_of(role);
   const AircraftFamily& family = family_of(model, flight);
   RecordedSeries series;
   const auto given = model.variables.find(role);
   if (given != model.variables.end()) {
     const auto stated = model.units.find(role);
     try_variable(flight, given->second,
-                 stated == model.units.end() ? family.unit_of(given->second) : stated->second, unit, series);
+                 stated == model.units.end() ? family.unit_of(given->second) : stated->second, facts, series);
   }
   for (const std::string& name : usual_variables(family, role)) {
     if (given == model.variables.end() || name != given->second)
-      try_variable(flight, name, family.unit_of(name), unit, series);
+      try_variable(flight, name, family.unit_of(name), facts, series);
   }
   return series;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,9 +18,15 @@ struct RecordedSeries {
   std::string without_unit{};  ///< the first variable that was passed over because the file gives it no unit
 };
 
+/// The values of a variable.
+struct ReadValues {
+  std::vector<double> values{};  ///< NaN where missing
+  std::size_t impossible = 0;    ///< how many are missing because the conversion calls them impossible
+};
+
 /// All values of a variable, converted, at `rate` samples in a record. @throws Error if it is absent.
-std::vector<double> read_values(const Flight& flight, const std::string& variable,
-                                const UnitConversion& conversion, int rate = 1);
+ReadValues read_values(const Flight& flight, const std::string& variable, const UnitConversion& conversion,
+                       int rate = 1);
 
 /// The middles of all records, s since 1970 UTC.
 std::vector<double> record_times(const Flight& flight);

@@ -147,6 +147,45 @@ TEST_F(Process, FindsTheAirBehindTheReadings) {
   EXPECT_THAT(flags, testing::Each(static_cast<double>(Quality::corrected_with_lams)));
 }
 
+// Marks of missing values that the file does not name, and a thermometer that is not connected.
+TEST_F(Process, TakesWhatIsImpossibleAsMissing) {
+  write_flight(input_, 20, 1);
+  const auto put = [this](const char* name, std::size_t record, float value) {
+    int file = 0, number = 0;
+    ASSERT_EQ(nc_open(input_.c_str(), NC_WRITE, &file), NC_NOERR);
+    ASSERT_EQ(nc_inq_varid(file, name, &number), NC_NOERR);
+    ASSERT_EQ(nc_put_var1_float(file, number, &record, &value), NC_NOERR);
+    nc_close(file);
+  };
+  put("PSFD", 3, 1e30F);
+  put("PSFD", 4, 9999.0F);
+  put("PSFD", 5, 1.0F);
+  put("QCF", 6, 1e20F);
+  put("TTRR", 7, 9999.0F);
+  ProcessOptions options;
+  options.correct_with = CorrectWith::lams;
+  const ProcessSummary summary = process_flight(input_, lams_model(), output_, options);
+  const std::vector<double> p = read("PSXC", "hPa"), temperature = read("ATX", "K"),
+                            flags = read("PCORFLAG", "");
+  const auto has = [&flags](std::size_t record, Quality bit) {
+    return (static_cast<unsigned>(flags[record]) & static_cast<unsigned>(bit)) != 0;
+  };
+  for (const std::size_t record : {3U, 4U, 5U, 6U}) {
+    EXPECT_TRUE(std::isnan(p[record])) << record;
+    EXPECT_TRUE(
+        has(record, record == 6 ? Quality::dynamic_pressure_missing : Quality::static_pressure_missing));
+  }
+  EXPECT_TRUE(std::isnan(temperature[7]));
+  EXPECT_TRUE(has(7, Quality::temperature_missing));
+  EXPECT_NEAR(p[8], 700.0, 3e-4) << "and nothing else is hurt";
+  EXPECT_NEAR(temperature[8], 270.0, 1e-4);
+  EXPECT_THAT(summary.notes, testing::IsSupersetOf(
+                                 {"2 samples of PSFD lie outside 10 to 1200 hPa, which is impossible, and "
+                                  "are taken as missing",
+                                  "a sample of TTRR lies outside 123 to 473 K, which is impossible, and is "
+                                  "taken as missing"}));
+}
+
 TEST_F(Process, KeepsTheTotalPressure) {
   write_flight(input_, 100, 1);
   process_flight(input_, lams_model(), output_);

@@ -11,6 +11,7 @@
 #include <pcor/words/error.hpp>
 #include <pcor/words/suggest.hpp>
 #include "residuals/reference_on_samples.hpp"
+#include "roles/possible_values.hpp"
 #include "roles/recorded_series.hpp"
 
 namespace pcor::internal {
@@ -64,10 +65,12 @@ class PressureReference final : public Reference {
                   fmt::format("{}: {}, the reference, is not in this file{}; give another with --reference",
                               flight.path().string(), variable_, meant.empty() ? "" : "; " + meant));
     }
-    const UnitConversion conversion = flight.conversion(variable_, "hPa");
+    const UnitConversion conversion =
+        possible_values(flight.conversion(variable_, "hPa"), facts_of(Quantity::static_pressure).name);
     flight.require_values(variable_);
     ModelSamples samples;
-    samples.columns = {{Quantity::corrected_static_pressure, read_values(flight, variable_, conversion)}};
+    samples.columns = {
+        {Quantity::corrected_static_pressure, read_values(flight, variable_, conversion).values}};
     samples.variables = {{Quantity::corrected_static_pressure, variable_}};
     return samples;
   }
