@@ -15,6 +15,7 @@
 #include <unordered_map>
 
 #include "flight/absent_variable.hpp"
+#include "flight/file_in_hand.hpp"
 #include "flight/flight_file.hpp"
 #include "flight/time_source.hpp"
 
@@ -244,6 +245,7 @@ struct Flight::Implementation {
   void read_stored(Variable& variable, RecordBlock block, double* out) {
     check_block(variable.info.name, block);
     if (block.count == 0) return;
+    const FileInHand in_hand(file->path());
     file->read(variable.id, block, out);
   }
 
@@ -334,8 +336,10 @@ struct Flight::Implementation {
 
 Flight::Flight(const std::filesystem::path& path, TimeStamp time_stamp)
     : Flight(open_flight_file(path), time_stamp) {}
-Flight::Flight(std::unique_ptr<FlightFile> file, TimeStamp time_stamp)
-    : implementation_(std::make_unique<Implementation>(std::move(file), time_stamp)) {}
+Flight::Flight(std::unique_ptr<FlightFile> file, TimeStamp time_stamp) {
+  const FileInHand in_hand(file->path());
+  implementation_ = std::make_unique<Implementation>(std::move(file), time_stamp);
+}
 Flight::Flight(Flight&&) noexcept = default;
 Flight& Flight::operator=(Flight&&) noexcept = default;
 Flight::~Flight() = default;

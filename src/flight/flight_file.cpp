@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include <pcor/words/error.hpp>
+#include "flight/file_in_hand.hpp"
 #include "flight/netcdf_file.hpp"
 
 namespace pcor::internal {
@@ -43,6 +44,7 @@ void require_readable(const std::filesystem::path& path) {
 
 std::unique_ptr<FlightFile> open_flight_file(const std::filesystem::path& path) {
   require_readable(path);
+  const FileInHand in_hand(path);
   for (const Format& format : formats) {
     if (format.is_of(path)) return format.open(path);
   }

@@ -8,6 +8,7 @@
 
 #include <pcor/units/units.hpp>
 #include <pcor/words/error.hpp>
+#include "flight/file_in_hand.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -116,6 +117,7 @@ std::size_t NetcdfCopy::record_bytes(const Copied& variable) const {
 
 void NetcdfCopy::read(const Copied& variable, RecordBlock block, char* buffer) const {
   const Slab slab(variable.shape, variable.over_time, block);
+  const FileInHand in_hand(source_.path());
   source_.check(nc_get_vara(source_.id(), variable.from, slab.start.data(), slab.count.data(), buffer),
                 "cannot read " + source_.variable_name(variable.from));
   source_.require_unchanged();

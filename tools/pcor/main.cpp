@@ -15,6 +15,7 @@
 #include <pcor/words/replacement_file.hpp>
 
 #include "commands.hpp"
+#include "crash.hpp"
 #include "model_name.hpp"
 #include "report_origin.hpp"
 #include "text.hpp"
@@ -79,6 +80,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, stop);
+  pcor::tool::explain_crashes();
   pcor::tool::set_program(argv[0]);
   try {
     const int status = run(argc, argv);

@@ -1,0 +1,15 @@
+#pragma once
+
+namespace pcor {
+
+/// The path of the flight that is being read at this moment, null where none is.
+///
+/// The HDF5 library may crash on a damaged file, or never come back from one. A program asks this in its
+/// handlers of signals, to say which file it was; nothing is allocated.
+const char* file_in_hand() noexcept;
+
+/// How much processor time the thread that reads has spent since it last began to read, s: the list of the
+/// variables, or some thousand records of one. 0 where no flight is read.
+double seconds_in_hand() noexcept;
+
+}  // namespace pcor

@@ -1,0 +1,39 @@
+#include "flight/file_in_hand.hpp"
+
+#include <pthread.h>
+
+#include <atomic>
+#include <ctime>
+
+namespace pcor {
+namespace {
+
+std::atomic<const char*> in_hand{nullptr};
+std::atomic<clockid_t> readers_clock{CLOCK_PROCESS_CPUTIME_ID};
+std::atomic<double> taken_at{0.0};
+static_assert(std::atomic<const char*>::is_always_lock_free && std::atomic<clockid_t>::is_always_lock_free &&
+              std::atomic<double>::is_always_lock_free);
+
+double seconds_of(clockid_t clock) noexcept {
+  timespec time{};
+  clock_gettime(clock, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+}  // namespace
+
+const char* file_in_hand() noexcept { return in_hand; }
+
+double seconds_in_hand() noexcept { return in_hand ? seconds_of(readers_clock) - taken_at : 0.0; }
+
+internal::FileInHand::FileInHand(const std::filesystem::path& path) noexcept : before_(in_hand) {
+  clockid_t clock = CLOCK_PROCESS_CPUTIME_ID;
+  pthread_getcpuclockid(pthread_self(), &clock);
+  readers_clock = clock;
+  taken_at = seconds_of(clock);
+  in_hand = path.c_str();
+}
+
+internal::FileInHand::~FileInHand() { in_hand = before_; }
+
+}  // namespace pcor
