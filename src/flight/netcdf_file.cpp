@@ -307,8 +307,9 @@ bool NetcdfFile::is_unsigned(int variable) const {
 }
 
 void NetcdfFile::make_unsigned(int variable, double* numbers, std::size_t count) const {
-  if (!is_unsigned(variable)) return;
-  const double span = *span_of(type_of(variable));
+  const int type = type_of(variable);
+  if (!is_signed(type) || !is_unsigned(variable)) return;
+  const double span = *span_of(type);
   for (std::size_t i = 0; i < count; ++i) numbers[i] += numbers[i] < 0 ? span : 0;
 }
 

@@ -71,7 +71,7 @@ class NetcdfFile final : public FlightFile {
   /// Whether the values are unsigned integers: by their type, or because the attribute _Unsigned says so.
   bool is_unsigned(int variable) const;
 
-  /// Turns stored numbers of such a variable into what they stand for.
+  /// Turns stored numbers into those that the attribute says that they are.
   void make_unsigned(int variable, double* numbers, std::size_t count) const;
 
   /// An attribute that states numbers of a variable, as `read` gives these.

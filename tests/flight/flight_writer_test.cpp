@@ -598,6 +598,13 @@ TEST_F(FlightWriterTest, ADirectoryThatCannotBeWrittenIsRefused) {
   EXPECT_THAT(message_of<Error>([] { FlightWriter("", NewFlight{midnight}, {}); }), HasSubstr("has no name"));
 }
 
+TEST_F(FlightWriterTest, TimesBeyond32BitsAreWrittenAsTheyAre) {
+  NetcdfMaker(input).time({51720, 3e9}, "seconds since 2004-02-18 00:00:00 +0000", NC_DOUBLE);
+  const Flight flight(input);
+  FlightWriter(output, flight, {}).finish();
+  EXPECT_EQ(Flight(output).time().last, midnight + 3e9);
+}
+
 // Another program writes a new version of the flight while this one is read.
 TEST_F(FlightWriterTest, AnInputThatChangesMeanwhileIsRefusedAndTheEarlierOutputStays) {
   for (const int kind : {0, NC_NETCDF4}) {

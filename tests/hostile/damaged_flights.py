@@ -4,9 +4,9 @@
     damaged_flights.py TOOL SOURCE_DIRECTORY [--count N] [--seed N] [--keep FOLDER]
 
 A simulated flight of 200 records, classic and HDF5, is changed at random N times each; pcor inspect and pcor process
-then end within 6 s of processor time with status 0 or 1, say no more than 2,000 characters, which are one line where they refuse, and
-leave an earlier output whole and nothing unfinished. The same seed makes the same changes. Exit status 1: something
-did not hold; what did not is printed, and the files that did it are put into FOLDER.
+then end within 6 s of processor time with status 0 or 1, say no more than 2,000 characters, which are one line where
+they refuse, and leave an earlier output whole and nothing unfinished. The same seed makes the same changes. Exit status
+1: something did not hold; what did not is printed, and the files that did it are put into FOLDER.
 """
 
 import argparse
