@@ -74,6 +74,7 @@ void descend(ModelFile& made, const ModelFile& from, const std::string& how, con
   all.erase(std::remove_if(all.begin(), all.end(), [](const auto& each) { return each.first == before_key; }),
             all.end());
   all.emplace_back(before_key, ProvenanceValue{std::move(before)});
+  made.law.in_processing = false;
   made.model.name = fmt::format("{}, {} {}", unfitted_name(from), how, flights);
 }
 

@@ -97,7 +97,7 @@ class Look {
     find_model();
     find_roles();
     look_at_samples();
-    find_laws(laws);
+    result_.laws = laws_of_flight(flight_, laws, result_.notes);
     for (const PressurePair& pair : family_.processed) {
       if (result_.corrected_pressure.empty() &&
           has_values(flight_, pair.static_pressure, std::string(facts_of(Quantity::static_pressure).unit),
@@ -239,37 +239,6 @@ class Look {
       if (error.code() == Error::Code::file) throw;
       result_.notes.emplace_back(error.what());
     }
-  }
-
-  void find_laws(const std::vector<std::filesystem::path>& paths) {
-    const std::string date = utc_text(result_.time.first, "%Y-%m-%d");
-    for (const std::filesystem::path& path : paths) {
-      try {
-        const ModelFile file = read_model(path);
-        if (!is_of_this_aircraft(file.model.aircraft)) continue;
-        InspectedLaw law{path, file.model.name, {}, false};
-        for (const auto& [role, variable] : file.variables) {
-          // A laser may be off.
-          if (role != Quantity::lams_airspeed && !flight_.has(variable)) law.lacks.push_back(variable);
-        }
-        law.is_in_time = (file.law.valid_from.empty() || file.law.valid_from <= date) &&
-                         (file.law.valid_to.empty() || date <= file.law.valid_to);
-        result_.laws.push_back(std::move(law));
-      } catch (const Error& error) {
-        result_.notes.emplace_back(error.what());
-      }
-    }
-    std::stable_sort(result_.laws.begin(), result_.laws.end(),
-                     [](const InspectedLaw& a, const InspectedLaw& b) {
-                       return a.lacks.empty() + a.is_in_time > b.lacks.empty() + b.is_in_time;
-                     });
-  }
-
-  /// By the registration, which stands in both: "C-130 N130AR" and "N130AR".
-  bool is_of_this_aircraft(const std::string& aircraft) const {
-    if (aircraft.empty() || result_.aircraft.empty()) return false;
-    return aircraft.find(result_.aircraft) != std::string::npos ||
-           result_.aircraft.find(aircraft) != std::string::npos;
   }
 
   Flight flight_;

@@ -253,14 +253,15 @@ class Writer {
   }
 
   void write_law(const LawFacts& law) {
-    if (law.source.empty() && law.valid_from.empty() && law.valid_to.empty() && !law.rms_hpa &&
-        law.note.empty()) {
+    if (law.source.empty() && law.valid_from.empty() && law.valid_to.empty() && !law.in_processing &&
+        !law.rms_hpa && law.note.empty()) {
       return;
     }
     heading("[law]");
     line_unless_empty("source", law.source);
     line_unless_empty("valid_from", law.valid_from);
     line_unless_empty("valid_to", law.valid_to);
+    if (law.in_processing) line("in_processing", "true");
     if (law.rms_hpa) line("rms_hpa", number(*law.rms_hpa, "rms_hpa of the law"));
     line_unless_empty("note", law.note);
   }

@@ -14,15 +14,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-void process_one(const ProcessTask& task, const ModelFile& model, const ProcessFlightsOptions& options,
-                 ProcessedFlight& flight) {
-  if (options.if_stale && is_up_to_date(task.output, task.input, model, options.process)) {
+void process_one(const ProcessTask& task, const ProcessFlightsOptions& options, ProcessedFlight& flight) {
+  if (options.if_stale && is_up_to_date(task.output, task.input, flight.model, options.process)) {
     flight.state = FlightState::up_to_date;
     return;
   }
   ProcessOptions process = options.process;
   process.history = task.history;
-  flight.summary = process_flight(task.input, model, task.output, process);
+  flight.summary = process_flight(task.input, flight.model, task.output, process);
 }
 
 }  // namespace
@@ -60,7 +59,8 @@ std::vector<ProcessTask> tasks_in_folder(const std::vector<fs::path>& flights, c
   return tasks;
 }
 
-std::vector<ProcessedFlight> process_flights(const std::vector<ProcessTask>& tasks, const ModelFile& model,
+std::vector<ProcessedFlight> process_flights(const std::vector<ProcessTask>& tasks,
+                                             const ModelOfFlight& model_of,
                                              const ProcessFlightsOptions& options) {
   std::vector<ProcessedFlight> flights;
   for (std::size_t i = 0; i < tasks.size(); ++i) {
@@ -69,7 +69,8 @@ std::vector<ProcessedFlight> process_flights(const std::vector<ProcessTask>& tas
     flight.input = tasks[i].input;
     flight.output = tasks[i].output;
     try {
-      process_one(tasks[i], model, options, flight);
+      flight.model = model_of(flight.input);
+      process_one(tasks[i], options, flight);
     } catch (const Error& error) {
       if (!options.skip_unreadable || error.code() == Error::Code::output) throw;
       flight.state = FlightState::unreadable;

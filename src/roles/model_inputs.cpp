@@ -99,9 +99,8 @@ std::vector<std::string> notes_on_law(const Flight& flight, const ModelFile& fil
   std::vector<std::string> notes;
   const std::string day = utc_text(flight.time().first, "%Y-%m-%d");
   const LawFacts& law = file.law;
-  const bool early = !law.valid_from.empty() && day < law.valid_from;
-  const bool late = !law.valid_to.empty() && day > law.valid_to;
-  if (early || late) {
+  if (!law.holds_on(day)) {
+    const bool early = day < law.valid_from;
     notes.push_back(
         fmt::format("the law holds {} {}, the flight is of {}; look for a model of its time in data/models",
                     early ? "from" : "until", early ? law.valid_from : law.valid_to, day));

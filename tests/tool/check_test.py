@@ -6,6 +6,7 @@
 Random numbers are fixed, so a test that passes does so on every run.
 """
 
+import csv
 import os
 import shutil
 import subprocess
@@ -120,6 +121,20 @@ class Results(CheckTest):
         result = self.json_of("check", ONE)
         self.assertEqual(result["model"], "PSFD/QCF as recorded")
         self.assertEqual([each["name"] for each in result["checks"]], NAMES)
+
+    def test_table_of_flights(self):
+        table = self.path / "checks.csv"
+        self.json_of("check", ONE, TWO, "--table", table)
+        with open(table, newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([(row["flight"], row["check"]) for row in rows],
+                         [(path.name, name) for path in (ONE, TWO) for name in NAMES])
+        alone = self.check(flights=(TWO,))
+        for row in rows[len(NAMES):]:
+            result = alone[row["check"]]
+            self.assertEqual(row["verdict"], result["verdict"] if result["ran"] else "not run")
+            if result["ran"]:
+                self.assertEqual(float(row["value"]), result["key"]["value"])
 
     def test_text(self):
         text = self.done("check", ONE, "-m", self.model(), "--reference", f"static:{OTHER_SYSTEM}").stdout

@@ -9,6 +9,7 @@ Flights are made from the text of the example flight.
 import hashlib
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -297,6 +298,84 @@ class ModelNames(ManyFlights):
         self.assertEqual((result.returncode, result.stderr.count("\n")), (1, 1))
         self.assertRegex(result.stderr, "did you mean .*c130-psfd-eq18")
         self.assertEqual(result.stderr.count("c130-psfd-eq18"), 1, "a name is told once")
+
+
+class ModelsByDate(ManyFlights):
+    """A folder of models, of which each flight gets the one of its aircraft and date."""
+
+    def setUp(self):
+        super().setUp()
+        self.models = self.path / "models"
+        self.models.mkdir()
+        for name, window in (("early", 'valid_to = "2003-12-31"'), ("late", 'valid_from = "2004-01-01"')):
+            self.model(name, window)
+        self.early = self.flight("early.nc")
+        self.late = self.flight("late.nc", begin="1086091200")  # 2004-06-01 12:00
+
+    def model(self, name, law):
+        text = re.sub(r'valid_(from|to) = .*\n', '', MODEL.read_text())
+        text = text.replace("[law]\n", f"[law]\n{law}\n").replace('name = "', f'name = "{name} ', 1)
+        (self.models / f"{name}.toml").write_text(text)
+
+    def flight(self, name, begin="1054468800"):  # 2003-06-01 12:00
+        path = self.path / name
+        subprocess.run(["ncgen", "-k", "classic", "-o", path, "-"], input=CDL.replace("1054468800", begin), check=True,
+                       text=True)
+        return path
+
+    def process(self, *more, flights=None):
+        return self.run_tool("process", *(flights or (self.early, self.late)), "--models", self.models, "-o", self.out,
+                             *more)
+
+    def model_of(self, name):
+        with netCDF4.Dataset(self.out / name) as output:
+            return output.pcor_model.split()[0]
+
+    def test_each_flight_gets_the_model_of_its_date(self):
+        result = self.process()
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual((self.model_of("early.nc"), self.model_of("late.nc")), ("early", "late"))
+        self.assertRegex(result.stdout, "early.nc .* early C-130")
+        again = json.loads(self.process("--if-stale", "--json", "-").stdout)
+        self.assertEqual(again["up_to_date"], 2)
+        self.model("late", 'valid_from = "2004-01-02"')
+        again = json.loads(self.process("--if-stale", "--json", "-").stdout)
+        self.assertEqual([flight["state"] for flight in again["flights"]], ["up to date", "processed"])
+
+    def test_models_that_fit_alike_are_not_guessed_among(self):
+        self.model("other", 'valid_to = "2003-12-31"')
+        result = self.process()
+        self.assertEqual((result.returncode, result.stderr.count("\n")), (1, 1))
+        self.assertRegex(result.stderr, "early, other fit alike")
+        self.model("other", 'valid_to = "2003-12-31"\nin_processing = true')
+        self.assertEqual(self.process().returncode, 0)
+        self.assertEqual(self.model_of("early.nc"), "other")
+
+    def test_a_flight_without_a_model_is_a_row_with_its_reason(self):
+        (self.models / "late.toml").unlink()
+        result = self.process("--json", "-", "--skip-unreadable")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        done, left = json.loads(result.stdout)["flights"]
+        self.assertEqual((done["state"], left["state"]), ("processed", "unreadable"))
+        self.assertRegex(left["reason"], "early is of another time")
+
+    def test_one_model_or_a_folder(self):
+        self.assertEqual(self.process("-m", MODEL).returncode, 2)
+        self.assertEqual(self.run_tool("process", self.early, "-o", self.path / "out.nc").returncode, 2)
+        (self.path / "empty").mkdir()
+        result = self.run_tool("process", self.early, "--models", self.path / "empty", "-o", self.path / "out.nc")
+        self.assertEqual((result.returncode, result.stderr.count("\n")), (1, 1))
+
+    def test_the_report_shows_all_flights(self):
+        report = self.path / "report.html"
+        (self.path / "bad.nc").write_text("no flight")
+        result = self.process("--skip-unreadable", "--report", report,
+                              flights=(self.early, self.path / "bad.nc", self.late))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn(f"wrote {report}", result.stdout)
+        page = report.read_text()
+        for text in ("early.nc", "late.nc", "bad.nc", "unreadable", "Delta-p in time", "early C-130"):
+            self.assertTrue(text in page, text)
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@
 
 #include <pcor/laws/model_file.hpp>
 #include "comparison.hpp"
+#include "flight_table.hpp"
 #include "model_of_flight.hpp"
 #include "progress.hpp"
 #include "report_origin.hpp"
@@ -22,6 +23,7 @@ struct Options {
   ComparisonOptions flights;
   std::string model;
   std::string reference;
+  std::string table;
 };
 
 /// What the reference of a check begins with; the model of the second system follows.
@@ -187,8 +189,26 @@ void print(const Checks& checks, const Options& options, bool has_laser) {
   }
   for (const std::string& note : checks.notes) say("\nNote: {}.\n", note);
   say("\n");
-  say_written({options.common.report, options.common.json});
+  say_written({options.common.report, options.table, options.common.json});
   say("{}\n", next_step(checks, options, has_laser));
+}
+
+/// A row for each check of each flight, which is checked alone.
+void write_flight_table(const Options& options, const std::optional<ModelFile>& model,
+                        const CheckOptions& how) {
+  FlightTable table({"flight", "check", "verdict", "value", "standard_error", "unit", "what"});
+  for (const std::filesystem::path& flight : flight_paths(options.flights)) {
+    for (const CheckResult& result : check({flight}, model, how).results) {
+      const std::string name = flight.filename().string();
+      if (result.ran) {
+        table.add({name, result.name, std::string(name_of(result.verdict)), cell(result.key.value),
+                   cell(result.key.standard_error), result.key.unit, result.key.what});
+      } else {
+        table.add({name, result.name, "not run", "", "", "", result.reason});
+      }
+    }
+  }
+  table.write(options.table);
 }
 
 std::vector<std::string> models_of(const Options& options) {
@@ -202,8 +222,8 @@ std::vector<std::string> models_of(const Options& options) {
 void run(const Options& options) {
   std::vector<std::filesystem::path> inputs = input_files(options.flights);
   inputs.insert(inputs.end(), {options.model, second_model(options)});
-  refuse_overwriting({options.common.json, options.common.report}, inputs);
-  require_writable(options.common.report);
+  refuse_overwriting({options.common.json, options.common.report, options.table}, inputs);
+  for (const std::string& output : {options.common.report, options.table}) require_writable(output);
   JsonResult json(options.common);
   std::optional<ModelFile> model;
   if (!options.model.empty())
@@ -221,6 +241,10 @@ void run(const Options& options) {
   if (!options.common.report.empty())
     write_report_of_run(check_report(checks), {models_of(options), options.flights.flights, {}},
                         options.common.report);
+  if (!options.table.empty()) {
+    check_options.progress = {};
+    write_flight_table(options, model, check_options);
+  }
   json.write(as_json(checks));
   const bool has_laser = model && model->variables.count(Quantity::lams_airspeed) > 0;
   if (wants_text(options.common)) print(checks, options, has_laser);
@@ -247,6 +271,11 @@ std::function<void()> add_check(CLI::App& program) {
   CLI::Option* const old = command->add_option_function<std::string>(
       "--second", [options](const std::string& model) { options->reference = second_system + model; });
   keep_old_name(*old, "--reference static:OTHER.toml");
+  command
+      ->add_option("--table", options->table,
+                   "write a row for each check of each flight alone, comma-separated values")
+      ->check(is_file_name())
+      ->type_name("FILE.csv");
   add_common_options(*command, options->common);
   add_examples(*command,
                {"check first.nc second.nc third.nc -m best.toml --report check.html",

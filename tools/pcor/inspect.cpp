@@ -77,8 +77,8 @@ nlohmann::ordered_json as_json(const Inspection& flight) {
                                  {"end", utc_text(interval.end, iso_time)}});
   }
   result["laws"] = nlohmann::ordered_json::array();
-  for (const InspectedLaw& law : flight.laws) {
-    result["laws"].push_back({{"name", law.name},
+  for (const LawOfFlight& law : flight.laws) {
+    result["laws"].push_back({{"name", law.model.model.name},
                               {"model", law.path.string()},
                               {"lacks", law.lacks},
                               {"is_in_time", law.is_in_time}});
@@ -163,8 +163,8 @@ void print(const Inspection& flight) {
   print_missing(flight);
   print_flown(flight);
   if (!flight.laws.empty()) say("\nlaws for this aircraft\n");
-  for (const InspectedLaw& law : flight.laws) {
-    say("  {}: {}{}\n", law.path.stem().string(), law.name,
+  for (const LawOfFlight& law : flight.laws) {
+    say("  {}: {}{}\n", law.path.stem().string(), law.model.model.name,
         !law.lacks.empty() ? fmt::format("; the flight lacks {}", fmt::join(law.lacks, ", "))
         : !law.is_in_time  ? "; stated for another time"
                            : "; fits the flight's pressures and its date");
@@ -188,8 +188,8 @@ std::string next_step(const Options& options, const Inspection& flight) {
     return fmt::format("To fit a law: {} refit {} -m {} -o fitted.toml{}", program(), path,
                        quoted(options.model), reference);
   }
-  const auto fits = std::find_if(flight.laws.begin(), flight.laws.end(),
-                                 [](const InspectedLaw& law) { return law.lacks.empty() && law.is_in_time; });
+  const auto fits =
+      std::find_if(flight.laws.begin(), flight.laws.end(), [](const LawOfFlight& law) { return law.fits(); });
   if (fits != flight.laws.end())
     return fmt::format("To correct it by one of these laws: {} process {} -m {} -o corrected.nc", program(),
                        path, quoted(fits->path.stem().string()));

@@ -44,13 +44,15 @@ std::vector<fs::path> model_folders() {
   return folders;
 }
 
-std::vector<std::string> names_in(const fs::path& folder) {
-  std::vector<std::string> names;
+/// In the order of their names; empty where the folder cannot be read.
+std::vector<fs::path> files_in(const fs::path& folder) {
+  std::vector<fs::path> files;
   std::error_code code;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, code)) {
-    if (entry.path().extension() == model_ending) names.push_back(entry.path().stem().string());
+    if (entry.path().extension() == model_ending) files.push_back(entry.path());
   }
-  return names;
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 }  // namespace
@@ -64,7 +66,7 @@ std::string model_file(const std::string& given) {
   for (const fs::path& folder : model_folders()) {
     const fs::path file = folder / (given + std::string(model_ending));
     if (fs::is_regular_file(file, code)) return fs::weakly_canonical(file, code).string();
-    for (const std::string& name : names_in(folder)) known.insert(name);
+    for (const fs::path& other : files_in(folder)) known.insert(other.stem().string());
   }
   const std::string meant = did_you_mean(given, {known.begin(), known.end()});
   throw Error(fmt::format("there is no model file '{}', and no model of that name; {}", given,
@@ -75,11 +77,18 @@ std::vector<fs::path> named_models() {
   std::vector<fs::path> models;
   std::set<std::string> known;
   for (const fs::path& folder : model_folders()) {
-    std::vector<std::string> names = names_in(folder);
-    std::sort(names.begin(), names.end());
-    for (const std::string& name : names) {
-      if (known.insert(name).second) models.push_back(folder / (name + std::string(model_ending)));
+    for (const fs::path& file : files_in(folder)) {
+      if (known.insert(file.stem().string()).second) models.push_back(file);
     }
+  }
+  return models;
+}
+
+std::vector<fs::path> models_in(const fs::path& folder) {
+  std::vector<fs::path> models = files_in(folder);
+  if (models.empty()) {
+    throw Error(fmt::format("there is no model in '{}'; name a folder with files that end in {}",
+                            folder.string(), model_ending));
   }
   return models;
 }

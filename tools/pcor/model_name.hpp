@@ -16,6 +16,9 @@ std::string model_file(const std::string& given);
 /// The files of all models that have a name, those of the user first, each name once.
 std::vector<std::filesystem::path> named_models();
 
+/// The files of all models in a folder, by name. @throws Error if there is none.
+std::vector<std::filesystem::path> models_in(const std::filesystem::path& folder);
+
 /// A reference as --reference takes it, in which a model may be named: "static:c130-psfrd-eq18".
 /// @throws Error as `model_file`.
 std::string reference_with_model_file(const std::string& given);

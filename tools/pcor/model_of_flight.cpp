@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include <pcor/roles/laws_of_flight.hpp>
 #include <pcor/roles/with_roles.hpp>
 #include <pcor/words/error.hpp>
 
@@ -57,6 +58,13 @@ ModelFile read_model_for(const std::filesystem::path& model,
     for (const std::string& note : notes) fmt::print(stderr, "{}\n", note);
   }
   return whole;
+}
+
+ModelFile model_for_flight(const std::vector<std::filesystem::path>& models,
+                           const std::filesystem::path& flight) {
+  const Flight opened(flight);
+  std::vector<std::string> notes;
+  return with_roles(law_of_flight(opened, models).model, opened, notes);
 }
 
 }  // namespace pcor::tool

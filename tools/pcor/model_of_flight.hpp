@@ -15,4 +15,10 @@ namespace pcor::tool {
 ModelFile read_model_for(const std::filesystem::path& model,
                          const std::vector<std::filesystem::path>& flights, const CommonOptions& options);
 
+/// The model of a folder that a flight is to be corrected by (`law_of_flight`), with the units that its
+/// aircraft's data state.
+/// @throws Error as these
+ModelFile model_for_flight(const std::vector<std::filesystem::path>& models,
+                           const std::filesystem::path& flight);
+
 }  // namespace pcor::tool

@@ -1,4 +1,5 @@
 #include <pcor/process/process_flights.hpp>
+#include <pcor/process/process_report.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,8 +17,10 @@
 #include <pcor/words/error.hpp>
 #include <pcor/words/utc.hpp>
 #include "command.hpp"
+#include "model_name.hpp"
 #include "model_of_flight.hpp"
 #include "progress.hpp"
+#include "report_origin.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -28,6 +31,7 @@ struct Options {
   CommonOptions common;
   std::vector<std::string> inputs;
   std::string model;
+  std::string models;  ///< a folder, where each flight is to have its own
   std::string output;
   std::string correct_with = "model";
   std::string time_stamp = "begin";
@@ -41,8 +45,9 @@ struct Options {
 
 /// What makes one output alone.
 std::string command_line(const ProcessTask& task, const Options& options) {
-  std::string line = fmt::format("pcor " PCOR_VERSION " process {} -m {} -o {}", quoted(task.input.string()),
-                                 quoted(options.model), quoted(task.output.string()));
+  std::string line = fmt::format("pcor " PCOR_VERSION " process {} {} {} -o {}", quoted(task.input.string()),
+                                 options.models.empty() ? "-m" : "--models",
+                                 quoted(options.model + options.models), quoted(task.output.string()));
   if (options.correct_with != "model") line += " --correct-with " + options.correct_with;
   if (options.time_stamp != "begin") line += " --time-stamp " + options.time_stamp;
   if (!options.uncertainty.empty()) line += " --uncertainty " + options.uncertainty;
@@ -56,7 +61,7 @@ nlohmann::ordered_json as_json(const ProcessedFlight& flight, const Options& opt
   nlohmann::ordered_json result;
   result["input"] = flight.input.string();
   result["output"] = flight.output.string();
-  result["model"] = options.model;
+  result["model"] = options.models.empty() ? options.model : flight.model.model.name;
   result["state"] = name_of(flight.state);
   if (flight.state == FlightState::unreadable) result["reason"] = flight.reason;
   if (flight.state != FlightState::processed) return result;
@@ -92,6 +97,7 @@ std::size_t count_of(const std::vector<ProcessedFlight>& flights, FlightState st
 nlohmann::ordered_json as_json(const std::vector<ProcessedFlight>& flights, const Options& options) {
   nlohmann::ordered_json result;
   result["model"] = options.model;
+  result["models"] = options.models;
   result["output"] = options.output;
   result["processed"] = count_of(flights, FlightState::processed);
   result["up_to_date"] = count_of(flights, FlightState::up_to_date);
@@ -150,14 +156,14 @@ void print(const ProcessedFlight& of) {
 /// Several flights as a table, a row as soon as a flight is done, and at the end what they have in common.
 class Table {
  public:
-  explicit Table(const std::vector<ProcessTask>& tasks) {
+  Table(const std::vector<ProcessTask>& tasks, bool with_models) : with_models_(with_models) {
     for (const ProcessTask& task : tasks) width_ = std::max(width_, task.input.filename().string().size());
   }
 
   void add(const ProcessedFlight& flight) {
     if (!has_head_) {
-      say("{:<{}} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "flight", width_, "samples", "corrected", "delta-p",
-          "least", "greatest");
+      say("{:<{}} {:>9} {:>9} {:>9} {:>9} {:>9}{}\n", "flight", width_, "samples", "corrected", "delta-p",
+          "least", "greatest", with_models_ ? "  model" : "");
     }
     has_head_ = true;
     const ProcessSummary& summary = flight.summary;
@@ -165,10 +171,11 @@ class Table {
     if (flight.state != FlightState::processed) {
       say("{}{}\n", name_of(flight.state), flight.reason.empty() ? "" : ": " + flight.reason);
     } else if (summary.in_flight == 0) {
-      say("{:>9} {:>9} {:>9}\n", summary.samples, summary.corrected, "no flight");
+      say("{:>9} {:>9} {:>9} {:>9} {:>9}{}\n", summary.samples, summary.corrected, "no flight", "", "",
+          model_of(flight));
     } else {
-      say("{:>9} {:>9} {:>9.2f} {:>9.2f} {:>9.2f}\n", summary.samples, summary.corrected, summary.mean_defect,
-          summary.least_defect, summary.greatest_defect);
+      say("{:>9} {:>9} {:>9.2f} {:>9.2f} {:>9.2f}{}\n", summary.samples, summary.corrected,
+          summary.mean_defect, summary.least_defect, summary.greatest_defect, model_of(flight));
     }
   }
 
@@ -190,6 +197,11 @@ class Table {
   }
 
  private:
+  std::string model_of(const ProcessedFlight& flight) const {
+    return with_models_ ? "  " + flight.model.model.name : std::string();
+  }
+
+  bool with_models_;
   std::size_t width_ = 24;
   bool has_head_ = false;
 };
@@ -219,10 +231,11 @@ std::vector<ProcessTask> tasks_of(const Options& options, bool folder) {
   const std::vector<fs::path> flights(options.inputs.begin(), options.inputs.end());
   std::vector<ProcessTask> tasks = folder ? tasks_in_folder(flights, options.output)
                                           : std::vector<ProcessTask>{{flights.front(), options.output, {}}};
-  refuse_overwriting({options.common.json}, flights);
+  refuse_overwriting({options.common.json, options.common.report}, flights);
   for (ProcessTask& task : tasks) {
     task.history = command_line(task, options);
-    refuse_overwriting({task.output, options.common.json}, {task.input, options.model});
+    refuse_overwriting({task.output, options.common.json, options.common.report},
+                       {task.input, options.model});
   }
   return tasks;
 }
@@ -248,10 +261,10 @@ ProcessOptions process_options(const Options& options) {
 }
 
 /// As `process_flights`; what stops several flights says that the others can be done all the same.
-std::vector<ProcessedFlight> process_all(const std::vector<ProcessTask>& tasks, const ModelFile& model,
+std::vector<ProcessedFlight> process_all(const std::vector<ProcessTask>& tasks, const ModelOfFlight& model_of,
                                          const ProcessFlightsOptions& options) {
   try {
-    return process_flights(tasks, model, options);
+    return process_flights(tasks, model_of, options);
   } catch (const Error& error) {
     if (tasks.size() == 1 || error.code() == Error::Code::output) throw;
     throw Error(error.code(), fmt::format("{}; what was done before it stays, and --skip-unreadable does the "
@@ -260,13 +273,24 @@ std::vector<ProcessedFlight> process_all(const std::vector<ProcessTask>& tasks, 
   }
 }
 
+/// One model for all, or of each flight its own.
+ModelOfFlight models_of(const Options& options) {
+  if (!options.models.empty()) {
+    return [models = models_in(options.models)](const fs::path& flight) {
+      return model_for_flight(models, flight);
+    };
+  }
+  return [model = read_model_for(options.model, {options.inputs.begin(), options.inputs.end()},
+                                 options.common)](const fs::path&) { return model; };
+}
+
 void run(const Options& options) {
   const bool folder = wants_folder(options);
   const std::vector<ProcessTask> tasks = tasks_of(options, folder);
   const bool many = tasks.size() > 1;
+  require_writable(options.common.report);
   JsonResult json(options.common);
-  const ModelFile model =
-      read_model_for(options.model, {options.inputs.begin(), options.inputs.end()}, options.common);
+  const ModelOfFlight model_of = models_of(options);
   if (folder) make_folder(options.output);
   ProcessFlightsOptions process;
   process.process = process_options(options);
@@ -280,15 +304,20 @@ void run(const Options& options) {
   process.process.progress = [&bar](std::size_t done, std::size_t total) { bar->show(done, total); };
   const bool text = wants_text(options.common);
   std::optional<Table> table;
-  if (many && text) table.emplace(tasks);
+  if (many && text) table.emplace(tasks, !options.models.empty());
   process.ends = [&](const ProcessedFlight& flight) {
     bar.reset();
     if (table) table->add(flight);
   };
-  const std::vector<ProcessedFlight> flights = process_all(tasks, model, process);
+  const std::vector<ProcessedFlight> flights = process_all(tasks, model_of, process);
+  const bool none = count_of(flights, FlightState::unreadable) == flights.size();
+  if (!options.common.report.empty() && !none) {
+    write_report_of_run(process_report(flights, options.suffix),
+                        {{options.model + options.models}, options.inputs, {}}, options.common.report);
+  }
   json.write(many ? as_json(flights, options) : as_json(flights.front(), options));
   if (table) Table::end(flights, options.output);
-  if (count_of(flights, FlightState::unreadable) == flights.size()) {
+  if (none) {
     throw Error(many ? fmt::format("none of the {} flights could be processed", flights.size())
                      : flights.front().reason);
   }
@@ -300,7 +329,7 @@ void run(const Options& options) {
     say("{} is up to date: this version made it of this flight with this model and these options\n",
         first.output.string());
   }
-  say_written({options.common.json});
+  say_written({options.common.report, options.common.json});
   const auto done = std::find_if(flights.begin(), flights.end(), [](const ProcessedFlight& each) {
     return each.state == FlightState::processed;
   });
@@ -314,9 +343,19 @@ std::function<void()> add_process(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("process", "Correct flights: run every sample through the real-time loop");
   command->add_option("input", options->inputs, "the flights, netCDF files")->required()->type_name("IN.nc");
-  command->add_option("-m,--model", options->model, "the model of the pressure system")
-      ->required()
-      ->type_name("MODEL.toml");
+  CLI::Option* const model =
+      command->add_option("-m,--model", options->model, "the model of the pressure system")
+          ->type_name("MODEL.toml");
+  command
+      ->add_option(
+          "--models", options->models,
+          "instead of one model a folder of them: each flight is corrected by the one that is of its "
+          "aircraft, its date and variables that it has")
+      ->excludes(model)
+      ->type_name("FOLDER");
+  command->parse_complete_callback([options] {
+    if (options->model.empty() && options->models.empty()) throw CLI::RequiredError("--model or --models");
+  });
   command
       ->add_option("-o,--output", options->output,
                    "the file to write, whole or not at all; of several flights the folder, where each gets a "
@@ -351,7 +390,7 @@ std::function<void()> add_process(CLI::App& program) {
   command->add_flag("--all", options->copy_all, "copy every variable of the input");
   command->add_flag("--hydrostatic", options->hydrostatic,
                     "write HYDSTEP, the change of hydrostatic height per kelvin from sample to sample");
-  add_common_options(*command, options->common, false);
+  add_common_options(*command, options->common);
   add_examples(*command, {"process third.nc -m best.toml -o corrected.nc",
                           "process third.nc -m best.toml --all --suffix _NEW -o everything.nc"});
   return [options] { run(*options); };

@@ -12,6 +12,7 @@
 #include <pcor/laws/model_file.hpp>
 #include <pcor/regimes/regimes.hpp>
 #include <pcor/residuals/samples.hpp>
+#include <pcor/roles/laws_of_flight.hpp>
 
 namespace pcor {
 
@@ -37,14 +38,6 @@ struct MissingRole {
   std::vector<std::string> effects;     ///< of the catalogue, which cannot be fitted or diagnosed
 };
 
-/// A law of a model file, and how it goes with a flight.
-struct InspectedLaw {
-  std::filesystem::path path;
-  std::string name;
-  std::vector<std::string> lacks{};  ///< variables of the model that the flight does not have
-  bool is_in_time = false;           ///< the flight is within the time for which the law is stated to hold
-};
-
 /// What a flight holds.
 struct Inspection {
   std::string path;
@@ -65,7 +58,7 @@ struct Inspection {
   std::vector<FrozenSpan>
       frozen{};  ///< sensors that stand still in flight, for longer than their noise allows
   std::vector<Interval> intervals{};  ///< what was flown; empty without pressures
-  std::vector<InspectedLaw> laws{};   ///< for this aircraft, those that fit first
+  std::vector<LawOfFlight> laws{};    ///< for this aircraft, those that fit first
   std::vector<std::string> notes{};
   std::optional<ModelFile>
       model{};  ///< ready to run: the roles, and terms that a refit finds; none without pressures

@@ -40,8 +40,14 @@ struct LawFacts {
   std::string source{};
   std::string valid_from{};
   std::string valid_to{};
+  bool in_processing = false;  ///< the operator of the aircraft processes flights of these dates with it
   std::optional<double> rms_hpa{};
   std::string note{};
+
+  /// True on a day from `valid_from` to `valid_to`, an ISO date.
+  bool holds_on(const std::string& day) const {
+    return (valid_from.empty() || valid_from <= day) && (valid_to.empty() || day <= valid_to);
+  }
 };
 
 /// The covariance of the fitted parameters, which are named like "static-qp.a2". Empty where nothing was

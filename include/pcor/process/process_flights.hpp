@@ -28,9 +28,13 @@ struct ProcessedFlight {
   std::filesystem::path input;
   std::filesystem::path output;
   FlightState state = FlightState::processed;
+  ModelFile model{};         ///< by which it was corrected
   ProcessSummary summary{};  ///< of a flight that was processed
   std::string reason{};      ///< why it could not be read, one line
 };
+
+/// The model that a flight is to be corrected by. It may throw Error where there is none.
+using ModelOfFlight = std::function<ModelFile(const std::filesystem::path& flight)>;
 
 /// How several flights are processed.
 struct ProcessFlightsOptions {
@@ -46,12 +50,13 @@ struct ProcessFlightsOptions {
 std::vector<ProcessTask> tasks_in_folder(const std::vector<std::filesystem::path>& flights,
                                          const std::filesystem::path& folder);
 
-/// Processes flights one after the other, as `process_flight` does. Memory does not grow with their number,
-/// but for what is said of each.
+/// Processes flights one after the other, each by its model, as `process_flight` does. Memory does not grow
+/// with their number, but for what is said of each.
 ///
 /// @throws Error as `process_flight`; what was done before stays. With `skip_unreadable` an error of a flight
 /// is the `reason` of its entry instead; one of an output is thrown all the same.
-std::vector<ProcessedFlight> process_flights(const std::vector<ProcessTask>& tasks, const ModelFile& model,
+std::vector<ProcessedFlight> process_flights(const std::vector<ProcessTask>& tasks,
+                                             const ModelOfFlight& model_of,
                                              const ProcessFlightsOptions& options = {});
 
 }  // namespace pcor

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <pcor/flight/flight.hpp>
+#include <pcor/laws/model_file.hpp>
+
+namespace pcor {
+
+/// A law in a model file, and how it goes with a flight of its aircraft.
+struct LawOfFlight {
+  std::filesystem::path path;
+  ModelFile model;
+  std::vector<std::string> lacks{};  ///< variables of the model that the flight does not have
+  bool is_in_time = false;           ///< the flight is within the time for which the law is stated to hold
+
+  /// The flight can be corrected by it.
+  bool fits() const { return is_in_time && lacks.empty(); }
+};
+
+/// The laws of a flight's aircraft among model files, those that fit first; of these, those that its operator
+/// processes such flights with (`LawFacts::in_processing`), and of these, those of the pressures that its
+/// aircraft's data name first. The aircraft is known by the registration, which stands in both: "C-130
+/// N130AR" and "N130AR". Of a file that cannot be read `notes` says why.
+std::vector<LawOfFlight> laws_of_flight(const Flight& flight,
+                                        const std::vector<std::filesystem::path>& models,
+                                        std::vector<std::string>& notes);
+
+/// The one law that a flight is to be corrected by: the first of `laws_of_flight`, where no other stands
+/// level with it.
+/// @throws Error if none fits, or if several do and nothing says which is the operator's; the message names
+/// them.
+LawOfFlight law_of_flight(const Flight& flight, const std::vector<std::filesystem::path>& models);
+
+}  // namespace pcor

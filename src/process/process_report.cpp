@@ -1,0 +1,209 @@
+#include <pcor/process/process_report.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include <pcor/flight/flight.hpp>
+#include "roles/recorded_series.hpp"
+#include "roles/usual_variables.hpp"
+
+namespace pcor {
+
+using namespace internal;
+
+namespace {
+
+using Series = std::vector<double>;
+
+/// A result as the page shows it.
+struct Shown {
+  const char* standard_name;
+  const char* title;
+  const char* unit;
+};
+
+constexpr std::array<Shown, 7> shown{{{"PCOR", "delta-p", "hPa"},
+                                      {"PCOR_uncertainty", "standard uncertainty of delta-p", "hPa"},
+                                      {"PSXC", "corrected static pressure", "hPa"},
+                                      {"QCXC", "corrected dynamic pressure", "hPa"},
+                                      {"MACHX", "Mach number", "1"},
+                                      {"ATX", "ambient temperature", "degC"},
+                                      {"TASX", "true airspeed", "m/s"}}};
+
+constexpr const char* own_difference = "own_difference";
+
+bool any_value(const Series& values) {
+  return std::any_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+}
+
+/// The static pressure that the flight's own processing corrected, hPa; empty where it has none.
+Series own_static_pressure(const Flight& input) {
+  const AircraftFamily& family = family_of(input);
+  for (const PressurePair& pair : family.processed) {
+    const std::string stated = family.unit_of(pair.static_pressure);
+    if (has_values(input, pair.static_pressure, "hPa", stated))
+      return read_values(input, pair.static_pressure,
+                         input.conversion(pair.static_pressure, "hPa", "", stated));
+  }
+  return {};
+}
+
+/// The series of the outputs, one flight after another.
+class Outputs {
+ public:
+  Outputs(Report& report, const std::string& suffix) : report_(report), suffix_(suffix) {
+    for (const Shown& each : shown)
+      columns_.push_back(
+          {each.standard_name, each.title, std::string_view(each.unit) == "1" ? "" : each.unit, {}});
+    columns_.push_back(
+        {own_difference, "static pressure less that of the flight's own processing", "hPa", {}});
+  }
+
+  void add(const ProcessedFlight& processed) {
+    const Flight output(processed.output);
+    const Series time = record_times(output);
+    report_.flight_starts.push_back(report_.time.size());
+    report_.flight_names.push_back(processed.output.filename().string());
+    report_.time.insert(report_.time.end(), time.begin(), time.end());
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+      const std::string name = processed.model.output_name(shown[i].standard_name) + suffix_;
+      Series values;
+      if (output.has(name)) values = read_values(output, name, output.conversion(name, shown[i].unit));
+      append(columns_[i], values);
+    }
+    Series difference = own_static_pressure(Flight(processed.input));
+    const Series& corrected = columns_[2].values;
+    const std::size_t first = report_.flight_starts.back();
+    for (std::size_t i = 0; i < difference.size(); ++i) difference[i] = corrected[first + i] - difference[i];
+    append(columns_.back(), difference);
+  }
+
+  void end() {
+    for (ReportColumn& column : columns_) {
+      if (any_value(column.values)) report_.columns.push_back(std::move(column));
+    }
+  }
+
+ private:
+  void append(ReportColumn& column, Series values) const {
+    values.resize(report_.time.size() - report_.flight_starts.back(), std::nan(""));
+    column.values.insert(column.values.end(), values.begin(), values.end());
+  }
+
+  Report& report_;
+  const std::string& suffix_;
+  std::vector<ReportColumn> columns_;
+};
+
+bool has(const Report& report, std::string_view name) {
+  return std::any_of(report.columns.begin(), report.columns.end(),
+                     [&](const ReportColumn& column) { return column.name == name; });
+}
+
+void add_time(Report& report, const char* title, const char* caption,
+              std::initializer_list<const char*> names, const char* axis = "") {
+  std::vector<std::string> there;
+  for (const char* name : names) {
+    if (has(report, name)) there.emplace_back(name);
+  }
+  if (!there.empty()) report.items.emplace_back(TimePanel{title, caption, std::move(there), axis});
+}
+
+void add_pictures(Report& report) {
+  add_time(report, "Delta-p in time",
+           "What was added to the static pressure and taken off the dynamic pressure, with its standard "
+           "uncertainty where the model states one. Drag over a time range, and every picture shows its "
+           "samples alone.",
+           {"PCOR", "PCOR_uncertainty"});
+  if (has(report, "PCOR")) {
+    std::vector<std::string> states;
+    for (const char* name : {"MACHX", "QCXC", "PSXC"}) {
+      if (has(report, name)) states.emplace_back(name);
+    }
+    if (!states.empty())
+      report.items.emplace_back(BinnedPanel{
+          "Delta-p by the state of flight", "The samples, and their mean in each bin.", {"PCOR"}, states});
+  }
+  add_time(report, "Difference from the flight's own processing",
+           "The corrected static pressure less the one that the input holds already: 1 hPa is about 8 m of "
+           "height at the ground.",
+           {own_difference}, "difference of static pressure");
+  add_time(report, "True airspeed", "Of the corrected pressures.", {"TASX"});
+  add_time(report, "Ambient temperature", "Of the recovery temperature and the corrected Mach number.",
+           {"ATX"});
+}
+
+std::string hpa(double value) { return std::isfinite(value) ? fmt::format("{:.2f}", value) : std::string(); }
+
+ReportTable flights_table(const std::vector<ProcessedFlight>& flights) {
+  ReportTable table;
+  table.title = "Flights";
+  table.caption = "Delta-p is that of samples in flight.";
+  table.headers = {"flight",
+                   "model",
+                   "what became of it",
+                   "samples",
+                   "corrected",
+                   "mean delta-p (hPa)",
+                   "least delta-p (hPa)",
+                   "greatest delta-p (hPa)"};
+  for (const ProcessedFlight& flight : flights) {
+    std::vector<std::string> row{flight.input.filename().string(), flight.model.model.name,
+                                 std::string(name_of(flight.state))};
+    if (flight.state == FlightState::processed) {
+      const ProcessSummary& summary = flight.summary;
+      for (const std::size_t count : {summary.samples, summary.corrected})
+        row.push_back(std::to_string(count));
+      for (const double value : {summary.mean_defect, summary.least_defect, summary.greatest_defect})
+        row.push_back(hpa(value));
+    } else {
+      if (!flight.reason.empty()) row.back() += ": " + flight.reason;
+      row.resize(table.headers.size());
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+ReportTable flags_table(const std::vector<ProcessedFlight>& flights) {
+  ReportTable table;
+  table.title = "Quality bits";
+  table.caption = "Samples of the flights processed that have each bit of PCORFLAG, flown or on the ground.";
+  table.headers = {"quality bit", "meaning", "samples"};
+  for (std::size_t i = 0; i < quality_facts.size(); ++i) {
+    std::size_t count = 0;
+    for (const ProcessedFlight& flight : flights) count += flight.summary.flagged[i];
+    if (count > 0)
+      table.rows.push_back(
+          {std::string(quality_facts[i].name), std::string(quality_facts[i].meaning), std::to_string(count)});
+  }
+  return table;
+}
+
+}  // namespace
+
+Report process_report(const std::vector<ProcessedFlight>& flights, const std::string& suffix) {
+  Report report;
+  report.title = flights.size() == 1 ? "The corrected flight" : "The corrected flights";
+  Outputs outputs(report, suffix);
+  for (const ProcessedFlight& flight : flights) {
+    if (flight.state != FlightState::unreadable) outputs.add(flight);
+    for (const std::string& note : flight.summary.notes) {
+      const std::pair<std::string, std::string> fact{"Note", note};
+      if (std::find(report.facts.begin(), report.facts.end(), fact) == report.facts.end())
+        report.facts.push_back(fact);
+    }
+  }
+  outputs.end();
+  add_pictures(report);
+  report.items.emplace_back(flights_table(flights));
+  ReportTable flags = flags_table(flights);
+  if (!flags.rows.empty()) report.items.emplace_back(std::move(flags));
+  return report;
+}
+
+}  // namespace pcor

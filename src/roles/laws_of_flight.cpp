@@ -1,0 +1,124 @@
+#include <pcor/roles/laws_of_flight.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <tuple>
+
+#include <pcor/words/error.hpp>
+#include <pcor/words/utc.hpp>
+#include "roles/usual_variables.hpp"
+
+namespace pcor {
+
+using namespace internal;
+
+namespace {
+
+std::string day_of(const Flight& flight) { return utc_text(flight.time().first, "%Y-%m-%d"); }
+
+bool is_of_aircraft(const std::string& model, const std::string& flight) {
+  if (model.empty() || flight.empty()) return false;
+  return model.find(flight) != std::string::npos || flight.find(model) != std::string::npos;
+}
+
+/// Where a model's pressures stand among those of its aircraft, as measured.
+std::size_t place_of_pressures(const ModelFile& model, const AircraftFamily& family) {
+  const auto variable = [&model](Quantity role) {
+    const auto found = model.variables.find(role);
+    return found == model.variables.end() ? std::string() : found->second;
+  };
+  const auto found =
+      std::find_if(family.measured.begin(), family.measured.end(), [&](const PressurePair& pair) {
+        return pair.static_pressure == variable(Quantity::static_pressure) &&
+               pair.dynamic_pressure == variable(Quantity::dynamic_pressure);
+      });
+  return static_cast<std::size_t>(found - family.measured.begin());
+}
+
+/// What stands first has the least.
+auto rank_of(const LawOfFlight& law, const AircraftFamily& family) {
+  return std::make_tuple(-static_cast<int>(law.lacks.empty()) - static_cast<int>(law.is_in_time),
+                         !law.model.law.in_processing, place_of_pressures(law.model, family));
+}
+
+LawOfFlight law_of_model(const std::filesystem::path& path, ModelFile model, const Flight& flight) {
+  LawOfFlight law{path, std::move(model), {}, false};
+  for (const auto& [role, variable] : law.model.variables) {
+    // A laser may be off.
+    if (role != Quantity::lams_airspeed && !flight.has(variable)) law.lacks.push_back(variable);
+  }
+  law.is_in_time = law.model.law.holds_on(day_of(flight));
+  return law;
+}
+
+std::string names_of(const std::vector<LawOfFlight>& laws) {
+  std::vector<std::string> names;
+  names.reserve(laws.size());
+  for (const LawOfFlight& law : laws) names.push_back(law.path.stem().string());
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// Why none fits.
+std::string reasons_of(const std::vector<LawOfFlight>& laws) {
+  std::vector<std::string> reasons;
+  reasons.reserve(laws.size());
+  for (const LawOfFlight& law : laws) {
+    const std::string name = law.path.stem().string();
+    reasons.push_back(law.lacks.empty() ? fmt::format("{} is of another time", name)
+                                        : fmt::format("{} needs {}", name, fmt::join(law.lacks, " and ")));
+  }
+  return fmt::format("{}", fmt::join(reasons, "; "));
+}
+
+}  // namespace
+
+std::vector<LawOfFlight> laws_of_flight(const Flight& flight,
+                                        const std::vector<std::filesystem::path>& models,
+                                        std::vector<std::string>& notes) {
+  const AircraftFamily& family = family_of(flight);
+  std::vector<LawOfFlight> laws;
+  for (const std::filesystem::path& path : models) {
+    try {
+      ModelFile model = read_model(path);
+      if (is_of_aircraft(model.model.aircraft, flight.aircraft()))
+        laws.push_back(law_of_model(path, std::move(model), flight));
+    } catch (const Error& error) {
+      notes.emplace_back(error.what());
+    }
+  }
+  std::stable_sort(laws.begin(), laws.end(), [&family](const LawOfFlight& a, const LawOfFlight& b) {
+    return rank_of(a, family) < rank_of(b, family);
+  });
+  return laws;
+}
+
+LawOfFlight law_of_flight(const Flight& flight, const std::vector<std::filesystem::path>& models) {
+  std::vector<std::string> notes;
+  std::vector<LawOfFlight> laws = laws_of_flight(flight, models, notes);
+  const std::string who =
+      fmt::format("{}, '{}' of {}", flight.path().string(), flight.aircraft(), day_of(flight));
+  if (laws.empty()) {
+    throw Error(fmt::format("{}: none of the {} models is of this aircraft; name one with --model{}", who,
+                            models.size(), notes.empty() ? "" : "; " + notes.front()));
+  }
+  const LawOfFlight& first = laws.front();
+  if (!first.fits())
+    throw Error(fmt::format("{}: no model fits it: {}; name one with --model", who, reasons_of(laws)));
+  const AircraftFamily& family = family_of(flight);
+  laws.erase(
+      std::find_if(laws.begin(), laws.end(),
+                   [&](const LawOfFlight& law) { return rank_of(law, family) != rank_of(first, family); }),
+      laws.end());
+  if (laws.size() > 1) {
+    throw Error(fmt::format(
+        "{}: {} fit alike; name one with --model, or state in_processing = true in the [law] of that with "
+        "which such flights are processed",
+        who, names_of(laws)));
+  }
+  return laws.front();
+}
+
+}  // namespace pcor
