@@ -16,6 +16,7 @@
 #include <pcor/residuals/reference.hpp>
 #include <pcor/words/error.hpp>
 #include "numerics/missing.hpp"
+#include "residuals/contradicting_signs.hpp"
 #include "residuals/flaps_by_lift.hpp"
 #include "residuals/frozen.hpp"
 #include "residuals/moving_columns.hpp"
@@ -252,6 +253,8 @@ FlightSamples read_samples(const Flight& flight, const ModelFile& model, const R
   samples.model = read_model_columns(flight, model, reference.reads_laser(), samples.time, samples.notes);
   samples.reference = reference.read(flight, samples.time, samples.notes);
   samples.motion = read_motion(flight, model, samples);
+  for (std::string& note : contradicting_signs(samples, options.least_airspeed))
+    samples.notes.push_back(std::move(note));
   read_flaps(flight, model, options.least_airspeed, samples);
   for (const auto part : {&FlightSamples::model, &FlightSamples::reference})
     mark_frozen(samples, part, options.least_airspeed);

@@ -179,6 +179,54 @@ class OtherAircraft(unittest.TestCase):
         for name in ("climb", "descent"):
             self.assertEqual(here[name]["begin"][:16], there[name]["begin"][:16])
 
+    def test_series_that_disagree_in_sign_are_told(self):
+        """Against what each of them moves with, on a flight with turns and climbs; all agree where none is turned."""
+        flight, turned = self.path / "turns.nc", self.path / "turned.nc"
+        self.run_tool("simulate", SOURCE / "data/scenarios/c130-eq18.toml", "-o", flight, "--quiet")
+
+        def notes(path):
+            return [note for note in self.json("inspect", path)["flights"][0]["notes"] if "contradict" in note]
+
+        self.assertEqual(notes(flight), [])
+        for variable, words in (("GGVSPD", "the vertical speed and the change of altitude"),
+                                ("ROLL", "the roll and the turning of the heading"),
+                                ("GGTRK", "the turning of the ground track and that of the heading"),
+                                ("ATTACK", "the angle of attack and the pitch above the path"),
+                                ("SSLIP", "the sideslip and the drift")):
+            with self.subTest(variable):
+                turned.write_bytes(flight.read_bytes())
+                with netCDF4.Dataset(turned, "a") as file:
+                    file[variable][:] = -file[variable][:]
+                found = notes(turned)
+                self.assertTrue(any(words in note for note in found), found)
+                self.assertIn(words, self.run_tool("compare", turned, "-m", "c130-psfd-eq18", "--reference",
+                                                    "pressure:TRUE_PS").stdout)
+
+    def test_names_that_differ_by_case_are_two(self):
+        """The exact name is taken; another case is no variable, and the message says what is there."""
+        flight = self.path / "case.nc"
+        flight.write_bytes((self.path / "ncar.nc").read_bytes())
+        with netCDF4.Dataset(flight, "a") as file:
+            other = file.createVariable("psfd", "f4", file["PSFD"].dimensions)
+            other.units = "hPa"
+            other[:] = file["PSFD"][:] - 20.0
+        roles = self.json("inspect", flight)["flights"][0]["roles"]
+        self.assertEqual(roles["static_pressure"]["variable"], "PSFD")
+        model = self.path / "case.toml"
+        text = ('format = "pcor-model/1"\nname = "m"\n[variables]\nstatic_pressure = "{}"\n'
+                'dynamic_pressure = "QCF"\n[[effect]]\nid = "static-constant"\n')
+        means = {}
+        for name in ("PSFD", "psfd"):
+            model.write_text(text.format(name))
+            self.run_tool("process", flight, "-m", model, "-o", f"{name}-out.nc")
+            with netCDF4.Dataset(self.path / f"{name}-out.nc") as output:
+                means[name] = numpy.nanmean(output["PSXC"][:])
+        self.assertAlmostEqual(means["PSFD"] - means["psfd"], 20.0, places=3)  # float32
+        model.write_text(text.format("Psfd"))
+        result = self.run_tool("process", flight, "-m", model, "-o", "out.nc", status=1)
+        self.assertIn("PSFD", result.stderr)
+        self.assertIn("psfd", result.stderr)
+
     def test_roles_may_be_named(self):
         model = (self.path / "bare.toml").read_text().replace('name = "bare"', 'name = "bare"\nroles = "{}"')
         (self.path / "named.toml").write_text(model.format("halo-bahamas"))

@@ -1,0 +1,138 @@
+#include "residuals/contradicting_signs.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstddef>
+#include <string_view>
+
+#include <pcor/physics/constants.hpp>
+#include "numerics/missing.hpp"
+
+namespace pcor::internal {
+namespace {
+
+using Series = std::vector<double>;
+
+constexpr double window = 10.0;            // s: longer than a gust, shorter than a manoeuvre
+constexpr double least_time = 600.0;       // s: sixty windows, in which chance does not reach
+constexpr double least_correlation = 0.5;  // the least of recorded pairs, sideslip and drift, have 0.55
+
+/// How much a series rises around each sample in `window`, NaN across gaps; of an angle on the circle.
+Series rise_of(const Series& values, const Series& time, double step, bool is_angle = false) {
+  Series rise(values.size(), nan);
+  const auto half = static_cast<std::size_t>(std::lround(window / 2.0 / step));
+  for (std::size_t i = half; i + half < values.size(); ++i) {
+    if (time[i + half] - time[i - half] > 1.5 * window) continue;
+    const double change = values[i + half] - values[i - half];
+    rise[i] = is_angle ? std::remainder(change, 360.0) : change;
+  }
+  return rise;
+}
+
+/// Two series that go up and down together, as they would stand in a sentence.
+struct Pair {
+  std::string_view first_name;
+  Series first;
+  std::string_view second_name;
+  Series second;
+  double least_rms;  ///< of the second: below it nothing moved
+};
+
+class Signs {
+ public:
+  Signs(const FlightSamples& samples, double least_airspeed)
+      : samples_(samples), motion_(samples.motion), least_airspeed_(least_airspeed) {}
+
+  std::vector<Pair> pairs() const {
+    const Series altitude = rise(motion_.altitude);
+    const Series heading = rise(motion_.heading, true);
+    std::vector<Pair> all;
+    all.push_back({"the vertical speed", motion_.vertical_speed, "the change of altitude", altitude, 5.0});
+    if (const Series* const pressure = samples_.model.find(Quantity::static_pressure))
+      all.push_back({"the fall of the static pressure", negative(rise(*pressure)), "the change of altitude",
+                     altitude, 5.0});
+    all.push_back({"the roll", motion_.roll, "the turning of the heading", heading, 2.0});
+    all.push_back({"the turning of the ground track", rise(motion_.ground_track, true), "that of the heading",
+                   heading, 2.0});
+    all.push_back({"the angle of attack", rise(motion_.attack), "the pitch above the path",
+                   rise(pitch_above_path()), 0.3});
+    all.push_back({"the sideslip", rise(motion_.sideslip), "the drift", rise(drift(), true), 0.3});
+    return all;
+  }
+
+  /// Between -1 and 1; NaN where too little moved, or one was not recorded.
+  double correlation(const Pair& pair) const {
+    if (pair.first.size() != pair.second.size()) return nan;
+    double count = 0.0;
+    double a = 0.0;
+    double b = 0.0;
+    double aa = 0.0;
+    double bb = 0.0;
+    double ab = 0.0;
+    for (std::size_t i = 0; i < pair.first.size(); ++i) {
+      const double x = pair.first[i];
+      const double y = pair.second[i];
+      if (!std::isfinite(x + y) || !(motion_.airspeed[i] >= least_airspeed_)) continue;
+      count += 1.0;
+      a += x;
+      b += y;
+      aa += x * x;
+      bb += y * y;
+      ab += x * y;
+    }
+    if (count * samples_.step < least_time || bb < count * pair.least_rms * pair.least_rms) return nan;
+    return (ab - a * b / count) / std::sqrt((aa - a * a / count) * (bb - b * b / count));
+  }
+
+ private:
+  Series rise(const Series& values, bool is_angle = false) const {
+    return rise_of(values, samples_.time, samples_.step, is_angle);
+  }
+
+  static Series negative(Series values) {
+    for (double& value : values) value = -value;
+    return values;
+  }
+
+  /// Pitch less the angle of climb, deg: the angle of attack without wind.
+  Series pitch_above_path() const {
+    if (motion_.pitch.empty() || motion_.vertical_speed.empty()) return {};
+    Series angle = motion_.pitch;
+    for (std::size_t i = 0; i < angle.size(); ++i)
+      angle[i] -= std::atan2(motion_.vertical_speed[i], motion_.airspeed[i]) / constants::radians_per_degree;
+    return angle;
+  }
+
+  /// The ground track less the heading, deg: where the nose goes to port, the wind comes from starboard.
+  Series drift() const {
+    if (motion_.ground_track.empty() || motion_.heading.empty()) return {};
+    Series angle = motion_.ground_track;
+    for (std::size_t i = 0; i < angle.size(); ++i) angle[i] -= motion_.heading[i];
+    return angle;
+  }
+
+  const FlightSamples& samples_;
+  const FlightMotion& motion_;
+  double least_airspeed_;
+};
+
+}  // namespace
+
+std::vector<std::string> contradicting_signs(const FlightSamples& samples, double least_airspeed) {
+  std::vector<std::string> contradictions;
+  if (samples.motion.airspeed.empty()) return contradictions;
+  const Signs signs(samples, least_airspeed);
+  for (const Pair& pair : signs.pairs()) {
+    const double correlation = signs.correlation(pair);
+    if (!(correlation < -least_correlation)) continue;
+    contradictions.push_back(
+        fmt::format("{} and {} contradict each other (correlation {:.2f}): one of them has the other sign; "
+                    "turn it in the "
+                    "[units] of the model, as \"-1 m s-1\" or \"-1 degree\"",
+                    pair.first_name, pair.second_name, correlation));
+  }
+  return contradictions;
+}
+
+}  // namespace pcor::internal
