@@ -87,8 +87,10 @@ std::vector<std::string> effects_that_need(Quantity role) {
 /// One flight that is looked at.
 class Look {
  public:
-  Look(const std::filesystem::path& path, TimeStamp time_stamp)
-      : flight_(path, time_stamp), family_(family_of(flight_)) {
+  Look(const std::filesystem::path& path, TimeStamp time_stamp, const std::string& roles)
+      : flight_(path, time_stamp),
+        roles_(roles),
+        family_(roles.empty() ? family_of(flight_) : family_named(roles)) {
     result_.path = path.string();
   }
 
@@ -117,7 +119,11 @@ class Look {
     }
     result_.family = family_.name;
     result_.family_title = family_.title;
-    for (const AircraftFamily* family : families_like(flight_)) result_.alike.push_back(family->name);
+    if (roles_.empty()) {
+      for (const AircraftFamily* family : families_like(flight_)) result_.alike.push_back(family->name);
+    } else {
+      result_.alike = {family_.name};
+    }
     result_.time = flight_.time();
     result_.records = flight_.records();
     for (const std::string& name : flight_.variables()) {
@@ -129,7 +135,7 @@ class Look {
   /// Of a doubtful flight the first family stands.
   void find_model() {
     ModelFile model;
-    model.roles_from = family_.name;
+    model.roles_from = roles_.empty() ? family_.name : roles_;
     model.model.aircraft = result_.aircraft;
     model.model.name =
         fmt::format("{} as recorded", result_.aircraft.empty() ? family_.title : result_.aircraft);
@@ -242,6 +248,7 @@ class Look {
   }
 
   Flight flight_;
+  std::string roles_;
   const AircraftFamily& family_;
   Inspection result_;
 };
@@ -249,8 +256,8 @@ class Look {
 }  // namespace
 
 Inspection inspect_flight(const std::filesystem::path& path, const std::vector<std::filesystem::path>& laws,
-                          TimeStamp time_stamp) {
-  return Look(path, time_stamp).run(laws);
+                          TimeStamp time_stamp, const std::string& roles) {
+  return Look(path, time_stamp, roles).run(laws);
 }
 
 }  // namespace pcor

@@ -236,6 +236,26 @@ class OtherAircraft(unittest.TestCase):
         result = self.run_tool("compare", "faam-core.nc", "-m", "named.toml", "--reference", "pressure:PS_RVSM", status=1)
         self.assertIn("there are no roles 'faam-cor'; did you mean", result.stderr)
 
+    def test_inspect_looks_for_the_names_of_another_aircraft(self):
+        flight = self.json("inspect", "faam-core.nc", "--roles", "ncar")["flights"][0]
+        self.assertEqual(flight["names_of"], "ncar")
+        self.assertNotIn("static_pressure", flight["roles"])
+        self.assertIn("faam-core", self.run_tool("inspect", "ncar.nc", "--roles", "faam", status=1).stderr)
+
+    def test_a_flight_that_cannot_be_read_ends_nothing(self):
+        (self.path / "bad.nc").write_text("no flight")
+        result = self.json("inspect", "ncar.nc", "bad.nc", "faam-core.nc")["flights"]
+        self.assertEqual([flight["path"] for flight in result], ["ncar.nc", "bad.nc", "faam-core.nc"])
+        self.assertIn("bad.nc", result[1]["unreadable"])
+        self.run_tool("inspect", "bad.nc", status=1)
+        self.run_tool("inspect", "bad.nc", "bad.nc", status=1)
+
+    def test_what_was_chosen_stands_in_every_result(self):
+        result = self.json("compare", "faam-core.nc", "-m", "bare.toml", "--reference", "pressure:PS_RVSM", "--report",
+                           "choices.html")
+        self.assertTrue(any("VELD_GIN" in choice for choice in result["choices"]), result["choices"])
+        self.assertTrue("VELD_GIN: the vertical speed is positive downward" in (self.path / "choices.html").read_text())
+
     def test_an_aircraft_of_the_user(self):
         """A file of names beside the model."""
         (self.path / "mine.toml").write_text('format = "pcor-aircraft/1"\nname = "mine"\ntitle = "my aircraft"\n'

@@ -208,10 +208,11 @@ class Help(ComparisonTest):
 class Terminal(ComparisonTest):
     """What a terminal of a stated width shows: a pseudo-terminal stands in for it."""
 
-    def shown(self, width, *arguments, stated=""):
+    def shown(self, width, *arguments, stated="", **more):
         master, slave = pty.openpty()
         fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, width, 0, 0))
-        environment = {key: value for key, value in os.environ.items() if key != "COLUMNS"}
+        environment = {key: value for key, value in os.environ.items() if key not in ("COLUMNS", "TERM", "NO_COLOR")}
+        environment.update(more)
         if stated:
             environment["COLUMNS"] = stated
         with subprocess.Popen([TOOL, *arguments], stdout=slave, stderr=subprocess.DEVNULL, env=environment) as run:
@@ -244,6 +245,15 @@ class Terminal(ComparisonTest):
         self.assertLessEqual(max(map(len, text.splitlines()[:-1])), 80)
         self.assertEqual(text.split(), plain.split())
         self.assertRegex(text, r"(?m)^static-lag +lag +static-line +static-line\n +pneumatic lag of the static line\n")
+
+    def test_verdicts_are_coloured_unless_it_is_refused(self):
+        plain = self.done("check", ONE).stdout
+        self.assertNotIn("\033", plain)
+        coloured = self.shown(400, "check", ONE, TERM="xterm")
+        self.assertRegex(coloured, "(?m)^static-pressure +\033\\[3[123]m(in)?consistent\033\\[0m ")
+        self.assertEqual(re.sub("\033\\[[0-9]+m", "", coloured), plain)
+        for refused in ({"TERM": "xterm", "NO_COLOR": "1"}, {"TERM": "dumb"}, {}):
+            self.assertEqual(self.shown(400, "check", ONE, **refused), plain)
 
     def test_a_command_to_copy_stays_whole(self):
         model = self.model()

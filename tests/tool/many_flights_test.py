@@ -114,6 +114,14 @@ class Folder(ManyFlights):
             self.assertIn("folder", result.stderr)
         self.assertFalse((self.path / "out.nc").exists())
 
+    def test_a_folder_into_which_nothing_came_is_taken_away(self):
+        result = self.process([self.bad_flight("a.nc"), self.bad_flight("b.nc")])
+        self.assertEqual(result.returncode, 1)
+        self.assertFalse(self.out.exists())
+        self.out.mkdir()
+        self.process([self.path / "a.nc", self.path / "b.nc"])
+        self.assertTrue(self.out.exists(), "it was there before")
+
     def test_the_folder_is_not_that_of_the_flights(self):
         flights = self.flights("a.nc", "b.nc")
         before = [path.read_bytes() for path in flights]

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include <pcor/words/error.hpp>
+#include "model_of_flight.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -89,8 +90,9 @@ JsonResult::JsonResult(const CommonOptions& options) : place_(options.json) {
   if (is_file(place_)) file_.emplace(place_);
 }
 
-void JsonResult::write(const nlohmann::ordered_json& result) {
+void JsonResult::write(nlohmann::ordered_json result) {
   if (place_.empty()) return;
+  if (!choices_of_this_run().empty()) result["choices"] = choices_of_this_run();
   const std::string text = result.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   if (!file_) {
     std::fwrite(text.data(), 1, text.size(), stdout);

@@ -63,9 +63,10 @@ class JsonResult {
   /// @throws Error if the place that the options name cannot be written.
   explicit JsonResult(const CommonOptions& options);
 
-  /// Writes `result` where the options say, if anywhere. NaN becomes null. @throws Error if it cannot be
+  /// Writes `result` where the options say, if anywhere, with what was chosen for models that leave their
+  /// variables open, as "choices". NaN becomes null. @throws Error if it cannot be
   /// written.
-  void write(const nlohmann::ordered_json& result);
+  void write(nlohmann::ordered_json result);
 
  private:
   std::string place_;

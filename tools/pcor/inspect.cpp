@@ -23,6 +23,7 @@ struct Options {
   CommonOptions common;
   std::vector<std::string> flights;
   std::string model;
+  std::string roles;
   std::string time_stamp = "begin";
 };
 
@@ -197,6 +198,28 @@ std::string next_step(const Options& options, const Inspection& flight) {
                      path);
 }
 
+/// Looks at the flights one after the other. Where there are several, one that cannot be read ends nothing.
+std::vector<Inspection> look(const Options& options, bool text, nlohmann::ordered_json& result) {
+  const std::vector<std::filesystem::path> laws = named_models();
+  const TimeStamp time_stamp = options.time_stamp == "middle" ? TimeStamp::middle : TimeStamp::begin;
+  std::vector<Inspection> all;
+  for (const std::string& flight : options.flights) {
+    if (text && !result.empty()) say("\n");
+    try {
+      all.push_back(inspect_flight(flight, laws, time_stamp, options.roles));
+    } catch (const Error& error) {
+      if (options.flights.size() == 1) throw;
+      result.push_back({{"path", flight}, {"unreadable", error.what()}});
+      if (text) say("{}\n", error.what());
+      continue;
+    }
+    result.push_back(as_json(all.back()));
+    if (text) print(all.back());
+  }
+  if (all.empty()) throw Error(fmt::format("none of the {} flights can be read", options.flights.size()));
+  return all;
+}
+
 void run(const Options& options) {
   std::vector<std::filesystem::path> inputs(options.flights.begin(), options.flights.end());
   refuse_overwriting({options.model, options.common.json, options.common.report}, inputs);
@@ -205,16 +228,7 @@ void run(const Options& options) {
   const bool text = wants_text(options.common, {options.model});
   nlohmann::ordered_json result;
   result["flights"] = nlohmann::ordered_json::array();
-  const std::vector<std::filesystem::path> laws = named_models();
-  std::vector<Inspection> all;
-  for (const std::string& flight : options.flights) {
-    all.push_back(
-        inspect_flight(flight, laws, options.time_stamp == "middle" ? TimeStamp::middle : TimeStamp::begin));
-    result["flights"].push_back(as_json(all.back()));
-    if (!text) continue;
-    if (all.size() > 1) say("\n");
-    print(all.back());
-  }
+  const std::vector<Inspection> all = look(options, text, result["flights"]);
   const Inspection& first = all.front();
   if (!options.model.empty()) {
     if (!first.model)
@@ -244,6 +258,12 @@ std::function<void()> add_inspect(CLI::App& program) {
           "--write-model", options->model,
           "write a model of the first flight to FILE.toml, with its roles and terms that a refit finds")
       ->type_name("FILE.toml");
+  command
+      ->add_option(
+          "--roles", options->roles,
+          "look for the names of this aircraft, one of data/aircraft or a file of your own that ends in "
+          ".toml; without it, of the one that the flight tells")
+      ->type_name("NAME");
   command
       ->add_option("--time-stamp", options->time_stamp,
                    "whether the time of a record is the beginning or the middle of its second")

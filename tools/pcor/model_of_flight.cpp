@@ -13,6 +13,8 @@
 namespace pcor::tool {
 namespace {
 
+std::vector<std::string> choices;
+
 /// A model that names no pressure, completed by the first flight that can be read and completes it. All
 /// others have to choose the same variables: a result must not depend on which flights stand beside.
 ModelFile completed(const ModelFile& open, const std::vector<std::filesystem::path>& flights,
@@ -54,11 +56,14 @@ ModelFile read_model_for(const std::filesystem::path& model,
     return file;
   std::vector<std::string> notes;
   ModelFile whole = completed(file, flights, notes);
-  if (!options.quiet) {
-    for (const std::string& note : notes) fmt::print(stderr, "{}\n", note);
+  for (const std::string& note : notes) {
+    if (!options.quiet) fmt::print(stderr, "{}\n", note);
+    choices.push_back(note);
   }
   return whole;
 }
+
+const std::vector<std::string>& choices_of_this_run() { return choices; }
 
 ModelFile model_for_flight(const std::vector<std::filesystem::path>& models,
                            const std::filesystem::path& flight) {

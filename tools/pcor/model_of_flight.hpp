@@ -10,10 +10,15 @@
 namespace pcor::tool {
 
 /// Reads a model that is to run on flights. What it leaves open, the first flight's aircraft names
-/// (`with_roles`); what was chosen goes to standard error where text is wanted.
+/// (`with_roles`); what was chosen goes to standard error where text is wanted, and is kept for
+/// `choices_of_this_run`.
 /// @throws Error as `read_model` and `with_roles`
 ModelFile read_model_for(const std::filesystem::path& model,
                          const std::vector<std::filesystem::path>& flights, const CommonOptions& options);
+
+/// What was chosen for the models of this run that left their variables open, a sentence each; JSON results
+/// and reports say it too.
+const std::vector<std::string>& choices_of_this_run();
 
 /// The model of a folder that a flight is to be corrected by (`law_of_flight`), with the units that its
 /// aircraft's data state.

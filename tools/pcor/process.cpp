@@ -240,14 +240,28 @@ std::vector<ProcessTask> tasks_of(const Options& options, bool folder) {
   return tasks;
 }
 
-void make_folder(const fs::path& folder) {
-  std::error_code code;
-  fs::create_directories(folder, code);
-  if (code) {
-    throw Error(fmt::format("the folder {} cannot be made: {}; choose another output", folder.string(),
-                            code.message()));
+/// The folder for several flights, made where it is not there, and taken away again if nothing came into it.
+class OutputFolder {
+ public:
+  explicit OutputFolder(const fs::path& folder) : folder_(folder) {
+    std::error_code code;
+    is_new_ = fs::create_directories(folder_, code);
+    if (code) {
+      throw Error(fmt::format("the folder {} cannot be made: {}; choose another output", folder_.string(),
+                              code.message()));
+    }
   }
-}
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+  ~OutputFolder() {
+    std::error_code holds_files;
+    if (is_new_) fs::remove(folder_, holds_files);
+  }
+
+ private:
+  fs::path folder_;
+  bool is_new_ = false;
+};
 
 ProcessOptions process_options(const Options& options) {
   ProcessOptions process;
@@ -291,7 +305,8 @@ void run(const Options& options) {
   require_writable(options.common.report);
   JsonResult json(options.common);
   const ModelOfFlight model_of = models_of(options);
-  if (folder) make_folder(options.output);
+  std::optional<OutputFolder> output_folder;
+  if (folder) output_folder.emplace(options.output);
   ProcessFlightsOptions process;
   process.process = process_options(options);
   process.if_stale = options.if_stale;

@@ -8,6 +8,7 @@
 
 #include <pcor/words/utc.hpp>
 #include "command.hpp"
+#include "model_of_flight.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -31,6 +32,7 @@ void write_report_of_run(Report report, const ReportFiles& files, const std::fil
   add(files.models.size() > 1 ? "Model files" : "Model file", files.models);
   add(files.held_out.empty() ? "Flights" : "Fitted flights", files.flights);
   add("Held-out flights", files.held_out);
+  add("Variables", choices_of_this_run());
   write_report(report, path);
 }
 

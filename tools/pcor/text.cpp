@@ -5,8 +5,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
 
 namespace pcor::tool {
 namespace {
@@ -116,16 +118,43 @@ std::string& unfinished_line() {
   return line;
 }
 
+bool wants_colour() {
+  const char* const refused = std::getenv("NO_COLOR");
+  const char* const terminal = std::getenv("TERM");
+  return (refused == nullptr || *refused == '\0') && terminal != nullptr &&
+         std::string_view(terminal) != "dumb";
+}
+
+/// The begin of a note, and the verdict in a row of a table, as a terminal shows them.
+std::string coloured(std::string line) {
+  constexpr std::string_view plain = "\033[0m";
+  const auto paint = [&](std::size_t at, std::size_t length, std::string_view colour) {
+    line.insert(at + length, plain);
+    line.insert(at, colour);
+  };
+  constexpr std::string_view note = "Note";
+  if (line.compare(0, note.size(), note) == 0) paint(0, note.size(), "\033[1m");
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 3> verdicts{
+      {{"inconsistent", "\033[31m"}, {"consistent", "\033[32m"}, {"cannot tell", "\033[33m"}}};
+  for (const auto& [verdict, colour] : verdicts) {
+    const std::size_t at = line.find(fmt::format(" {}  ", verdict));
+    if (at != none) paint(at + 1, verdict.size(), colour);
+  }
+  return line;
+}
+
 }  // namespace
 
 void say_text(std::string_view text) {
   static const std::size_t width = terminal_width();
+  static const bool colour = wants_colour();
   if (width == 0) {
     fmt::print("{}", text);
     return;
   }
   for (std::size_t end = text.find('\n'); end != none; end = text.find('\n')) {
-    fmt::print("{}\n", folded(unfinished_line().append(text.substr(0, end)), width));
+    std::string line = folded(unfinished_line().append(text.substr(0, end)), width);
+    fmt::print("{}\n", colour ? coloured(std::move(line)) : line);
     unfinished_line().clear();
     text.remove_prefix(end + 1);
   }

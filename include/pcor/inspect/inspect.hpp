@@ -67,9 +67,11 @@ struct Inspection {
 
 /// Looks at a flight: what it is, which variable plays which role, what is missing and what that costs, what
 /// was flown, which of the `laws` (model files) are for it. A file of `laws` that cannot be read is a note.
-/// @throws Error if the flight cannot be read
+/// @param roles whose names are looked for: an aircraft of data/aircraft, or a file that ends in ".toml";
+/// empty for the one that the flight tells
+/// @throws Error if the flight cannot be read, or there are no such roles
 Inspection inspect_flight(const std::filesystem::path& path,
                           const std::vector<std::filesystem::path>& laws = {},
-                          TimeStamp time_stamp = TimeStamp::begin);
+                          TimeStamp time_stamp = TimeStamp::begin, const std::string& roles = "");
 
 }  // namespace pcor
