@@ -250,7 +250,7 @@ class Terminal(ComparisonTest):
         plain = self.done("check", ONE).stdout
         self.assertNotIn("\033", plain)
         coloured = self.shown(400, "check", ONE, TERM="xterm")
-        self.assertRegex(coloured, "(?m)^static-pressure +\033\\[3[123]m(in)?consistent\033\\[0m ")
+        self.assertRegex(coloured, "(?m)^total-pressure +\033\\[3[123]m(in)?consistent\033\\[0m ")
         self.assertEqual(re.sub("\033\\[[0-9]+m", "", coloured), plain)
         for refused in ({"TERM": "xterm", "NO_COLOR": "1"}, {"TERM": "dumb"}, {}):
             self.assertEqual(self.shown(400, "check", ONE, **refused), plain)
