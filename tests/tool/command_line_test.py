@@ -249,11 +249,11 @@ class Terminal(ComparisonTest):
     def test_verdicts_are_coloured_unless_it_is_refused(self):
         plain = self.done("check", ONE).stdout
         self.assertNotIn("\033", plain)
-        coloured = self.shown(400, "check", ONE, TERM="xterm")
+        coloured = self.shown(9000, "check", ONE, TERM="xterm")
         self.assertRegex(coloured, "(?m)^total-pressure +\033\\[3[123]m(in)?consistent\033\\[0m ")
         self.assertEqual(re.sub("\033\\[[0-9]+m", "", coloured), plain)
         for refused in ({"TERM": "xterm", "NO_COLOR": "1"}, {"TERM": "dumb"}, {}):
-            self.assertEqual(self.shown(400, "check", ONE, **refused), plain)
+            self.assertEqual(self.shown(9000, "check", ONE, **refused), plain)
 
     def test_a_command_to_copy_stays_whole(self):
         model = self.model()
