@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <optional>
+#include <string_view>
 
 #include <pcor/flight/flight.hpp>
 #include <pcor/residuals/reference.hpp>
@@ -21,11 +23,6 @@ using WhyNot = std::function<std::string(const Flight& flight)>;
 bool names_temperature(const ModelFile& model) {
   return model.variables.count(Quantity::recovery_temperature) != 0 ||
          model.variables.count(Quantity::ambient_temperature) != 0;
-}
-
-std::string why_no_laser(const Flight& flight, const ModelFile& model) {
-  const std::string& laser = model.variables.at(Quantity::lams_airspeed);
-  return flight.has(laser) ? "" : "there is no " + laser;
 }
 
 /// Whether a flight has a pair of pressures of which none is of the model itself.
@@ -49,45 +46,63 @@ std::string why_no_wind(const Flight& flight, const ModelFile& model) {
   return "";
 }
 
-/// The choice where the user names none.
+/// A reference that may stand beside LAMS, and why not: the first flight that does not allow it.
+struct Candidate {
+  std::string text;
+  std::function<std::string(const Flight& flight)> why_not;
+  std::string reason{};
+
+  void look_at(const Flight& flight) {
+    if (!reason.empty()) return;
+    const std::string why = why_not(flight);
+    if (!why.empty()) reason = fmt::format("{}: {} in {}", text, why, flight.path().filename().string());
+  }
+};
+
+/// The choice where the user names none: LAMS, and what else all flights allow. They are looked at one after
+/// the other, however many there are.
 class Choice {
  public:
-  Choice(const ModelFile& model, const std::vector<std::filesystem::path>& paths) : model_(model) {
-    for (const std::filesystem::path& path : paths) flights_.emplace_back(path);
+  explicit Choice(const ModelFile& model) : model_(model) { use("lams"); }
+
+  void look_at(const Flight& flight) {
+    has_laser_ = has_laser_ && flight.has(model_.variables.at(Quantity::lams_airspeed));
+    if (!pairs_) pairs_ = family_of(model_, flight).measured;
+    const auto unfit = [&](const PressurePair& pair) {
+      return pair.static_pressure == filtered_and_late || !has_other_pair(flight, model_, pair);
+    };
+    pairs_->erase(std::remove_if(pairs_->begin(), pairs_->end(), unfit), pairs_->end());
+    for (Candidate* const each : {&height_, &wind_}) each->look_at(flight);
   }
 
-  /// Takes the reference of that text if all flights allow it, else notes why not.
-  bool take(const std::string& text, const WhyNot& why_not) {
-    for (const Flight& flight : flights_) {
-      const std::string why = why_not(flight);
-      if (why.empty()) continue;
-      chosen_.not_used.push_back(fmt::format("{}: {} in {}", text, why, flight.path().filename().string()));
-      return false;
+  ChosenReferences finish() {
+    if (!has_laser_ || !pairs_) return std::move(chosen_);
+    if (pairs_->empty()) {
+      chosen_.not_used.emplace_back("total: there is no second pair of pressures of a usual name");
+    } else {
+      use("total:" + pairs_->front().static_pressure + "+" + pairs_->front().dynamic_pressure);
     }
-    chosen_.used.push_back(read_reference(text, model_));
-    return true;
-  }
-
-  /// Of the first known pair that all flights have; that of the avionics, PS_A, is filtered and late.
-  void take_total_pressure() {
-    for (const PressurePair& pair : family_of(model_, flights_.front()).measured) {
-      const bool all_have = std::all_of(flights_.begin(), flights_.end(), [&](const Flight& flight) {
-        return has_other_pair(flight, model_, pair);
-      });
-      if (!all_have || pair.static_pressure == "PS_A") continue;
-      chosen_.used.push_back(
-          read_reference("total:" + pair.static_pressure + "+" + pair.dynamic_pressure, model_));
-      return;
+    for (const Candidate* const each : {&height_, &wind_}) {
+      if (each->reason.empty()) {
+        use(each->text);
+      } else {
+        chosen_.not_used.push_back(each->reason);
+      }
     }
-    chosen_.not_used.emplace_back("total: there is no second pair of pressures of a usual name");
+    return std::move(chosen_);
   }
-
-  ChosenReferences finish() { return std::move(chosen_); }
 
  private:
+  static constexpr std::string_view filtered_and_late = "PS_A";  // of the avionics
+
+  void use(const std::string& text) { chosen_.used.push_back(read_reference(text, model_)); }
+
   const ModelFile& model_;
-  std::vector<Flight> flights_;
   ChosenReferences chosen_;
+  bool has_laser_ = true;
+  std::optional<std::vector<PressurePair>> pairs_;  // that all flights have
+  Candidate height_{"height", [this](const Flight& flight) { return why_no_height(flight, model_); }};
+  Candidate wind_{"wind", [this](const Flight& flight) { return why_no_wind(flight, model_); }};
 };
 
 }  // namespace
@@ -97,12 +112,8 @@ ChosenReferences read_references(const std::vector<std::string>& texts, const Mo
   ChosenReferences named;
   for (const std::string& text : texts) named.used.push_back(read_reference(text, model));
   if (!texts.empty()) return named;
-  named.used.push_back(read_reference("lams", model));
-  Choice choice(model, flights);
-  if (!choice.take("lams", [&](const Flight& flight) { return why_no_laser(flight, model); })) return named;
-  choice.take_total_pressure();
-  choice.take("height", [&](const Flight& flight) { return why_no_height(flight, model); });
-  choice.take("wind", [&](const Flight& flight) { return why_no_wind(flight, model); });
+  Choice choice(model);
+  for (const std::filesystem::path& flight : flights) choice.look_at(Flight(flight));
   return choice.finish();
 }
 

@@ -10,6 +10,7 @@ import hashlib
 import json
 import os
 import re
+import resource
 import shutil
 import signal
 import subprocess
@@ -257,6 +258,22 @@ class Stale(ManyFlights):
         with netCDF4.Dataset(self.path / "out.nc") as output:
             self.assertEqual(output.pcor_input_sha256, hashlib.sha256(flight.read_bytes()).hexdigest())
             self.assertEqual(output.pcor_model_sha256, hashlib.sha256(output.pcor_model_toml.encode()).hexdigest())
+
+
+class OpenFiles(ManyFlights):
+    def test_flights_are_not_held_open_together(self):
+        """A program may have few files open; each flight also holds several MB of the HDF5 library then."""
+        flight = self.path / "0.nc"
+        self.run_tool("simulate", SOURCE / "data/scenarios/c130-short.toml", "-o", flight)
+        flights = [flight] + [Path(shutil.copy(flight, self.path / f"{number}.nc")) for number in range(1, 40)]
+
+        def few_files():
+            resource.setrlimit(resource.RLIMIT_NOFILE, (24, 24))
+
+        for command in (["compare"], ["refit", "-o", self.path / "fitted.toml", "--force"], ["inspect"]):
+            model = [] if command == ["inspect"] else ["-m", SOURCE / "data/scenarios/models/c130-psfd-eq18.toml"]
+            result = self.run_tool(*command, *flights, *model, preexec_fn=few_files)
+            self.assertEqual(result.returncode, 0, result.stderr)
 
 
 class ModelNames(ManyFlights):
