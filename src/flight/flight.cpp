@@ -17,6 +17,7 @@
 #include "flight/absent_variable.hpp"
 #include "flight/file_in_hand.hpp"
 #include "flight/flight_file.hpp"
+#include "flight/status_flags.hpp"
 #include "flight/time_source.hpp"
 
 namespace pcor {
@@ -42,6 +43,7 @@ struct Variable {
   std::vector<double> missing_values;  // as numbers of the stored type
   std::array<double, 2> valid_range;   // of these
   UnitConversion unpacking;            // scale_factor and add_offset
+  std::optional<StatusFlags> flags;    // what its file calls unusable
   std::optional<Error> refusal;        // of one whose numbers cannot be told
 };
 
@@ -73,6 +75,8 @@ void describe_numbers(const FlightFile& file, Variable& variable) {
   variable.valid_range = file.valid_range(variable.id);
   variable.unpacking = {packing_number(file, variable.id, "scale_factor", 1),
                         packing_number(file, variable.id, "add_offset", 0)};
+  variable.flags = StatusFlags::of(file, variable.id);
+  if (variable.flags) variable.info.flags = file.variable_name(variable.flags->variable());
 }
 
 Variable describe(const FlightFile& file, int id, int time_dimension) {
@@ -160,6 +164,7 @@ struct Flight::Implementation {
   std::vector<Variable> variables;  // in the order of `names`
   std::unordered_map<std::string, std::size_t> index;
   std::vector<double> scratch;
+  std::vector<double> flags;
 
   Implementation(std::unique_ptr<FlightFile> opened, TimeStamp stamp)
       : file(std::move(opened)),
@@ -262,7 +267,12 @@ struct Flight::Implementation {
   void read(Variable& variable, RecordBlock block, double* out) {
     if (variable.refusal) throw Error(*variable.refusal);
     read_stored(variable, block, out);
-    clean(variable, block.count * static_cast<std::size_t>(variable.info.rate), out);
+    const std::size_t count = block.count * static_cast<std::size_t>(variable.info.rate);
+    clean(variable, count, out);
+    if (!variable.flags || count == 0) return;
+    flags.resize(count);
+    file->read(variable.flags->variable(), block, flags.data());
+    for (std::size_t i = 0; i < count; ++i) out[i] = variable.flags->unusable(flags[i]) ? missing : out[i];
   }
 
   // Records at which seconds of the day began again are known after the scan; until then it adds them itself.

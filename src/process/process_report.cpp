@@ -47,7 +47,8 @@ Series own_static_pressure(const Flight& input) {
     const std::string stated = family.unit_of(pair.static_pressure);
     if (has_values(input, pair.static_pressure, "hPa", stated))
       return read_values(input, pair.static_pressure,
-                         input.conversion(pair.static_pressure, "hPa", "", stated));
+                         input.conversion(pair.static_pressure, "hPa", "", stated))
+          .values;
   }
   return {};
 }
@@ -72,7 +73,7 @@ class Outputs {
     for (std::size_t i = 0; i < shown.size(); ++i) {
       const std::string name = processed.model.output_name(shown[i].standard_name) + suffix_;
       Series values;
-      if (output.has(name)) values = read_values(output, name, output.conversion(name, shown[i].unit));
+      if (output.has(name)) values = read_values(output, name, output.conversion(name, shown[i].unit)).values;
       append(columns_[i], values);
     }
     Series difference = own_static_pressure(Flight(processed.input));

@@ -1,6 +1,7 @@
 #include "roles/model_inputs.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -81,7 +82,15 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelFile& file
         fmt::format("a formula takes {} in {}", name, unit.empty() ? "no unit: the file gives none" : unit));
     inputs.push_back({name, extra_quantity(i), UnitConversion()});
   }
-  for (const ModelInput& input : inputs) flight.require_values(input.variable);
+  std::vector<std::string> flagged;
+  for (const ModelInput& input : inputs) {
+    flight.require_values(input.variable);
+    if (!flight.variable(input.variable).flags.empty()) flagged.push_back(input.variable);
+  }
+  if (!flagged.empty()) {
+    notes.push_back(fmt::format("samples that flags of the file call bad or missing count as missing: of {}",
+                                fmt::join(flagged, ", ")));
+  }
   return inputs;
 }
 

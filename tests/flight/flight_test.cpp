@@ -734,6 +734,42 @@ TEST_F(FlightTest, WhatAConversionCallsImpossibleIsCountedAndTakesNoPartInAMean)
               ElementsAre(DoubleEq(80.1), DoubleEq(80.6), testing::_, testing::_, testing::_, testing::_));
 }
 
+TEST_F(FlightTest, WhatFlagsOfTheFileCallUnusableIsMissing) {
+  {
+    NetcdfMaker file(path());
+    file.time({0, 1, 2, 3});
+    const auto series = [&](const std::string& name, int type, const std::vector<double>& values) {
+      const int variable = file.variable(name, type, {file.time_dimension});
+      file.values(variable, values);
+      return variable;
+    };
+    for (const char* name : {"VALUES", "MASKS", "HARMLESS"}) series(name, NC_FLOAT, {1, 2, 3, 4});
+    file.text(series("NAMED", NC_FLOAT, {1, 2, 3, 4}), "ancillary_variables", "NOT_THERE QUALITY");
+    // As FAAM writes them: the worse the higher, and -128 for no flag.
+    const int values = series("VALUES_FLAG", NC_BYTE, {0, 1, 3, -128});
+    file.numbers(values, "flag_values", NC_BYTE, {0, 1, 2, 3});
+    file.text(values, "flag_meanings",
+              "data_good possible_minor_issues possible_major_issues data_bad_or_missing");
+    // Bits, of which the highest is the sign.
+    const int masks = series("MASKS_FLAG", NC_BYTE, {1, 2, 3, -128});
+    file.numbers(masks, "flag_masks", NC_BYTE, {1, 2, -128});
+    file.text(masks, "flag_meanings", "aircraft_on_ground data_out_of_range data_missing");
+    const int named = series("QUALITY", NC_INT, {0, 7, 0, 7});
+    file.numbers(named, "flag_values", NC_INT, {0, 7});
+    file.text(named, "flag_meanings", "good bad");
+    const int harmless = series("HARMLESS_FLAG", NC_BYTE, {1, 1, 1, 1});
+    file.numbers(harmless, "flag_values", NC_BYTE, {1});
+    file.text(harmless, "flag_meanings", "badger_on_board");
+  }
+  EXPECT_THAT(read("VALUES"), ElementsAre(1, 2, IsNan(), 4));
+  EXPECT_THAT(read("MASKS"), ElementsAre(1, IsNan(), IsNan(), IsNan()));
+  EXPECT_THAT(read("NAMED"), ElementsAre(1, IsNan(), 3, IsNan()));
+  EXPECT_THAT(read("HARMLESS"), ElementsAre(1, 2, 3, 4));
+  const Flight flight(path());
+  EXPECT_EQ(flight.variable("NAMED").flags, "QUALITY");
+  EXPECT_EQ(flight.variable("HARMLESS").flags, "");
+}
+
 TEST_F(FlightTest, AVariableThatIsMissingThroughoutIsAnErrorWhenRequired) {
   {
     NetcdfMaker maker(path());

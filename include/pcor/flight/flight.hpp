@@ -39,7 +39,8 @@ struct VariableInfo {
   int rate = 0;            ///< samples per record: 1, or N of (Time, spsN); 0 if not a time series
   std::vector<std::string> dimensions;
   std::vector<std::pair<std::string, std::string>> attributes;  ///< all of them as text, without trailing NUL
-  std::optional<std::array<double, 2>> modulus_range;           ///< of an angle: where it starts again
+  std::string flags;  ///< the variable of flags that calls samples unusable, which are missing then; or empty
+  std::optional<std::array<double, 2>> modulus_range;  ///< of an angle: where it starts again
 };
 
 /// The attribute Category of what a simulated flight holds beside what was recorded: what really was.
@@ -74,9 +75,10 @@ enum class TimeStamp { begin, middle };
 ///
 /// All reading is by blocks of records. Missing values, however the file marks them (`_FillValue`,
 /// `missing_value`, `MissingValue`, the default fill value, -32767 in a file that marks none, NaN, what
-/// `valid_range`, `valid_min` and `valid_max` leave out, 1e30 and more), become NaN. `scale_factor`,
-/// `add_offset` and `_Unsigned` are applied. Objects of this class are not for use by several
-/// threads at once, nor are two of them: the netCDF library is not made for it.
+/// `valid_range`, `valid_min` and `valid_max` leave out, 1e30 and more, what flags beside the variable call
+/// bad or missing, see `VariableInfo::flags`), become NaN. `scale_factor`, `add_offset` and `_Unsigned` are
+/// applied. Objects of this class are not for use by several threads at once, nor are two of them: the netCDF
+/// library is not made for it.
 class Flight {
  public:
   /// Opens the file and checks its time axis.
