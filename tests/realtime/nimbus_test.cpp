@@ -509,6 +509,19 @@ TEST(NimbusDefaults, ReplaceCoefficientsByName) {
   EXPECT_THAT(radome.effects[1].parameters, ElementsAre(0.15));
 }
 
+TEST(NimbusDefaults, AreFoundInCapitalsAsNimbusKeepsThem) {
+  const Defaults defaults(
+      "PCOR.STATIC-CONSTANT.A0 1 0.005\n"
+      "PCOR.STATIC-QP.A2 1 -0.25\n"
+      "PCOR.STATIC-QP.A9 1 7\n");
+  const auto find = [&defaults](const char* name) { return defaults.value(name); };
+  Model fuselage = fuselage_model();
+  EXPECT_EQ(pcor::read_defaults(fuselage, "PCOR", find), 2U);
+  EXPECT_THAT(fuselage.effects[0].parameters, ElementsAre(static_cast<double>(0.005F)));
+  EXPECT_THAT(fuselage.effects[2].parameters, ElementsAre(-0.25));
+  EXPECT_THAT(pcor::unread_defaults(fuselage, "PCOR", defaults.names()), ElementsAre("PCOR.STATIC-QP.A9"));
+}
+
 TEST(NimbusDefaults, NameEveryCoefficientOnce) {
   Model model = radome_model();
   pcor::ModelEffect formula;

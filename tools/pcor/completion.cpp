@@ -161,6 +161,51 @@ _pcor "$@"
                      zsh_arguments(program), commands, cases);
 }
 
+/// `text` in single quotes as fish reads them.
+std::string in_fish_quotes(const std::string& text) {
+  return "'" + CLI::detail::find_and_replace(CLI::detail::find_and_replace(text, "\\", "\\\\"), "'", "\\'") +
+         "'";
+}
+
+/// What fish offers: the arguments of its `complete`.
+std::string fish_offer(const Offer& offer) {
+  if (!offer.words.empty()) {
+    std::vector<std::string> words;
+    for (const std::string& word : offer.words) words.push_back(in_fish_quotes(word));
+    return fmt::format(" -fa {}", in_fish_quotes(fmt::format("{}", fmt::join(words, " "))));
+  }
+  if (offer.files.empty()) return "";
+  return offer.files == "*"
+             ? " -F"
+             : fmt::format(" -fka '(__fish_complete_suffix {})'", offer.files.substr(offer.files.find('.')));
+}
+
+std::string fish_completion(const CLI::App& program) {
+  std::string text =
+      "# Completion of pcor for fish, written by 'pcor completion fish'.\n"
+      "complete -c pcor -f\n";
+  const auto add_options = [&text](const CLI::App& of, const std::string& where) {
+    for (const CLI::Option* option : shown_options(of)) {
+      text += "complete -c pcor -n " + where;
+      for (const std::string& name : names_of(*option))
+        text += name[1] == '-' ? " -l " + name.substr(2) : " -s " + name.substr(1);
+      if (!value_name(*option).empty()) text += " -r" + fish_offer(offer_of(*option));
+      text += " -d " + in_fish_quotes(brief(*option)) + "\n";
+    }
+  };
+  add_options(program, "__fish_use_subcommand");
+  for (const CLI::App* command : shown_commands(program)) {
+    const std::string& name = command->get_name();
+    text += fmt::format("complete -c pcor -n __fish_use_subcommand -a {} -d {}\n", name,
+                        in_fish_quotes(command->get_description()));
+    const std::string where = in_fish_quotes("__fish_seen_subcommand_from " + name);
+    add_options(*command, where);
+    if (const CLI::Option* const positional = positional_of(*command))
+      text += fmt::format("complete -c pcor -n {}{}\n", where, fish_offer(offer_of(*positional)));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::function<void()> add_completion(CLI::App& program) {
@@ -168,9 +213,13 @@ std::function<void()> add_completion(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("completion", "Print what makes a shell complete the words of pcor");
   command->group("");  // for those who package the program, so the help does not show it
-  command->add_option("shell", *shell, "the shell")->required()->check(CLI::IsMember({"bash", "zsh"}));
+  command->add_option("shell", *shell, "the shell")
+      ->required()
+      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
   return [shell, &program] {
-    fmt::print("{}", *shell == "bash" ? bash_completion(program) : zsh_completion(program));
+    fmt::print("{}", *shell == "bash"  ? bash_completion(program)
+                     : *shell == "zsh" ? zsh_completion(program)
+                                       : fish_completion(program));
   };
 }
 

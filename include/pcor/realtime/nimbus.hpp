@@ -180,15 +180,24 @@ inline std::vector<std::string> default_keys(const Model& model, const std::stri
   return keys;
 }
 
-/// Replaces the coefficients of `model` that a defaults file names, and returns how many. `find(key)`, with a
-/// `const char*`, gives a pointer to the value (`const float*` or `const double*`), or null where the file
-/// does not have it. A `float` holds seven digits.
+/// A name in capitals, as nimbus keeps those of its defaults file.
+inline std::string in_capitals(std::string name) {
+  for (char& letter : name)
+    letter = letter >= 'a' && letter <= 'z' ? static_cast<char>(letter - 'a' + 'A') : letter;
+  return name;
+}
+
+/// Replaces the coefficients of `model` that a defaults file names, as they are spelled or in capitals, and
+/// returns how many. `find(key)`, with a `const char*`, gives a pointer to the value (`const float*` or
+/// `const double*`), or null where the file does not have it. A `float` holds seven digits.
 template <class Find>
 std::size_t read_defaults(Model& model, const std::string& prefix, Find find) {
   std::size_t replaced = 0;
   for (ModelEffect& effect : model.effects) {
     for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
-      const auto* const value = find(default_key(prefix, effect, i).c_str());
+      const std::string key = default_key(prefix, effect, i);
+      const auto* value = find(key.c_str());
+      if (value == nullptr) value = find(in_capitals(key).c_str());
       if (value == nullptr) continue;
       effect.parameters[i] = static_cast<double>(*value);
       ++replaced;
@@ -198,14 +207,16 @@ std::size_t read_defaults(Model& model, const std::string& prefix, Find find) {
 }
 
 /// Those of the names `keys` of a defaults file that begin with `prefix` and a point and are no coefficient
-/// of `model`: overrides that nothing reads. A host reports them.
+/// of `model`, in whatever case: overrides that nothing reads. A host reports them, and does not go on.
 inline std::vector<std::string> unread_defaults(const Model& model, const std::string& prefix,
                                                 const std::vector<std::string>& keys) {
-  const std::vector<std::string> known = default_keys(model, prefix);
+  std::vector<std::string> known = default_keys(model, prefix);
+  std::transform(known.begin(), known.end(), known.begin(), in_capitals);
   std::vector<std::string> unread;
   for (const std::string& key : keys) {
-    const bool is_ours = key.rfind(prefix + ".", 0) == 0;
-    if (is_ours && std::find(known.begin(), known.end(), key) == known.end()) unread.push_back(key);
+    const bool is_ours = in_capitals(key).rfind(in_capitals(prefix) + ".", 0) == 0;
+    if (is_ours && std::find(known.begin(), known.end(), in_capitals(key)) == known.end())
+      unread.push_back(key);
   }
   return unread;
 }
