@@ -258,7 +258,9 @@ RefitResult fit(const Sources& sources, const ModelFile& model, const References
   const Reference& reference = first_of(references);
   require_sense(sources, reference, options);
   require_one_kind(sources, options);
-  const FitTask task = task_of(model, references, options);
+  RefitOptions shared = options;
+  shared.memory /= references.size();  // each keeps samples of its own
+  const FitTask task = task_of(model, references, shared);
   const Fitted fitted = fit_in_stages(sources, task);
   const Solution& solution = fitted.solution;
   FitFlights& flights = *fitted.flights;
