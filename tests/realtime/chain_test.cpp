@@ -69,7 +69,7 @@ Sample fly(const Chain& chain, const Recorded& recorded) {
     state[Quantity::lams_static_defect] = chain.lams_static_defect(state, parameters, flags);
   chain.correct(state, state[Quantity::static_defect], flags);
   chain.air(state, parameters, flags);
-  if (chain.has_lams()) chain.lams_air(state, parameters);
+  if (chain.has_lams()) chain.lams_air(state, parameters, flags);
   return sample;
 }
 
@@ -547,7 +547,7 @@ TEST(Lams, WithItsOwnCorrectionReturnsItsAirspeedAndTheThermometersTemperature) 
   Sample s = fly(chain, warm);
   chain.correct(s.state, s[Quantity::lams_static_defect], s.flags);
   chain.air(s.state, chain.parameters().data(), s.flags);
-  chain.lams_air(s.state, chain.parameters().data());
+  chain.lams_air(s.state, chain.parameters().data(), s.flags);
   EXPECT_NEAR(s[Quantity::corrected_airspeed], truth.v, 1e-9);
   EXPECT_NEAR(s[Quantity::lams_temperature], s[Quantity::ambient_temperature], 5e-9);
 }
@@ -1122,7 +1122,7 @@ TEST(Chain, CompilesForAScalarThatIsNoDouble) {
     state[Quantity::lams_static_defect] = chain.lams_static_defect(state, parameters.data(), none);
     chain.correct(state, state[Quantity::static_defect], none);
     chain.air(state, parameters.data(), none);
-    chain.lams_air(state, parameters.data());
+    chain.lams_air(state, parameters.data(), none);
     // A power by exp and log instead of pow: 1e-15 of a pressure ratio, amplified by p/q.
     for (const Quantity quantity :
          {Quantity::static_defect, Quantity::lams_static_defect, Quantity::corrected_static_pressure,

@@ -202,7 +202,7 @@ State<S> run(const Chain& chain, const std::vector<S>& parameters) {
   state[Quantity::lams_static_defect] = chain.lams_static_defect(state, parameters.data(), none);
   chain.correct(state, state[Quantity::static_defect], none);
   chain.air(state, parameters.data(), none);
-  chain.lams_air(state, parameters.data());
+  chain.lams_air(state, parameters.data(), none);
   return state;
 }
 

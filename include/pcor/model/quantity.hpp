@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string_view>
 
 namespace pcor {
@@ -98,58 +99,67 @@ constexpr Quantity extra_quantity(std::size_t number) {
 }
 constexpr std::size_t extra_number(Quantity quantity) { return index(quantity) - quantity_count - 1; }
 
-/// What a quantity is called, its unit inside the library, and what it is.
+/// What a quantity is called, its unit inside the library, what it is, and between which values it is
+/// believed: wide limits, which no flight comes near, and beyond which a value is not of this world but of a
+/// fault.
 struct QuantityFacts {
   std::string_view name;
   std::string_view unit;
   std::string_view description;
   Quantity quantity = Quantity::count;
+  double least = std::numeric_limits<double>::lowest();
+  double most = std::numeric_limits<double>::max();
 };
 
 /// The facts of every quantity, in the order of the enumeration.
 inline constexpr std::array<QuantityFacts, quantity_count> quantity_facts{{
-    {"static_pressure", "hPa", "static pressure as measured, p_m", Quantity::static_pressure},
-    {"dynamic_pressure", "hPa", "dynamic pressure as measured, q_m", Quantity::dynamic_pressure},
+    {"static_pressure", "hPa", "static pressure as measured, p_m", Quantity::static_pressure, -2000.0,
+     2000.0},
+    {"dynamic_pressure", "hPa", "dynamic pressure as measured, q_m", Quantity::dynamic_pressure, -2000.0,
+     2000.0},
     {"recovery_temperature", "K", "temperature that a thermometer in the airstream shows, T_r",
-     Quantity::recovery_temperature},
-    {"ambient_temperature", "K", "temperature of the undisturbed air, T", Quantity::ambient_temperature},
-    {"vapor_pressure", "hPa", "water vapour pressure, e", Quantity::vapor_pressure},
+     Quantity::recovery_temperature, 100.0, 1000.0},
+    {"ambient_temperature", "K", "temperature of the undisturbed air, T", Quantity::ambient_temperature,
+     100.0, 400.0},
+    {"vapor_pressure", "hPa", "water vapour pressure, e", Quantity::vapor_pressure, -2000.0, 2000.0},
     {"dew_point", "K", "dew point: where the vapour would saturate over water, at any temperature",
-     Quantity::dew_point},
+     Quantity::dew_point, 50.0, 500.0},
     {"frost_point", "K", "temperature of a chilled mirror: over ice below the ice point, over water above",
-     Quantity::frost_point},
+     Quantity::frost_point, 50.0, 500.0},
     {"radome_dynamic_pressure", "hPa", "dynamic pressure at the centre of the radome, QCR",
-     Quantity::radome_dynamic_pressure},
+     Quantity::radome_dynamic_pressure, -2000.0, 2000.0},
     {"attack_differential_pressure", "hPa", "vertical differential pressure of the radome, ADIFR",
-     Quantity::attack_differential_pressure},
+     Quantity::attack_differential_pressure, -2000.0, 2000.0},
     {"sideslip_differential_pressure", "hPa", "horizontal differential pressure of the radome, BDIFR",
-     Quantity::sideslip_differential_pressure},
-    {"attack", "deg", "angle of attack, alpha", Quantity::attack},
-    {"sideslip", "deg", "sideslip, beta, positive for wind from starboard", Quantity::sideslip},
-    {"lams_airspeed", "m/s", "airspeed along the laser beam, v_L", Quantity::lams_airspeed},
+     Quantity::sideslip_differential_pressure, -2000.0, 2000.0},
+    {"attack", "deg", "angle of attack, alpha", Quantity::attack, -180.0, 180.0},
+    {"sideslip", "deg", "sideslip, beta, positive for wind from starboard", Quantity::sideslip, -180.0,
+     180.0},
+    {"lams_airspeed", "m/s", "airspeed along the laser beam, v_L", Quantity::lams_airspeed, -1500.0, 1500.0},
     {"mach", "1", "Mach number in the laws: an independent one, else from the measured pair in dry air",
-     Quantity::mach},
-    {"true_airspeed", "m/s", "true airspeed of the recording system", Quantity::true_airspeed},
-    {"altitude", "m", "GPS altitude", Quantity::altitude},
-    {"vertical_speed", "m/s", "vertical speed of the aircraft", Quantity::vertical_speed},
-    {"latitude", "deg", "latitude, north positive", Quantity::latitude},
-    {"pitch", "deg", "pitch, nose up positive", Quantity::pitch},
-    {"roll", "deg", "roll, starboard wing down positive", Quantity::roll},
-    {"heading", "deg", "true heading", Quantity::heading},
-    {"ground_speed", "m/s", "ground speed", Quantity::ground_speed},
-    {"ground_track", "deg", "true ground track", Quantity::ground_track},
+     Quantity::mach, -3.0, 3.0},
+    {"true_airspeed", "m/s", "true airspeed of the recording system", Quantity::true_airspeed, -1500.0,
+     1500.0},
+    {"altitude", "m", "GPS altitude", Quantity::altitude, -5000.0, 100000},
+    {"vertical_speed", "m/s", "vertical speed of the aircraft", Quantity::vertical_speed, -1500.0, 1500.0},
+    {"latitude", "deg", "latitude, north positive", Quantity::latitude, -90.0, 90.0},
+    {"pitch", "deg", "pitch, nose up positive", Quantity::pitch, -360.0, 360.0},
+    {"roll", "deg", "roll, starboard wing down positive", Quantity::roll, -360.0, 360.0},
+    {"heading", "deg", "true heading", Quantity::heading, -720.0, 720.0},
+    {"ground_speed", "m/s", "ground speed", Quantity::ground_speed, -1500.0, 1500.0},
+    {"ground_track", "deg", "true ground track", Quantity::ground_track, -720.0, 720.0},
     {"normal_acceleration", "m/s2", "acceleration along the normal axis, up positive, without gravity",
-     Quantity::normal_acceleration},
+     Quantity::normal_acceleration, -1000.0, 1000.0},
     {"longitudinal_acceleration", "m/s2",
      "acceleration along the longitudinal axis, forward positive, as an accelerometer shows it",
-     Quantity::longitudinal_acceleration},
+     Quantity::longitudinal_acceleration, -1000.0, 1000.0},
     {"flaps", "percent", "flap position", Quantity::flaps},
     {"engine_torque", "percent", "torque of the engines", Quantity::engine_torque},
-    {"height_above_ground", "m", "height above the ground", Quantity::height_above_ground},
-    {"liquid_water", "g/m3", "liquid water content", Quantity::liquid_water},
+    {"height_above_ground", "m", "height above the ground", Quantity::height_above_ground, -100000, 100000},
+    {"liquid_water", "g/m3", "liquid water content", Quantity::liquid_water, -1000.0, 1000.0},
     {"transducer_temperature", "K", "temperature of the pressure transducers",
-     Quantity::transducer_temperature},
-    {"cabin_pressure", "hPa", "cabin pressure", Quantity::cabin_pressure},
+     Quantity::transducer_temperature, 100.0, 1000.0},
+    {"cabin_pressure", "hPa", "cabin pressure", Quantity::cabin_pressure, -2000.0, 2000.0},
     {"date", "days since 2000-01-01", "date and time of the sample, UTC", Quantity::date},
 
     {"time", "s", "time since the first record", Quantity::time},
@@ -176,16 +186,19 @@ inline constexpr std::array<QuantityFacts, quantity_count> quantity_facts{{
 
     {"static_defect", "hPa", "delta-p of the model, added to the static pressure", Quantity::static_defect},
     {"lams_static_defect", "hPa", "delta-p from LAMS", Quantity::lams_static_defect},
-    {"corrected_static_pressure", "hPa", "corrected static pressure, p", Quantity::corrected_static_pressure},
+    {"corrected_static_pressure", "hPa", "corrected static pressure, p", Quantity::corrected_static_pressure,
+     1.0, 2000.0},
     {"corrected_dynamic_pressure", "hPa", "corrected dynamic pressure, q",
-     Quantity::corrected_dynamic_pressure},
+     Quantity::corrected_dynamic_pressure, 0.0, 2000.0},
     {"humidity", "1", "water vapour pressure over static pressure, e/p, not above saturation",
      Quantity::humidity},
-    {"corrected_mach", "1", "Mach number from the corrected pressures", Quantity::corrected_mach},
-    {"corrected_airspeed", "m/s", "true airspeed from the corrected pressures", Quantity::corrected_airspeed},
+    {"corrected_mach", "1", "Mach number from the corrected pressures", Quantity::corrected_mach, 0.0, 3.0},
+    {"corrected_airspeed", "m/s", "true airspeed from the corrected pressures", Quantity::corrected_airspeed,
+     0.0, 1500.0},
     {"lams_temperature", "K", "ambient temperature from LAMS without a thermometer",
-     Quantity::lams_temperature},
-    {"lams_dynamic_pressure", "hPa", "dynamic pressure from LAMS", Quantity::lams_dynamic_pressure},
+     Quantity::lams_temperature, 100.0, 400.0},
+    {"lams_dynamic_pressure", "hPa", "dynamic pressure from LAMS", Quantity::lams_dynamic_pressure, 0.0,
+     2000.0},
     {"filtered_lams_temperature", "K",
      "ambient temperature from LAMS without periods under 3 s, half a window ago",
      Quantity::filtered_lams_temperature},

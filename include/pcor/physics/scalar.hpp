@@ -5,6 +5,10 @@
 #include <type_traits>
 #include <utility>
 
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ != 0)
+#error "pcor finds missing values by NaN: compile without -ffast-math, -ffinite-math-only and -Ofast"
+#endif
+
 namespace pcor {
 
 /// The scalars that the physics is written for.

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include <pcor/model/plausible.hpp>
 #include <pcor/model/quality.hpp>
 #include <pcor/physics/air_data.hpp>
 #include <pcor/physics/humidity.hpp>
@@ -39,15 +40,15 @@ class Chain : public BoundModel {
   }
 
   /// The quantities in which the laws stand, the pressures at the ports, and the calibration of a recorded
-  /// ambient temperature. A recorded value that is infinite is missing from here on.
+  /// ambient temperature. A recorded value that no flight has (`is_implausible`) is missing from here on.
   template <class S, class P, class Flags>
   void measure(State<S>& state, const P* parameters, Flags& flags) const {
-    for (const Quantity input : inputs()) state[input] = finite_or_missing(state[input]);
+    for (const Quantity input : inputs()) drop_implausible(input, state);
     const S p = state[Quantity::static_pressure];
     const S q = state[Quantity::dynamic_pressure];
     flags.set(is_missing(p), Quality::static_pressure_missing);
     flags.set(is_missing(q), Quality::dynamic_pressure_missing);
-    flags.set(p <= S(0.0), Quality::impossible_static_pressure);
+    flags.set(p < S(least_static_pressure), Quality::impossible_static_pressure);
     flags.set(q <= S(0.0), Quality::impossible_dynamic_pressure);
     flags.set(q < S(policy_.least_dynamic_pressure), Quality::no_airflow);
 
@@ -66,7 +67,7 @@ class Chain : public BoundModel {
     add(Where::sideslip, Quantity::sideslip, state, parameters);
     if (calibrates_recorded_temperature()) {
       S& ambient = state[Quantity::ambient_temperature];
-      ambient = calibrated(above_zero(ambient), state, parameters, flags);
+      ambient = calibrated(ambient, state, parameters, flags);
     }
 
     const S line = sum<S>(Where::static_line, state, parameters);
@@ -90,7 +91,7 @@ class Chain : public BoundModel {
     const S p = state[Quantity::static_pressure];
     const S q = state[Quantity::dynamic_pressure];
     R defect = sum<R>(Where::static_defect, state, parameters);
-    const auto flowing = p > S(0.0) && is_flowing(q);
+    const auto flowing = p >= S(least_static_pressure) && is_flowing(q);
     flags.set(flowing && is_missing(defect), Quality::effect_input_missing);
     for (const Range& range : domain_) {
       const S value = state[range.quantity];
@@ -106,41 +107,40 @@ class Chain : public BoundModel {
       flags.set(slow, Quality::tapered);
       if (any(slow)) defect = select(slow, taper(defect, q), defect);
     }
-    const auto exceeds = p > S(0.0) && q > S(0.0) && exceeds_dynamic_pressure(defect, R(q));
+    const auto exceeds =
+        p >= S(least_static_pressure) && q > S(0.0) && exceeds_dynamic_pressure(defect, R(q));
     flags.set(exceeds, Quality::defect_exceeds_dynamic_pressure);
     defect = select(exceeds, missing<R>(), defect);
-    const auto enough = policy_.taper_below > 0.0 ? p > S(0.0) && !is_missing(q) : flowing;
+    const auto enough = policy_.taper_below > 0.0 ? p >= S(least_static_pressure) && !is_missing(q) : flowing;
     return select(enough, defect, missing<R>());
   }
 
-  /// Corrected pressures: p = p_port + delta-p, q = q_port - delta-p (memo eq. 1-3). Their sum stays. A
-  /// negative q is impossible, as where a law is carried on to the ground: NaN.
+  /// Corrected pressures: p = p_port + delta-p, q = q_port - delta-p (memo eq. 1-3). Their sum stays. One
+  /// that is negative, as where a law is carried on to the ground, or beyond all flights, is impossible: NaN.
   template <class S, class Flags>
   void correct(State<S>& state, const S& defect, Flags& flags) const {
-    const S q = state[Quantity::port_dynamic_pressure] - defect;
-    const auto negative = q < S(0.0);
-    flags.set(negative, Quality::impossible_dynamic_pressure);
-    state[Quantity::corrected_static_pressure] = state[Quantity::port_static_pressure] + defect;
-    state[Quantity::corrected_dynamic_pressure] = select(negative, missing<S>(), q);
+    put(Quantity::corrected_static_pressure, S(state[Quantity::port_static_pressure] + defect), state, flags,
+        Quality::impossible_static_pressure);
+    put(Quantity::corrected_dynamic_pressure, S(state[Quantity::port_dynamic_pressure] - defect), state,
+        flags, Quality::impossible_dynamic_pressure);
   }
 
   /// Humidity, Mach number, ambient temperature and airspeed from the corrected pressures. They depend on
   /// each other through the constants of moist air and the limit of saturation over water, so they are found
   /// together. An ambient temperature that is found from the recovery temperature is calibrated here. Where
   /// the corrected dynamic pressure is below the least of the policy, as on the ramp, Mach number and
-  /// airspeed would be those of noise: NaN; the temperature, which such a flow hardly heats, stays.
+  /// airspeed would be those of noise: NaN; the temperature, which such a flow hardly heats, stays. A Mach
+  /// number beyond all flights tells of an impossible pair of pressures.
   template <class S, class P, class Flags>
   void air(State<S>& state, const P* parameters, Flags& flags) const {
     const S p = state[Quantity::corrected_static_pressure];
     const S delta = sum<S>(Where::recovery, state, parameters);
     const S thermometer = recovery_temperature_of(state, parameters);
     if (has_temperature()) {
-      S& ambient = state[Quantity::ambient_temperature];
-      ambient = above_zero(ambient);
+      const S& ambient = state[Quantity::ambient_temperature];
       flags.set(is_missing(derives_temperature() ? thermometer : ambient), Quality::temperature_missing);
       flags.set(is_missing(delta), Quality::effect_input_missing);
     }
-    flags.set(p <= S(0.0), Quality::impossible_static_pressure);
     S humidity = recorded_humidity(state, parameters, p, flags);
     MoistAir<S> constants = solve_air(state, parameters, humidity, thermometer, delta, flags);
     if (limit_to_saturation(humidity, p, state[Quantity::ambient_temperature], flags))
@@ -148,7 +148,8 @@ class Chain : public BoundModel {
     const auto still = state[Quantity::corrected_dynamic_pressure] < S(policy_.least_dynamic_pressure);
     flags.set(still, Quality::no_airflow);
     S& mach = state[Quantity::corrected_mach];
-    mach = select(still, missing<S>(), mach);
+    put(Quantity::corrected_mach, select(still, missing<S>(), mach), state, flags,
+        Quality::impossible_dynamic_pressure);
     state[Quantity::humidity] = humidity;
     state[Quantity::corrected_airspeed] =
         true_airspeed(mach, state[Quantity::ambient_temperature], constants);
@@ -171,7 +172,7 @@ class Chain : public BoundModel {
       solution = solve_lams(p, q, v, e, state, parameters, thermometer, recovery);
     const S found = finite_or_missing(solution.static_defect);
     const auto exceeds = exceeds_dynamic_pressure(found, q);
-    const auto valid = p > S(0.0) && is_flowing(q) && v > S(0.0) && !exceeds;
+    const auto valid = p >= S(least_static_pressure) && is_flowing(q) && v > S(0.0) && !exceeds;
     const S defect = select(valid, found, missing<S>());
     flags.set(is_missing(defect), Quality::lams_missing);
     return defect;
@@ -208,14 +209,19 @@ class Chain : public BoundModel {
 
   /// Ambient temperature (K, eq. 12) and dynamic pressure (hPa, eq. 8) from LAMS and the corrected pressures.
   /// They test the model, not the laser: with pressures corrected by LAMS at this very sample they return
-  /// their inputs.
-  template <class S, class P>
-  void lams_air(State<S>& state, const P* parameters) const {
-    const S v = lams_airspeed(state, parameters);
+  /// their inputs. NaN where the airspeed of the laser is missing, not above zero, or leads beyond all
+  /// flights.
+  template <class S, class P, class Flags>
+  void lams_air(State<S>& state, const P* parameters, Flags& flags) const {
+    const S recorded = lams_airspeed(state, parameters);
+    const S v = select(recorded > S(0.0), recorded, missing<S>());
     const MoistAir<S> constants = moist_air(state[Quantity::humidity]);
-    state[Quantity::lams_temperature] = pcor::lams_temperature(v, state[Quantity::corrected_mach], constants);
-    state[Quantity::lams_dynamic_pressure] = dynamic_pressure_from_airspeed(
-        state[Quantity::corrected_static_pressure], v, state[Quantity::ambient_temperature], constants);
+    put(Quantity::lams_temperature, pcor::lams_temperature(v, state[Quantity::corrected_mach], constants),
+        state, flags, Quality::lams_missing);
+    put(Quantity::lams_dynamic_pressure,
+        dynamic_pressure_from_airspeed(state[Quantity::corrected_static_pressure], v,
+                                       state[Quantity::ambient_temperature], constants),
+        state, flags, Quality::lams_missing);
   }
 
   /// The part of the effects at the static ports that the taper leaves of delta-p: 1 without one.
@@ -268,10 +274,29 @@ class Chain : public BoundModel {
   }
 
  private:
+  // hPa: that of 48 km height, and far less than any sensor resolves. A ratio to less than that says nothing.
+  static constexpr double least_static_pressure = 1.0;
+  static constexpr double least_radome_pressure = 1e-6;
+
   explicit Chain(BoundModel bound) : BoundModel(std::move(bound)) {}
 
   static std::optional<Chain> made(std::optional<BoundModel> bound) {
     return bound ? std::optional<Chain>(Chain(std::move(*bound))) : std::nullopt;
+  }
+
+  // Takes a value that no flight has out of the state. True where it did.
+  template <class S>
+  static auto drop_implausible(Quantity quantity, State<S>& state) {
+    const auto implausible = is_implausible(quantity, state[quantity]);
+    if (any(implausible)) state[quantity] = select(implausible, missing<S>(), state[quantity]);
+    return implausible;
+  }
+
+  // Puts a result into the state; one that no flight has is missing, and sets the bit.
+  template <class S, class Flags>
+  static void put(Quantity quantity, const S& value, State<S>& state, Flags& flags, Quality bit) {
+    state[quantity] = value;
+    flags.set(drop_implausible(quantity, state), bit);
   }
 
   template <class S, class P>
@@ -307,15 +332,15 @@ class Chain : public BoundModel {
   template <class S, class Flags>
   void radome_ratios(State<S>& state, Flags& flags) const {
     const S q = state[Quantity::radome_dynamic_pressure];
-    const auto flowing = q > S(0.0);
-    flags.set(q <= S(0.0), Quality::impossible_radome_pressure);
+    const auto still = q < S(least_radome_pressure);
+    flags.set(still, Quality::impossible_radome_pressure);
     if (needs(Quantity::attack_ratio)) {
       state[Quantity::attack_ratio] =
-          select(flowing, state[Quantity::attack_differential_pressure] / q, missing<S>());
+          select(still, missing<S>(), S(state[Quantity::attack_differential_pressure] / q));
     }
     if (needs(Quantity::sideslip_ratio)) {
       state[Quantity::sideslip_ratio] =
-          select(flowing, state[Quantity::sideslip_differential_pressure] / q, missing<S>());
+          select(still, missing<S>(), S(state[Quantity::sideslip_differential_pressure] / q));
     }
   }
 
@@ -345,13 +370,8 @@ class Chain : public BoundModel {
 
   template <class S, class P>
   S recovery_temperature_of(const State<S>& state, const P* parameters) const {
-    return above_zero(state[Quantity::recovery_temperature] + sum<S>(Where::temperature, state, parameters));
-  }
-
-  // No temperature is zero kelvin or below.
-  template <class S>
-  static S above_zero(const S& temperature) {
-    return select(temperature > S(0.0), temperature, missing<S>());
+    const S sensed = state[Quantity::recovery_temperature] + sum<S>(Where::temperature, state, parameters);
+    return plausible_or_missing(Quantity::recovery_temperature, sensed);
   }
 
   // Vapour pressure as recorded, hPa; a dew point gives one at static pressure p.
@@ -406,7 +426,9 @@ class Chain : public BoundModel {
     here[Quantity::ambient_temperature] = temperature;
     const S change = sum<S>(Where::ambient_temperature, here, parameters);
     flags.set(is_missing(change) && !is_missing(temperature), Quality::effect_input_missing);
-    return above_zero(S(temperature + change));
+    const S calibrated = temperature + change;
+    flags.set(is_implausible(Quantity::ambient_temperature, calibrated), Quality::temperature_missing);
+    return plausible_or_missing(Quantity::ambient_temperature, calibrated);
   }
 
   // The same as a function of the temperature alone.
@@ -446,7 +468,9 @@ class Chain : public BoundModel {
     state[Quantity::corrected_mach] = mach;
     if (derives_temperature()) {
       S& ambient = state[Quantity::ambient_temperature];
-      ambient = ambient_temperature(thermometer, mach, recovery_(mach) + delta, constants);
+      put(Quantity::ambient_temperature,
+          ambient_temperature(thermometer, mach, S(recovery_(mach) + delta), constants), state, flags,
+          Quality::temperature_missing);
       if (acts(Where::ambient_temperature)) ambient = calibrated(ambient, state, parameters, flags);
     }
     return constants;

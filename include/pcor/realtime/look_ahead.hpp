@@ -68,8 +68,9 @@ class LookAhead {
     const std::size_t length = before_ + 1 + delay_;
     for (Change& change : changes_) {
       // Each value is kept twice, so that the window lies in one piece, the oldest first.
-      const double value = change.of == Quantity::corrected_airspeed ? airspeed_along_beam(state)
-                                                                     : finite_or_missing(state[change.of]);
+      const double value = change.of == Quantity::corrected_airspeed
+                               ? airspeed_along_beam(state)
+                               : plausible_or_missing(change.of, state[change.of]);
       change.values[next_] = change.values[next_ + length] = value;
     }
     next_ = (next_ + 1) % length;

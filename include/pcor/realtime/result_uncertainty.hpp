@@ -390,13 +390,17 @@ class ResultUncertainty final : public Functor {
     add_random(sensitivity, state, fraction, variance);
     for (std::size_t i = 0; i < found_.size(); ++i) found_[i] = std::sqrt(variance[i]);
     const double of_temperature = chain_->has_temperature() ? found_[3] + found_[4] : 0.0;
-    is_complete_ = !is_missing(found_[0] + found_[1] + found_[2] + of_temperature);
+    is_complete_ = is_finite(found_[0] + found_[1] + found_[2] + of_temperature);
   }
 
   // `fraction` is what the taper leaves of the effects at the static ports.
   void add_systematic(const Sensitivity& sensitivity, const State<double>& state, double fraction,
                       Results& variance) noexcept {
-    for (Coefficient& each : coefficients_) each.shape = shape_of(each, state);
+    for (Coefficient& each : coefficients_) {
+      each.shape = shape_of(each, state);
+      // Without a humidity the air counts as dry.
+      if (chain_->where_of(each.effect) == Where::humidity && is_missing(each.shape)) each.shape = 0.0;
+    }
     for (Place& place : places_) {
       const Quantity source = source_of(place.where);
       Changes changes;
@@ -496,7 +500,7 @@ class ResultUncertainty final : public Functor {
   std::vector<double> covariance_;  // of the coefficients, in their order
   std::vector<Noise> noises_;
   Results found_{};
-  bool is_complete_ = false;  // none is missing
+  bool is_complete_ = false;  // all are finite
   double time_ = 0.0;         // of the sample that they were found at
   double static_pressure_ = 0.0;
   double dynamic_pressure_ = 0.0;

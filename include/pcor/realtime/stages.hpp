@@ -234,8 +234,8 @@ struct LamsAir {
   }
 
   template <class S, class P, class Flags>
-  static void compute(const Correction& correction, State<S>& state, const P* parameters, Flags&) {
-    correction.chain.lams_air(state, parameters);
+  static void compute(const Correction& correction, State<S>& state, const P* parameters, Flags& flags) {
+    correction.chain.lams_air(state, parameters, flags);
   }
 };
 
