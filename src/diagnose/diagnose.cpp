@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <set>
 
@@ -383,7 +382,6 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
       std::count_if(set.candidates.begin(), set.candidates.end(),
                     [](const Candidate& candidate) { return !candidate.is_variant; }));
 
-  const auto started = std::chrono::steady_clock::now();
   const Analysis analysis(std::move(columns), groups_of(model, set.candidates), options.seed,
                           options.explained);
   diagnosis.threshold = analysis.result().threshold;
@@ -396,8 +394,6 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
   diagnosis.residual_rms = rms_of(diagnosis.flights, &FlightDiagnosis::before);
   diagnosis.residual_rms_held_out = analysis.held_out({}).rms;
   diagnosis.noise_rms_with_findings = noise_with_findings(diagnosis.flights);
-  diagnosis.statistics_seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   const double rms_after = rms_of(diagnosis.flights, &FlightDiagnosis::after);
   UnexplainedStructure structure =
       find_unexplained(analysis, files, model, references, inputs_of(diagnosis.findings, set.extended),

@@ -153,7 +153,7 @@ class Add(DiagnosisTest):
 class Diagnose(DiagnosisTest):
     def assert_has_the_keys(self, result):
         keys = {"verdict", "findings", "unexplained", "residual_rms_hpa", "noise_rms_hpa", "samples", "absorbed",
-                "limits", "not_testable", "notes", "statistics_seconds", "threshold"}
+                "limits", "not_testable", "notes", "threshold"}
         self.assertLessEqual(keys, set(result))
         self.assertLessEqual({"significant", "rms_hpa", "variables"}, set(result["unexplained"]))
         for finding in result["findings"]:

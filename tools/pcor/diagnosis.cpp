@@ -295,7 +295,6 @@ Json as_json(const Diagnosis& diagnosis) {
     return entry;
   });
   json["masks"] = masks_as_json(diagnosis.masks);
-  json["statistics_seconds"] = diagnosis.statistics_seconds;
   json["notes"] = diagnosis.notes;
   return json;
 }

@@ -248,7 +248,6 @@ struct Diagnosis {
   std::vector<HeldOutPart> held_out{};  ///< the later parts of flights, or flights that `improve` held out
   std::array<std::size_t, mask_count> masks{};
   std::vector<FlightDiagnosis> flights{};
-  double statistics_seconds = 0.0;  ///< time spent in statistics, without reading and without the chain
   std::vector<std::string> notes{};
 };
 
