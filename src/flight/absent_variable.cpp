@@ -9,6 +9,8 @@
 #include <pcor/units/units.hpp>
 #include <pcor/words/suggest.hpp>
 
+#include "words/quoting.hpp"
+
 namespace pcor::internal {
 namespace {
 
@@ -49,12 +51,13 @@ Error absent_variable(const std::string& path, const std::vector<VariableInfo>& 
     if (begins_alike(each.name, name)) namesakes.push_back(each.name);
   }
   const std::vector<std::string> alike = suggest(name, namesakes);
+  const std::string shown = shortened(name);
   if (!alike.empty())
     return Error(
         Error::Code::variable,
         fmt::format("{}: {} is not in this file; it has {}; change {} in the [variables] of the model", path,
-                    name, fmt::join(alike, ", "), role));
-  const std::string absent = fmt::format("{}: {} ({} of the model) is not in this file", path, name, role);
+                    shown, fmt::join(alike, ", "), role));
+  const std::string absent = fmt::format("{}: {} ({} of the model) is not in this file", path, shown, role);
   if (fitting.empty())
     return Error(
         Error::Code::variable,

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <utility>
 
+#include "words/quoting.hpp"
+
 namespace pcor {
 namespace {
 
@@ -146,6 +148,7 @@ UnitConversion UnitConversion::between(const std::string& from, const std::strin
                                        const UnitOwner& owner) {
   const std::lock_guard guard(udunits_lock());
   const std::string whose = (owner.file.empty() ? "" : owner.file + ": ") + owner.variable;
+  const std::string shown = internal::shortened(from);
   if (from.empty()) throw Error(Error::Code::unit, whose + " has no unit; " + how_to_state(owner, to));
   const Unit target = parse(to);
   if (!target)
@@ -153,9 +156,9 @@ UnitConversion UnitConversion::between(const std::string& from, const std::strin
   const Unit source = parse(from);
   if (!source)
     throw Error(Error::Code::unit,
-                whose + " has the unit \"" + from + "\", which is not known; " + how_to_state(owner, to));
+                whose + " has the unit \"" + shown + "\", which is not known; " + how_to_state(owner, to));
   if (!ut_are_convertible(source.get(), target.get()))
-    throw Error(Error::Code::unit, whose + " has the unit \"" + from + "\", which cannot be converted to " +
+    throw Error(Error::Code::unit, whose + " has the unit \"" + shown + "\", which cannot be converted to " +
                                        to + "; choose another variable, or " + how_to_state(owner, to));
 
   const Converter converter(ut_get_converter(source.get(), target.get()));
@@ -167,7 +170,7 @@ UnitConversion UnitConversion::between(const std::string& from, const std::strin
   if (std::abs(scale - 1) < 1e-12) scale = 1;
   const double middle = convert(span / 4);
   if (!(std::abs(middle - (scale * span / 4 + offset)) <= 1e-9 * (std::abs(middle) + std::abs(offset))))
-    throw Error(Error::Code::unit, whose + " has the unit \"" + from + "\", which is not proportional to " +
+    throw Error(Error::Code::unit, whose + " has the unit \"" + shown + "\", which is not proportional to " +
                                        to + "; " + how_to_state(owner, to));
   return {scale, offset};
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,10 +11,14 @@ namespace pcor::internal {
 
 using Names = std::vector<std::string>;
 
-/// A message is one line, whatever is quoted in it.
+/// A message is one line, whatever is quoted in it: control characters, which a terminal may obey, and bytes
+/// that are no UTF-8 become \x1b and the like.
 std::string one_line(std::string_view text);
 
-/// `text` on one line in quotation marks.
+/// The first letters of a text; where it has more than `most`, an ellipsis and how many it has.
+std::string shortened(std::string_view text, std::size_t most = 100);
+
+/// `text` on one line in quotation marks, shortened.
 std::string in_quotes(std::string_view text);
 
 /// What to do about a wrong name: what may have been meant, else all that there is.

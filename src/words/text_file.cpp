@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <system_error>
@@ -11,6 +12,11 @@
 #include "words/quoting.hpp"
 
 namespace pcor::internal {
+namespace {
+
+constexpr std::uintmax_t most_bytes = std::uintmax_t{16} << 20U;
+
+}  // namespace
 
 std::string text_of_file(const std::filesystem::path& path, std::string_view what) {
   const auto fail = [&](const std::string& trouble) {
@@ -22,6 +28,13 @@ std::string text_of_file(const std::filesystem::path& path, std::string_view wha
   }
   if (std::filesystem::is_directory(path, code)) {
     fail(fmt::format("is a directory; give the path of {}", what));
+  }
+  if (!std::filesystem::is_regular_file(path, code)) {
+    fail(fmt::format("is not a regular file; give the path of {}", what));
+  }
+  if (std::filesystem::file_size(path, code) > most_bytes) {
+    fail(fmt::format("has more than {} MB, as no text of this program does; give the path of {}",
+                     most_bytes >> 20U, what));
   }
   std::ifstream stream(path, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};

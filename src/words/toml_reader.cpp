@@ -21,6 +21,37 @@ std::int64_t days_since_1970(const toml::date& date) {
          146097;
 }
 
+// What a file may hold at most. toml++ goes as deep into its stack as a text goes into tables, and readers
+// look entries up one by one; values it limits to 256 in each other by itself.
+constexpr std::size_t most_dots = 16;  // in a key
+constexpr std::size_t most_entries = 10000;
+
+// Where the text in quotes that begins at `begin` ends; in simple quotes it does not go on in the next line.
+std::size_t end_of_quotes(std::string_view text, std::size_t begin) {
+  const char mark = text[begin];
+  const std::string_view three = text.substr(begin, 3);
+  const std::string_view quotes = three == std::string(3, mark) ? three : three.substr(0, 1);
+  for (std::size_t i = begin + quotes.size(); i < text.size(); ++i) {
+    if (text.substr(i, quotes.size()) == quotes) return i + quotes.size() - 1;
+    if (quotes.size() == 1 && text[i] == '\n') return i;
+    if (mark == '"' && text[i] == '\\') ++i;
+  }
+  return text.size();
+}
+
+// The place of the first key with too many dots, if there is one.
+std::optional<std::size_t> place_of_deep_key(std::string_view text) {
+  std::size_t dots = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char letter = text[i];
+    if (letter == '"' || letter == '\'') i = end_of_quotes(text, i);
+    if (letter == '#') i = std::min(text.find('\n', i), text.size());
+    if (letter == '.' && ++dots > most_dots) return i;
+    if (letter == '=' || letter == ',' || i == text.size() || text[i] == '\n') dots = 0;
+  }
+  return {};
+}
+
 }  // namespace
 
 std::vector<Entry> entries_of(const toml::table& table, const std::string& title) {
@@ -70,10 +101,32 @@ double seconds_of(const toml::date_time& moment) {
 }
 
 toml::table TomlReader::parse(std::string_view text) const {
+  if (const std::optional<std::size_t> deep = place_of_deep_key(text)) {
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(*deep), '\n');
+    fail(Place{static_cast<toml::source_index>(line), 1},
+         fmt::format("a key has more than {} dots; give the table that is meant", most_dots));
+  }
   try {
-    return toml::parse(text, name_);
+    toml::table root = toml::parse(text, name_);
+    refuse_crowd(root);
+    return root;
   } catch (const toml::parse_error& error) {
     fail(error.source().begin, std::string(error.description()) + "; correct the syntax (TOML) here");
+  }
+}
+
+void TomlReader::refuse_crowd(const toml::node& node) const {
+  const auto refuse_above = [&](std::size_t entries) {
+    if (entries > most_entries)
+      fail(node, fmt::format("{} has {} entries; give at most {}", kind_of(node), entries, most_entries));
+  };
+  if (const toml::table* const table = node.as_table()) {
+    refuse_above(table->size());
+    for (const auto& [key, entry] : *table) refuse_crowd(entry);
+  }
+  if (const toml::array* const array = node.as_array()) {
+    refuse_above(array->size());
+    for (const toml::node& entry : *array) refuse_crowd(entry);
   }
 }
 

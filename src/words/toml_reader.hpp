@@ -68,7 +68,8 @@ class TomlReader {
   explicit TomlReader(std::string_view name) : name_(name) {}
   ~TomlReader() = default;
 
-  /// The tables of a text; a syntax error is refused.
+  /// The tables of a text. Refused are a syntax error, a key of more than 16 dots, and a table or list of
+  /// more than 10,000 entries.
   toml::table parse(std::string_view text) const;
 
   /// "file:line:column"; the beginning of the file for a place that is not known.
@@ -134,6 +135,8 @@ class TomlReader {
   static std::string wrong_kind(const Entry& entry, const std::string& wanted);
 
  private:
+  void refuse_crowd(const toml::node& node) const;
+
   std::string name_;
 };
 

@@ -9,6 +9,8 @@
 #include <pcor/words/error.hpp>
 #include "model_of_flight.hpp"
 
+#include "text.hpp"
+
 namespace pcor::tool {
 namespace {
 
@@ -39,7 +41,7 @@ CLI::Option* add_list_option(CLI::App& command, const std::string& name, std::ve
 void keep_old_name(CLI::Option& option, const std::string& name_now) {
   option.group("");  // hidden
   option.each([old = "--" + option.get_lnames().front(), name_now](const std::string&) {
-    fmt::print(stderr, "pcor: {} is called {} now, and works for the time being\n", old, name_now);
+    tell(fmt::format("pcor: {} is called {} now, and works for the time being", old, name_now));
   });
 }
 

@@ -1,9 +1,13 @@
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <functional>
 #include <new>
 #include <sstream>
@@ -31,6 +35,31 @@ extern "C" void stop(int signal) {
   pcor::remove_unfinished_files();
   std::signal(signal, SIG_DFL);
   std::raise(signal);
+}
+
+void mind_signals() {
+  // A signal that the caller has ignored, as nohup does, stays so.
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGALRM, SIGXCPU, SIGUSR1, SIGUSR2})
+    if (std::signal(signal, stop) == SIG_IGN) std::signal(signal, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // the write fails, and says why
+}
+
+/// Where a standard stream is closed, the first file that is opened would take its place, and what is said
+/// there.
+void fill_closed_streams() {
+  while (true) {
+    // Nothing can be written to standard output so: what is said there is missed.
+    const int place = open("/dev/null", O_RDONLY);
+    if (place > STDERR_FILENO) close(place);
+    if (place < 0 || place > STDERR_FILENO) return;
+  }
+}
+
+/// Ends the program after an output that could not be written: HDF5 would try once more at the exit, and
+/// crash.
+[[noreturn]] void leave(int status) {
+  std::fflush(nullptr);
+  std::_Exit(status);
 }
 
 /// Reads the command line and does what it says. @return the exit status
@@ -62,10 +91,10 @@ int run(int argc, char** argv) {
     pcor::tool::say_text(text.str());
     return 0;
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "{}\n", pcor::tool::usage_message(program, error.what(), words));
+    pcor::tool::tell(pcor::tool::usage_message(program, error.what(), words));
     return wrong_usage;
   } catch (const pcor::Error& error) {
-    fmt::print(stderr, "pcor: {}\n", error.what());
+    pcor::tool::tell(fmt::format("pcor: {}", error.what()));
     return work_not_done;
   }
 
@@ -79,8 +108,9 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, stop);
+  mind_signals();
   pcor::tool::explain_crashes();
+  fill_closed_streams();
   pcor::tool::set_program(argv[0]);
   try {
     const int status = run(argc, argv);
@@ -90,19 +120,20 @@ int main(int argc, char** argv) {
     }
     return status;
   } catch (const pcor::Error& error) {
-    fmt::print(stderr, "pcor: {}\n", error.what());
-    return work_not_done;
+    pcor::tool::tell(fmt::format("pcor: {}", error.what()));
+    if (error.code() == pcor::Error::Code::output) leave(work_not_done);
+  } catch (const std::filesystem::filesystem_error& error) {
+    pcor::tool::tell(fmt::format("pcor: {}: {}; check this path and its permissions", error.path1().string(),
+                                 error.code().message()));
   } catch (const std::system_error& error) {
     // fmt::print throws it where the text does not go out.
-    fmt::print(stderr, "pcor: standard output: {}; check the space where it goes\n", error.code().message());
-    return work_not_done;
+    pcor::tool::tell(
+        fmt::format("pcor: standard output: {}; check the space where it goes", error.code().message()));
   } catch (const std::bad_alloc&) {
-    fmt::print(
-        stderr,
-        "pcor: the memory is exhausted; give fewer or shorter flights at a time, or a machine with more\n");
-    return work_not_done;
+    pcor::tool::tell(
+        "pcor: the memory is exhausted; give fewer or shorter flights at a time, or a machine with more");
   } catch (const std::exception& error) {
-    fmt::print(stderr, "pcor: a fault of the program itself, please report it: {}\n", error.what());
-    return work_not_done;
+    pcor::tool::tell(fmt::format("pcor: a fault of the program itself, please report it: {}", error.what()));
   }
+  return work_not_done;
 }

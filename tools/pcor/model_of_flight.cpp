@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <optional>
 #include <utility>
 
 #include <pcor/roles/laws_of_flight.hpp>
 #include <pcor/roles/with_roles.hpp>
 #include <pcor/words/error.hpp>
+
+#include "text.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -57,7 +58,7 @@ ModelFile read_model_for(const std::filesystem::path& model,
   std::vector<std::string> notes;
   ModelFile whole = completed(file, flights, notes);
   for (const std::string& note : notes) {
-    if (!options.quiet) fmt::print(stderr, "{}\n", note);
+    if (!options.quiet) tell(note);
     choices.push_back(note);
   }
   return whole;

@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include <pcor/words/message.hpp>
+
 namespace pcor::tool {
 namespace {
 
@@ -145,9 +147,16 @@ std::string coloured(std::string line) {
 
 }  // namespace
 
-void say_text(std::string_view text) {
+void tell(const std::string& message) {
+  const std::string line = message_line(message) + "\n";
+  std::fwrite(line.data(), 1, line.size(), stderr);
+}
+
+void say_text(std::string_view said) {
   static const std::size_t width = terminal_width();
   static const bool colour = wants_colour();
+  const std::string shown = shown_text(said);
+  std::string_view text = shown;
   if (width == 0) {
     fmt::print("{}", text);
     return;
