@@ -8,7 +8,9 @@
 #include <atomic>
 #include <cerrno>
 #include <climits>
+#include <csignal>
 #include <cstddef>
+#include <cstdlib>
 #include <cstring>
 #include <random>
 #include <string>
@@ -58,17 +60,47 @@ void take_from_list(const std::string& path) {
     if (entry.state == Unfinished::listed && path == entry.path) entry.state = Unfinished::free;
 }
 
-// A new file ".NAME.XXXXXX.part" that no other program has, also not one on another host or one that was
-// killed. Unlike mkstemp it has the permissions of any new file. It is listed before it is there, so a signal
-// at any moment finds it. Empty if it cannot be made; errno says why.
+// What names the processes among which a number is one of them: the host, and the namespace of processes
+// there.
+std::string neighbourhood() {
+  char host[HOST_NAME_MAX + 1] = {};
+  gethostname(host, HOST_NAME_MAX);
+  std::error_code code;
+  const std::string space = fs::read_symlink("/proc/self/ns/pid", code).string();  // such as pid:[4026531836]
+  const std::size_t digits = space.find_first_of("0123456789");
+  return std::string(host) + "-" +
+         (digits == std::string::npos ? "0"
+                                      : space.substr(digits, space.find_last_of("0123456789") - digits + 1));
+}
+
+// Removes what processes of this neighbourhood that are no more left unfinished in a folder. Those of other
+// hosts may live.
+void remove_stale_files(const fs::path& directory) {
+  const std::string mark = "." + neighbourhood() + "-";
+  std::error_code code;
+  for (fs::directory_iterator entry(directory, code), end; !code && entry != end; entry.increment(code)) {
+    const std::string name = entry->path().filename().string();
+    const std::size_t at = name.rfind(mark);
+    if (name.front() != '.' || at == std::string::npos || entry->path().extension() != ".part") continue;
+    const long process = std::strtol(name.c_str() + at + mark.size(), nullptr, 10);
+    std::error_code ignored;
+    if (process > 0 && ::kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH)
+      fs::remove(entry->path(), ignored);
+  }
+}
+
+// A new file ".NAME.HOST-SPACE-PROCESS.XXXXXX.part" that no other program has, also not one on another host
+// or one that was killed. Unlike mkstemp it has the permissions of any new file. It is listed before it is
+// there, so a signal at any moment finds it. Empty if it cannot be made; errno says why.
 fs::path make_hidden_file(const fs::path& directory, const std::string& name) {
   constexpr const char* letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
-  constexpr std::size_t most_of_name = NAME_MAX - std::string_view("..XXXXXX.part").size();
+  const std::string writer = "." + neighbourhood() + "-" + std::to_string(getpid()) + ".";
+  const std::size_t most_of_name = NAME_MAX - std::string_view(".XXXXXX.part").size() - writer.size();
   constexpr int tries = 100;
   std::random_device random;
   std::uniform_int_distribution<std::size_t> letter(0, std::strlen(letters) - 1);
   for (int i = 0; i < tries; ++i) {
-    std::string chosen = "." + name.substr(0, most_of_name) + ".";
+    std::string chosen = "." + name.substr(0, most_of_name) + writer;
     for (int j = 0; j < 6; ++j) chosen += letters[letter(random)];
     fs::path path = directory / (chosen + ".part");
     list_as_unfinished(path.string());
@@ -95,6 +127,17 @@ bool settle(const fs::path& path) {
   errno = reason;
   return settled;
 }
+
+void put_in_place(const fs::path& shown, const fs::path& target, const fs::path& path) {
+  std::error_code code;
+  fs::rename(path, target, code);
+  if (code)
+    throw Error(Error::Code::output,
+                shown.string() + " cannot be put in place: " + code.message() + "; choose another output");
+  take_from_list(path.string());
+}
+
+OutputsTogether* outputs_together = nullptr;
 
 }  // namespace
 
@@ -124,6 +167,7 @@ ReplacementFile::ReplacementFile(const fs::path& target) : shown_(target) {
   if (access(directory.c_str(), W_OK | X_OK) != 0)
     throw Error(Error::Code::output, shown_.string() + " cannot be written: " + directory.string() + ": " +
                                          std::strerror(errno) + "; choose another output");
+  remove_stale_files(directory);
   path_ = make_hidden_file(directory, target_.filename().string());
   if (path_.empty())
     throw Error(Error::Code::output,
@@ -147,12 +191,31 @@ void ReplacementFile::commit() {
     throw Error(Error::Code::output,
                 shown_.string() + " cannot be written: " + std::strerror(errno) +
                     "; check the space and the permissions there, or choose another output");
-  fs::rename(path_, target_, code);
-  if (code)
-    throw Error(Error::Code::output,
-                shown_.string() + " cannot be put in place: " + code.message() + "; choose another output");
+  if (outputs_together != nullptr) {
+    outputs_together->waiting_.push_back({shown_, target_, path_});
+  } else {
+    put_in_place(shown_, target_, path_);
+  }
   committed_ = true;
-  take_from_list(path_.string());
+}
+
+OutputsTogether::OutputsTogether() { outputs_together = this; }
+
+OutputsTogether::~OutputsTogether() {
+  outputs_together = nullptr;
+  std::error_code ignored;
+  for (const Waiting& file : waiting_) {
+    fs::remove(file.path, ignored);
+    take_from_list(file.path.string());
+  }
+}
+
+void OutputsTogether::appear() {
+  while (!waiting_.empty()) {
+    const Waiting& file = waiting_.front();
+    put_in_place(file.shown, file.target, file.path);
+    waiting_.erase(waiting_.begin());
+  }
 }
 
 }  // namespace pcor

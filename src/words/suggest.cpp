@@ -7,6 +7,8 @@
 namespace pcor {
 namespace {
 
+constexpr std::size_t longest_name = 256;  // of netCDF
+
 std::string lower(std::string_view text) {
   std::string result(text);
   for (char& letter : result) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
@@ -46,7 +48,7 @@ std::vector<std::string> suggest(std::string_view wrong, const std::vector<std::
     const std::string* name;
   };
   const std::string wanted = lower(wrong);
-  if (wanted.empty()) return {};
+  if (wanted.empty() || wanted.size() > longest_name) return {};
   std::vector<Candidate> candidates;
   for (const std::string& name : known) {
     const std::string candidate = lower(name);

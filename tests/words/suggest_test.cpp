@@ -30,6 +30,7 @@ TEST(Suggest, OffersNothingThatIsFarAway) {
   EXPECT_THAT(suggest("TASX", {"GGALT", "QCF"}), IsEmpty());
   EXPECT_THAT(suggest("", {"A", "B"}), IsEmpty());
   EXPECT_THAT(suggest("A", {}), IsEmpty());
+  EXPECT_THAT(suggest(std::string(257, 'A'), {std::string(256, 'A')}), IsEmpty());
 }
 
 TEST(Suggest, StopsAtTheNumberAskedFor) {

@@ -114,8 +114,10 @@ void run(const Options& options) {
   std::vector<std::string> variables;
   if (!options.flight.empty()) variables = Flight(options.flight).variables();
   const ModelFile extended = with_effects(model, wanted_effects(options, variables), variables);
+  OutputsTogether together;
   deliver(extended, options.output, inputs);
   json.write(as_json(model, extended, options));
+  together.appear();
   if (wants_text(options.common, {options.output})) print(model, extended, options);
 }
 

@@ -238,6 +238,7 @@ void run(const Options& options) {
     check_options.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
     checks = check(flight_paths(options.flights), model, check_options);
   }
+  OutputsTogether together;
   if (!options.common.report.empty())
     write_report_of_run(check_report(checks), {models_of(options), options.flights.flights, {}},
                         options.common.report);
@@ -246,6 +247,7 @@ void run(const Options& options) {
     write_flight_table(options, model, check_options);
   }
   json.write(as_json(checks));
+  together.appear();
   const bool has_laser = model && model->variables.count(Quantity::lams_airspeed) > 0;
   if (wants_text(options.common)) print(checks, options, has_laser);
 }

@@ -275,6 +275,7 @@ void run(const Options& options) {
     compare_options.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
     comparison = compare(flight_paths(options.comparison), contenders, compare_options);
   }
+  OutputsTogether together;
   if (!options.residuals.empty()) {
     for (std::size_t i = 0; i < comparison.flights.size(); ++i) {
       write_residuals(comparison, i, options.comparison.flights[i], residual_file(options, i),
@@ -286,6 +287,7 @@ void run(const Options& options) {
                         options.common.report);
   if (!options.table.empty()) write_flight_table(comparison, options.table);
   json.write(as_json(comparison));
+  together.appear();
   if (wants_text(options.common)) print(comparison, references, options);
 }
 

@@ -202,10 +202,12 @@ void run(const Options& options) {
     diagnose_with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
     diagnosis = diagnose(flight_paths(options.comparison), model, references.used, diagnose_with);
   }
+  OutputsTogether together;
   if (!options.common.report.empty())
     write_report_of_run(diagnosis_report(diagnosis, model), {{options.model}, options.comparison.flights, {}},
                         options.common.report);
   json.write(as_json(diagnosis));
+  together.appear();
   if (wants_text(options.common)) print(diagnosis, references, options);
 }
 

@@ -152,12 +152,14 @@ void run(const Options& options) {
     improvement = improve(flight_paths(options.comparison), model, references.used, improve_with);
   }
   refuse_worse(improvement.worse, options.force, improvement.model);
+  OutputsTogether together;
   deliver(improvement.model, options.output, inputs);
   if (!options.common.report.empty())
     write_report_of_run(improvement_report(improvement, model),
                         {{options.model, options.output}, options.comparison.flights, options.holdout},
                         options.common.report);
   json.write(as_json(improvement, options));
+  together.appear();
   if (wants_text(options.common, {options.output})) print(improvement, references, options);
 }
 

@@ -230,6 +230,7 @@ void run(const Options& options) {
   result["flights"] = nlohmann::ordered_json::array();
   const std::vector<Inspection> all = look(options, text, result["flights"]);
   const Inspection& first = all.front();
+  OutputsTogether together;
   if (!options.model.empty()) {
     if (!first.model)
       throw Error(fmt::format("{}: no model can be written: {}", first.path, first.notes.front()));
@@ -239,6 +240,7 @@ void run(const Options& options) {
     write_report_of_run(inspection_report(all), {{}, options.flights, {}}, options.common.report);
   }
   json.write(result);
+  together.appear();
   if (!text) return;
   say("\n");
   say_written({options.model, options.common.report, options.common.json});

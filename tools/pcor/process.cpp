@@ -324,6 +324,8 @@ void run(const Options& options) {
     bar.reset();
     if (table) table->add(flight);
   };
+  std::optional<OutputsTogether> together;
+  if (!many) together.emplace();  // of many each is there as soon as it is done
   const std::vector<ProcessedFlight> flights = process_all(tasks, model_of, process);
   const bool none = count_of(flights, FlightState::unreadable) == flights.size();
   if (!options.common.report.empty() && !none) {
@@ -331,6 +333,7 @@ void run(const Options& options) {
                         {{options.model + options.models}, options.inputs, {}}, options.common.report);
   }
   json.write(many ? as_json(flights, options) : as_json(flights.front(), options));
+  if (together) together->appear();
   if (table) Table::end(flights, options.output);
   if (none) {
     throw Error(many ? fmt::format("none of the {} flights could be processed", flights.size())

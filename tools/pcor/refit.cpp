@@ -325,6 +325,16 @@ void write_flight_table(const RefitResult& all, const ModelFile& model, const Re
   table.write(options.table);
 }
 
+/// Writes the fitted models. @throws Error, before anything is written, if they are refused.
+void deliver_models(RefitResult& result, const std::vector<std::filesystem::path>& inputs,
+                    const Options& options) {
+  refuse_worse(result.worse, options.force, result.model);
+  deliver(result.model, options.output, inputs);
+  if (!result.reference) return;
+  refuse_worse(result.worse, options.force, *result.reference);
+  deliver(*result.reference, options.reference_output, inputs);
+}
+
 void run(const Options& options) {
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.emplace_back(options.model);
@@ -345,19 +355,20 @@ void run(const Options& options) {
     refit_with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
     result = refit(flight_paths(options.comparison), model, references.used, refit_with);
   }
+  const bool is_refused = !result.worse.empty() && !options.force;
+  OutputsTogether together;
   if (!options.common.report.empty()) write_fit_report(result, model, references.used, options);
   if (!options.table.empty()) write_flight_table(result, model, references.used, refit_with, options);
   json.write(as_json(result));
+  if (!is_refused) deliver_models(result, inputs, options);
+  together.appear();
   const bool with_text = wants_text(options.common, {options.output, options.reference_output});
   if (with_text) {
     print_result(result, references);
     say("\n");
     say_written({options.common.report, options.table, options.common.json});
   }
-  refuse_worse(result.worse, options.force, result.model);
-  if (result.reference) refuse_worse(result.worse, options.force, *result.reference);
-  deliver(result.model, options.output, inputs);
-  if (result.reference) deliver(*result.reference, options.reference_output, inputs);
+  if (is_refused) refuse_worse(result.worse, options.force, result.model);
   if (with_text) print_next_step(options);
 }
 

@@ -80,6 +80,7 @@ void run(const Options& options) {
   if (options.seed) scenario.seed = *options.seed;
   SimulateOptions simulate;
   simulate.history = command_line(options, scenario.seed);
+  OutputsTogether together;
   SimulationSummary summary;
   {
     Progress bar("simulating", !options.common.quiet);
@@ -87,6 +88,7 @@ void run(const Options& options) {
     summary = simulate_flight(scenario, options.output, simulate);
   }
   json.write(as_json(summary, options));
+  together.appear();
   if (wants_text(options.common)) print(summary, options);
 }
 

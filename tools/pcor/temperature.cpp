@@ -253,6 +253,8 @@ void run(const Options& options) {
       result = fit_temperature(flight_paths(options.comparison), model, with);
     }
   }
+  const bool is_refused = !result.worse.empty() && !options.force;
+  OutputsTogether together;
   if (!options.common.report.empty())
     write_report_of_run(temperature_report(result),
                         {{options.model, options.output}, options.comparison.flights, {}},
@@ -263,6 +265,11 @@ void run(const Options& options) {
     all["converged"] = in_turn.converged;
   }
   json.write(all);
+  if (!is_refused) {
+    refuse_worse(result.worse, options.force, result.model);
+    deliver(result.model, options.output, inputs);
+  }
+  together.appear();
   const bool with_text = wants_text(options.common, {options.output});
   if (with_text) {
     if (options.iterate) print(in_turn);
@@ -273,8 +280,7 @@ void run(const Options& options) {
     say("\n");
     say_written({options.common.report, options.common.json});
   }
-  refuse_worse(result.worse, options.force, result.model);
-  deliver(result.model, options.output, inputs);
+  if (is_refused) refuse_worse(result.worse, options.force, result.model);
   if (!with_text) return;
   say_written({options.output});
   if (result.worse.empty())

@@ -12,7 +12,7 @@ namespace pcor {
 /// Names are compared without regard to case by the number of single-letter changes (a swap of two
 /// neighbours is one); among equals, the one that begins the same way comes first. A name with more changes
 /// than half its letters is not suggested unless one is the beginning of the other, so the answer may be
-/// empty.
+/// empty; for more than 256 letters it is.
 std::vector<std::string> suggest(std::string_view wrong, const std::vector<std::string>& known,
                                  std::size_t most = 3);
 
