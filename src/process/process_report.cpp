@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include <pcor/flight/flight.hpp>
+#include <pcor/words/replacement_file.hpp>
 #include "roles/recorded_series.hpp"
 #include "roles/usual_variables.hpp"
 
@@ -65,7 +66,7 @@ class Outputs {
   }
 
   void add(const ProcessedFlight& processed) {
-    const Flight output(processed.output);
+    const Flight output(readable_output(processed.output));
     const Series time = record_times(output);
     report_.flight_starts.push_back(report_.time.size());
     report_.flight_names.push_back(processed.output.filename().string());

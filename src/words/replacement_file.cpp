@@ -210,6 +210,14 @@ OutputsTogether::~OutputsTogether() {
   }
 }
 
+fs::path readable_output(const fs::path& target) {
+  if (outputs_together != nullptr) {
+    for (const OutputsTogether::Waiting& file : outputs_together->waiting_)
+      if (file.shown == target) return file.path;
+  }
+  return target;
+}
+
 void OutputsTogether::appear() {
   while (!waiting_.empty()) {
     const Waiting& file = waiting_.front();

@@ -47,12 +47,16 @@ class OutputsTogether {
 
  private:
   friend class ReplacementFile;
+  friend std::filesystem::path readable_output(const std::filesystem::path& target);
 
   struct Waiting {
     std::filesystem::path shown, target, path;
   };
   std::vector<Waiting> waiting_;
 };
+
+/// Where a file that was committed to `target` can be read: there, or beside it while it waits for others.
+std::filesystem::path readable_output(const std::filesystem::path& target);
 
 /// Removes the hidden files of all that is being written in this process, at most 16; for a signal handler
 /// that then ends the process, as SIGINT would: it only unlinks.
