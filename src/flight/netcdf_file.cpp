@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <netcdf.h>
+#include <strings.h>
 #include <pcor/words/error.hpp>
 
 #include <algorithm>
@@ -302,8 +303,7 @@ bool NetcdfFile::is_numeric(int variable) const {
 bool NetcdfFile::is_unsigned(int variable) const {
   const int type = type_of(variable);
   if (!is_signed(type)) return span_of(type).has_value();
-  const std::string text = text_attribute(variable, "_Unsigned");
-  return text == "true" || text == "True" || text == "TRUE";
+  return strcasecmp(text_attribute(variable, "_Unsigned").c_str(), "true") == 0;
 }
 
 void NetcdfFile::make_unsigned(int variable, double* numbers, std::size_t count) const {

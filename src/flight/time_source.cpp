@@ -1,6 +1,7 @@
 #include "flight/time_source.hpp"
 
 #include <fmt/format.h>
+#include <strings.h>
 #include <pcor/units/units.hpp>
 #include <pcor/words/error.hpp>
 #include <pcor/words/utc.hpp>
@@ -68,9 +69,9 @@ std::optional<UnitConversion> epoch_conversion(const Counting& time) {
     return std::nullopt;
   if (!midnight_of(year, month, day_of_month)) return std::nullopt;
   constexpr int first_gregorian_year = 1583;
-  const bool is_gregorian = time.calendar.empty() || time.calendar == "standard" ||
-                            time.calendar == "gregorian" ||
-                            (time.calendar == "proleptic_gregorian" && year >= first_gregorian_year);
+  const auto is = [&time](const char* calendar) { return strcasecmp(time.calendar.c_str(), calendar) == 0; };
+  const bool is_gregorian = is("") || is("standard") || is("gregorian") ||
+                            (is("proleptic_gregorian") && year >= first_gregorian_year);
   if (!is_gregorian)
     throw Error(
         fmt::format("{} counts from the year {} in the calendar \"{}\", whose days are not those of "

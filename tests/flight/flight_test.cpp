@@ -300,7 +300,7 @@ TEST_F(FlightTest, ACalendarWhoseYearsHaveOtherDaysIsRefused) {
     make(calendar, units);
     EXPECT_THAT(refusal(), AllOf(HasSubstr("Time counts"), HasSubstr(calendar)));
   }
-  for (const char* calendar : {"standard", "gregorian", "proleptic_gregorian"}) {
+  for (const char* calendar : {"standard", "Gregorian", "proleptic_gregorian"}) {
     make(calendar, units);
     EXPECT_EQ(utc_text(Flight(path()).time().first), "2004-02-18 14:22:00") << calendar;
   }
@@ -628,7 +628,7 @@ TEST_F(FlightTest, SignedIntegersThatAreCalledUnsignedAreReadAsSuch) {
     maker.time({100, 101, 102, 103});
     const auto put = [&](const char* name, int type, const std::vector<double>& stored) {
       const int number = maker.variable(name, type, {maker.time_dimension});
-      maker.text(number, "_Unsigned", "true");
+      maker.text(number, "_Unsigned", type == NC_BYTE ? "True" : "true");
       maker.numbers(number, "_FillValue", type, {-1});
       maker.numbers(number, "valid_max", type, {-3});
       maker.numbers(number, "scale_factor", NC_DOUBLE, {0.01});

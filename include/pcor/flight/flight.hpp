@@ -87,8 +87,9 @@ class Flight {
   /// with `base_time` or the global attributes `FlightDate` and `TimeInterval`; without such a variable it is
   /// `base_time` + `time_offset`. Seconds of the day that begin again at midnight are carried on.
   ///
-  /// @throws Error if the file is absent, not netCDF, truncated, without records, or if a time is missing,
-  /// repeated, earlier than the one before, or cannot be told at all. Gaps are no error, see `time()`.
+  /// @throws Error if the file is absent, not netCDF, truncated, without records or with more than a hundred
+  /// million, has two variables of one name, or if a time is missing, repeated, earlier than the one before,
+  /// of a year without flights, or cannot be told at all. Gaps are no error, see `time()`.
   explicit Flight(const std::filesystem::path& path, TimeStamp time_stamp = TimeStamp::begin);
 
   /// The same for a file of any format that is open already.
