@@ -224,6 +224,10 @@ class Diagnose(DiagnosisTest):
         for number in range(1, 4):
             self.assertTrue(reasons[f"try-{number}"])
 
+    def test_every_run_gives_the_same_bytes(self):
+        words = ("diagnose", ONE, "-m", self.model(), "--no-file-variables", "--json", "-")
+        self.assertEqual(self.done(*words).stdout, self.done(*words).stdout)
+
     def test_is_quiet(self):
         result = self.done("diagnose", ONE, "-m", self.model(), "--no-file-variables", "--quiet")
         self.assertEqual((result.stdout, result.stderr), ("", ""))
