@@ -53,17 +53,16 @@ Error absent_variable(const std::string& path, const std::vector<VariableInfo>& 
   const std::vector<std::string> alike = suggest(name, namesakes);
   const std::string shown = shortened(name);
   if (!alike.empty())
-    return Error(
-        Error::Code::variable,
-        fmt::format("{}: {} is not in this file; it has {}; change {} in the [variables] of the model", path,
-                    shown, fmt::join(alike, ", "), role));
+    return {Error::Code::variable,
+            fmt::format("{}: {} is not in this file; it has {}; change {} in the [variables] of the model",
+                        path, shown, fmt::join(alike, ", "), role)};
   const std::string absent = fmt::format("{}: {} ({} of the model) is not in this file", path, shown, role);
   if (fitting.empty())
-    return Error(
+    return {
         Error::Code::variable,
         fmt::format("{}; it has no time series in {} or a unit that converts to it, see ncdump -h {}; change "
                     "[variables] of the model",
-                    absent, wanted, path));
+                    absent, wanted, path)};
 
   constexpr std::size_t most_named = 6;
   // What a probe recovers files call total.
@@ -81,8 +80,8 @@ Error absent_variable(const std::string& path, const std::vector<VariableInfo>& 
     if (unit_changes) named += " in " + standard_unit(fitting[i]->units);
   }
   if (others > 0) named += fmt::format(" and {} more", others);
-  return Error(Error::Code::variable,
-               fmt::format("{}; it has {} (units that fit); change [variables] of the model", absent, named));
+  return {Error::Code::variable,
+          fmt::format("{}; it has {} (units that fit); change [variables] of the model", absent, named)};
 }
 
 }  // namespace pcor::internal

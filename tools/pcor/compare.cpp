@@ -225,8 +225,7 @@ void write_flight_table(const Comparison& comparison, const std::string& path) {
       double samples = 0.0;
       double sum = 0.0;
       double squares = 0.0;
-      for (std::size_t i = 0; i < flight.values[m].size(); ++i) {
-        const double value = flight.values[m][i];
+      for (const double value : flight.values[m]) {
         if (std::isnan(value)) continue;
         samples += 1.0;
         sum += value;
