@@ -12,6 +12,7 @@
 #include <pcor/units/units.hpp>
 #include <pcor/words/error.hpp>
 #include "residuals/moving_columns.hpp"
+#include "roles/model_inputs.hpp"
 #include "roles/recorded_series.hpp"
 
 namespace pcor::internal {
@@ -145,16 +146,6 @@ bool has_a_twin(Where where) {
          where == Where::pitot;
 }
 
-Chain chain_of(const ModelFile& model, bool with_laser) {
-  std::vector<Quantity> roles = model.roles();
-  if (!with_laser) roles.erase(std::remove(roles.begin(), roles.end(), Quantity::lams_airspeed), roles.end());
-  BindingError error;
-  std::optional<Chain> chain = Chain::build(model.model, roles, &error);
-  if (!chain)
-    throw Error(Error::Code::model, fmt::format("model '{}': {}", model.model.name, error.message()));
-  return std::move(*chain);
-}
-
 /// Whether what is wrong there is often wrong on both systems, since tubes and lines are built alike.
 bool is_built_alike(Where where) {
   return where == Where::static_line || where == Where::total_line || where == Where::pitot;
@@ -235,7 +226,7 @@ void add_those_of_the_references(CandidateSet& set, const References& references
     }
     other = *model;
     name_usual_variables(*other, flights);
-    Chain chain = chain_of(*other, false);
+    Chain chain = chain_of(other->model, roles_of(*other, false));
     for (const EffectFacts& facts : effect_facts) {
       if (!has_a_twin(facts.where) || has_effect(*model, facts.id)) continue;
       Candidate twin = candidate_of(facts);
@@ -288,7 +279,7 @@ CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffe
   name_usual_variables(set.extended, flights);
   const bool with_laser =
       std::any_of(references.begin(), references.end(), [](const auto& each) { return each->reads_laser(); });
-  std::optional<Chain> chain = chain_of(set.extended, with_laser);
+  std::optional<Chain> chain = chain_of(set.extended.model, roles_of(set.extended, with_laser));
   BindingError error;
   const auto add = [&](Candidate candidate) {
     std::optional<Chain> with = chain->with_effect(candidate.effect, &error);

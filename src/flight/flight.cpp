@@ -43,7 +43,7 @@ struct Variable {
   std::vector<double> missing_values;  // as numbers of the stored type
   std::array<double, 2> valid_range;   // of these
   UnitConversion unpacking;            // scale_factor and add_offset
-  std::optional<StatusFlags> flags;    // what its file calls unusable
+  std::vector<StatusFlags> flags;      // what its file calls unusable
   std::optional<Error> refusal;        // of one whose numbers cannot be told
 };
 
@@ -76,7 +76,8 @@ void describe_numbers(const FlightFile& file, Variable& variable) {
   variable.unpacking = {packing_number(file, variable.id, "scale_factor", 1),
                         packing_number(file, variable.id, "add_offset", 0)};
   variable.flags = StatusFlags::of(file, variable.id);
-  if (variable.flags) variable.info.flags = file.variable_name(variable.flags->variable());
+  for (const StatusFlags& flags : variable.flags)
+    variable.info.flags.push_back(file.variable_name(flags.variable()));
 }
 
 Variable describe(const FlightFile& file, int id, int time_dimension) {
@@ -269,10 +270,18 @@ struct Flight::Implementation {
     read_stored(variable, block, out);
     const std::size_t count = block.count * static_cast<std::size_t>(variable.info.rate);
     clean(variable, count, out);
-    if (!variable.flags || count == 0) return;
-    flags.resize(count);
-    file->read(variable.flags->variable(), block, flags.data());
-    for (std::size_t i = 0; i < count; ++i) out[i] = variable.flags->unusable(flags[i]) ? missing : out[i];
+    for (const StatusFlags& each : variable.flags) leave_out(each, block, count, out);
+  }
+
+  void leave_out(const StatusFlags& unusable, RecordBlock block, std::size_t count, double* values) {
+    if (count == 0) return;
+    const std::size_t samples_of_flag = unusable.is_of_record() ? count / block.count : 1;
+    flags.resize(count / samples_of_flag);
+    const FileInHand in_hand(file->path());
+    file->read(unusable.variable(), block, flags.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      if (unusable.unusable(flags[i / samples_of_flag])) values[i] = missing;
+    }
   }
 
   // Records at which seconds of the day began again are known after the scan; until then it adds them itself.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
+#include <optional>
 #include <sstream>
 #include <string_view>
 
@@ -18,57 +20,84 @@ std::vector<std::string> words_of(const std::string& text) {
   return words;
 }
 
-/// Whether one of the words of a meaning, "data_bad_or_missing", says that the sample is none.
+/// Whether a meaning, "data_bad_or_missing", says that the sample is none.
 bool says_unusable(const std::string& meaning) {
   constexpr std::array<std::string_view, 5> unusable{"_bad_", "_missing_", "_invalid_", "_major_",
                                                      "_out_of_range_"};
-  const std::string framed = "_" + meaning + "_";
-  return std::any_of(unusable.begin(), unusable.end(),
-                     [&](std::string_view word) { return framed.find(word) != std::string::npos; });
+  std::string framed = "_" + meaning + "_";
+  std::transform(framed.begin(), framed.end(), framed.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  const auto says = [&framed](std::string_view word) { return framed.find(word) != std::string::npos; };
+  return !says("_not_") && std::any_of(unusable.begin(), unusable.end(), says);
 }
 
-/// The bits of a flag, also of one that is stored as a signed number.
-unsigned long bits_of(double flag) { return static_cast<unsigned long>(static_cast<long>(flag)) & all_bits; }
+/// How many numbers the integer type has whose greatest number this is; none of more than 32 bits.
+double span_of(double greatest) {
+  const double bits = std::log2(greatest + 1.0);
+  return bits <= 32.0 ? std::exp2(8.0 * std::ceil(bits / 8.0)) : 0.0;
+}
 
-std::optional<int> flags_variable(const FlightFile& file, int variable) {
-  std::vector<std::string> names = words_of(file.text_attribute(variable, "ancillary_variables"));
-  names.push_back(file.variable_name(variable) + "_FLAG");
-  for (const std::string& name : names) {
-    const std::optional<int> flags = file.find_variable(name);
-    if (flags && file.is_numeric(*flags) && !file.text_attribute(*flags, "flag_meanings").empty() &&
-        file.dimensions_of(*flags) == file.dimensions_of(variable))
-      return flags;
+/// The bits of a number of a type of that span, also of one that is written as if it had a sign.
+std::optional<unsigned long> bits_of(double number, double span) {
+  const double positive = number < 0.0 ? number + span : number;
+  if (!(positive >= 0.0 && positive < span)) return std::nullopt;
+  return static_cast<unsigned long>(positive);
+}
+
+std::vector<int> candidates(const FlightFile& file, int variable) {
+  std::vector<std::string> names{file.variable_name(variable) + "_FLAG"};
+  const bool is_own_result = !file.text_attribute(FlightFile::whole_file, "pcor_model").empty();
+  if (!is_own_result) {
+    for (std::string& name : words_of(file.text_attribute(variable, "ancillary_variables")))
+      names.push_back(std::move(name));
   }
-  return std::nullopt;
+  std::vector<int> flags;
+  for (const std::string& name : names) {
+    const std::optional<int> number = file.find_variable(name);
+    if (number && file.is_numeric(*number) && std::find(flags.begin(), flags.end(), *number) == flags.end())
+      flags.push_back(*number);
+  }
+  return flags;
 }
 
 }  // namespace
 
-std::optional<StatusFlags> StatusFlags::of(const FlightFile& file, int variable) {
-  const std::optional<int> number = flags_variable(file, variable);
-  if (!number) return std::nullopt;
-  StatusFlags flags;
-  flags.variable_ = *number;
-  const std::vector<std::string> meanings = words_of(file.text_attribute(*number, "flag_meanings"));
-  const std::vector<double> values = file.number_attribute(*number, "flag_values");
-  const std::vector<double> masks = file.number_attribute(*number, "flag_masks");
+StatusFlags::StatusFlags(const FlightFile& file, int variable, bool is_of_record)
+    : variable_(variable),
+      is_of_record_(is_of_record),
+      span_(span_of(file.greatest_number(variable))),
+      missing_(file.missing_values(variable)) {
+  const std::vector<std::string> meanings = words_of(file.text_attribute(variable, "flag_meanings"));
+  const std::vector<double> values = file.number_attribute(variable, "flag_values");
+  const std::vector<double> masks = file.number_attribute(variable, "flag_masks");
   for (std::size_t i = 0; i < meanings.size(); ++i) {
     if (!says_unusable(meanings[i])) continue;
-    if (i < masks.size()) {
-      const unsigned long mask = bits_of(masks[i]);
-      flags.conditions_.push_back({mask, i < values.size() ? bits_of(values[i]) : mask});
-    } else if (i < values.size()) {
-      flags.conditions_.push_back({all_bits, bits_of(values[i])});
-    }
+    const std::optional<unsigned long> mask = i < masks.size() ? bits_of(masks[i], span_) : all_bits;
+    const std::optional<unsigned long> value = i < values.size()  ? bits_of(values[i], span_)
+                                               : i < masks.size() ? mask
+                                                                  : std::nullopt;
+    if (mask && *mask != 0 && value) conditions_.push_back({*mask, *value});
   }
-  return flags.conditions_.empty() ? std::nullopt : std::optional(flags);
+}
+
+std::vector<StatusFlags> StatusFlags::of(const FlightFile& file, int variable) {
+  const std::vector<int> dimensions = file.dimensions_of(variable);
+  std::vector<StatusFlags> all;
+  for (const int number : candidates(file, variable)) {
+    const std::vector<int> own = file.dimensions_of(number);
+    const bool is_of_record = own.size() == 1 && dimensions.size() == 2 && own.front() == dimensions.front();
+    if (own != dimensions && !is_of_record) continue;
+    const StatusFlags flags(file, number, is_of_record);
+    if (!flags.conditions_.empty()) all.push_back(flags);
+  }
+  return all;
 }
 
 bool StatusFlags::unusable(double flag) const {
-  if (!(std::abs(flag) <= static_cast<double>(all_bits))) return false;
-  const unsigned long bits = bits_of(flag);
-  return std::any_of(conditions_.begin(), conditions_.end(), [bits](const Condition& condition) {
-    return (bits & condition.mask) == condition.value;
+  const std::optional<unsigned long> bits = bits_of(flag, span_);
+  if (!bits || std::find(missing_.begin(), missing_.end(), flag) != missing_.end()) return false;
+  return std::any_of(conditions_.begin(), conditions_.end(), [&bits](const Condition& condition) {
+    return (*bits & condition.mask) == condition.value;
   });
 }
 

@@ -135,7 +135,9 @@ class Look {
   /// Of a doubtful flight the first family stands.
   void find_model() {
     ModelFile model;
-    model.roles_from = roles_.empty() ? family_.name : roles_;
+    // A file of the user's is found from wherever the model stands.
+    model.roles_from =
+        roles_.empty() || roles_ == family_.name ? family_.name : std::filesystem::absolute(roles_).string();
     model.model.aircraft = result_.aircraft;
     model.model.name =
         fmt::format("{} as recorded", result_.aircraft.empty() ? family_.title : result_.aircraft);

@@ -36,7 +36,8 @@ struct Pair {
   Series first;
   std::string_view second_name;
   Series second;
-  double least_rms;  ///< of the second: below it nothing moved
+  double least_rms;       ///< of the second: below it nothing moved
+  std::string_view turn;  ///< what turns one of them, in the [units] of a model
 };
 
 class Signs {
@@ -48,16 +49,21 @@ class Signs {
     const Series altitude = rise(motion_.altitude);
     const Series heading = rise(motion_.heading, true);
     std::vector<Pair> all;
-    all.push_back({"the vertical speed", motion_.vertical_speed, "the change of altitude", altitude, 5.0});
+    all.push_back({"the vertical speed", motion_.vertical_speed, "the change of altitude", altitude, 5.0,
+                   "vertical_speed = \"-1 m s-1\" or altitude = \"-1 m\""});
     if (const Series* const pressure = samples_.model.find(Quantity::static_pressure))
       all.push_back({"the fall of the static pressure", negative(rise(*pressure)), "the change of altitude",
-                     altitude, 5.0});
-    all.push_back({"the roll", motion_.roll, "the turning of the heading", heading, 2.0});
+                     altitude, 5.0, "altitude = \"-1 m\""});
+    all.push_back({"the roll", motion_.roll, "the turning of the heading", heading, 2.0,
+                   "roll = \"-1 degree\" or heading = \"-1 degree\""});
     all.push_back({"the turning of the ground track", rise(motion_.ground_track, true), "that of the heading",
-                   heading, 2.0});
+                   heading, 2.0, "ground_track = \"-1 degree\" or heading = \"-1 degree\""});
     all.push_back({"the angle of attack", rise(motion_.attack), "the pitch above the path",
-                   rise(pitch_above_path()), 0.3});
-    all.push_back({"the sideslip", rise(motion_.sideslip), "the drift", rise(drift(), true), 0.3});
+                   rise(pitch_above_path()), 0.3, "attack = \"-1 degree\" or pitch = \"-1 degree\""});
+    all.push_back({"the pitch", rise(motion_.pitch), "the angle of attack and of climb together",
+                   rise(attack_and_climb()), 0.3, "pitch = \"-1 degree\" or attack = \"-1 degree\""});
+    all.push_back({"the sideslip", rise(motion_.sideslip), "the drift", rise(drift(), true), 0.3,
+                   "sideslip = \"-1 degree\" or ground_track = \"-1 degree\""});
     return all;
   }
 
@@ -95,22 +101,29 @@ class Signs {
     return values;
   }
 
-  /// Pitch less the angle of climb, deg: the angle of attack without wind.
-  Series pitch_above_path() const {
-    if (motion_.pitch.empty() || motion_.vertical_speed.empty()) return {};
-    Series angle = motion_.pitch;
+  /// The angle of climb, deg; empty without a vertical speed.
+  Series climb() const {
+    Series angle = motion_.vertical_speed;
     for (std::size_t i = 0; i < angle.size(); ++i)
-      angle[i] -= std::atan2(motion_.vertical_speed[i], motion_.airspeed[i]) / constants::radians_per_degree;
+      angle[i] = std::atan2(angle[i], motion_.airspeed[i]) / constants::radians_per_degree;
     return angle;
   }
 
-  /// The ground track less the heading, deg: where the nose goes to port, the wind comes from starboard.
-  Series drift() const {
-    if (motion_.ground_track.empty() || motion_.heading.empty()) return {};
-    Series angle = motion_.ground_track;
-    for (std::size_t i = 0; i < angle.size(); ++i) angle[i] -= motion_.heading[i];
-    return angle;
+  /// The sum of two series of one length, the second times `sign`; empty where one was not recorded.
+  static Series sum(Series first, const Series& second, double sign) {
+    if (first.size() != second.size()) return {};
+    for (std::size_t i = 0; i < first.size(); ++i) first[i] += sign * second[i];
+    return first;
   }
+
+  /// The angle of attack without wind.
+  Series pitch_above_path() const { return sum(motion_.pitch, climb(), -1.0); }
+
+  /// The pitch without wind.
+  Series attack_and_climb() const { return sum(motion_.attack, climb(), 1.0); }
+
+  /// The ground track less the heading, deg: where the nose goes to port, the wind comes from starboard.
+  Series drift() const { return sum(motion_.ground_track, motion_.heading, -1.0); }
 
   const FlightSamples& samples_;
   const FlightMotion& motion_;
@@ -129,8 +142,8 @@ std::vector<std::string> contradicting_signs(const FlightSamples& samples, doubl
     contradictions.push_back(
         fmt::format("{} and {} contradict each other (correlation {:.2f}): one of them has the other sign; "
                     "turn it in the "
-                    "[units] of the model, as \"-1 m s-1\" or \"-1 degree\"",
-                    pair.first_name, pair.second_name, correlation));
+                    "[units] of the model, {}",
+                    pair.first_name, pair.second_name, correlation, pair.turn));
   }
   return contradictions;
 }

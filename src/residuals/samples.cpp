@@ -30,13 +30,6 @@ using namespace internal;
 
 namespace {
 
-Chain chain_of(const Model& model, const std::vector<Quantity>& roles) {
-  BindingError why;
-  std::optional<Chain> chain = Chain::build(model, roles, &why);
-  if (!chain) throw Error(Error::Code::model, fmt::format("model '{}': {}", model.name, why.message()));
-  return std::move(*chain);
-}
-
 /// True airspeed from the pressures as measured, m/s: within 2 %, for regimes and masks.
 std::vector<double> measured_airspeed(const ModelSamples& samples) {
   const std::vector<double>& p = *samples.find(Quantity::static_pressure);
@@ -196,8 +189,7 @@ const std::vector<double>* ModelSamples::find(Quantity quantity) const {
 
 ModelSamples internal::read_model_columns(const Flight& flight, const ModelFile& model, bool with_laser,
                                           const std::vector<double>& time, std::vector<std::string>& notes) {
-  std::vector<Quantity> roles = model.roles();
-  if (!with_laser) roles.erase(std::remove(roles.begin(), roles.end(), Quantity::lams_airspeed), roles.end());
+  const std::vector<Quantity> roles = roles_of(model, with_laser);
   const Chain chain = chain_of(model.model, roles);
   const std::vector<ModelInput> inputs = model_inputs(flight, model, chain, roles, notes);
   ModelSamples samples = read_inputs(flight, inputs, 1, notes);

@@ -188,10 +188,11 @@ const AircraftFamily& family_named(const std::string& name) {
   constexpr std::string_view ending = ".toml";
   if (name.size() <= ending.size() || name.substr(name.size() - ending.size()) != ending) {
     const std::string meant = did_you_mean(name, known);
-    throw Error(fmt::format(
-        "there are no roles '{}'; {}", name,
-        meant.empty() ? fmt::format("known are {}, and files that end in .toml", fmt::join(known, ", "))
-                      : meant));
+    throw Error(Error::Code::model,
+                fmt::format("there are no roles '{}'; {}", name,
+                            meant.empty() ? fmt::format("known are {}, and files that end in .toml",
+                                                        fmt::join(known, ", "))
+                                          : meant));
   }
   // Those of the user stay for the run of the program, since flights refer to them.
   static std::mutex reading;

@@ -7,8 +7,10 @@
 #include <cstddef>
 #include <tuple>
 
+#include <pcor/roles/with_roles.hpp>
 #include <pcor/words/error.hpp>
 #include <pcor/words/utc.hpp>
+#include "roles/model_inputs.hpp"
 #include "roles/usual_variables.hpp"
 
 namespace pcor {
@@ -18,11 +20,6 @@ using namespace internal;
 namespace {
 
 std::string day_of(const Flight& flight) { return utc_text(flight.time().first, "%Y-%m-%d"); }
-
-bool is_of_aircraft(const std::string& model, const std::string& flight) {
-  if (model.empty() || flight.empty()) return false;
-  return model.find(flight) != std::string::npos || flight.find(model) != std::string::npos;
-}
 
 /// Where a model's pressures stand among those of its aircraft, as measured.
 std::size_t place_of_pressures(const ModelFile& model, const AircraftFamily& family) {
@@ -40,17 +37,33 @@ std::size_t place_of_pressures(const ModelFile& model, const AircraftFamily& fam
 
 /// What stands first has the least.
 auto rank_of(const LawOfFlight& law, const AircraftFamily& family) {
-  return std::make_tuple(-static_cast<int>(law.lacks.empty()) - static_cast<int>(law.is_in_time),
+  return std::make_tuple(!law.fits(), -static_cast<int>(law.lacks.empty()) - static_cast<int>(law.is_in_time),
                          !law.model.law.in_processing, place_of_pressures(law.model, family));
 }
 
+/// Why a flight cannot be corrected by a model whose variables it has; empty where it can.
+std::string why_not(const Flight& flight, const ModelFile& model) {
+  try {
+    std::vector<std::string> notes;
+    const ModelFile whole = with_roles(model, flight, notes);
+    const auto laser = whole.variables.find(Quantity::lams_airspeed);
+    const std::vector<Quantity> roles =
+        roles_of(whole, laser != whole.variables.end() && flight.has(laser->second));
+    model_inputs(flight, whole, chain_of(whole.model, roles), roles, notes);
+    return "";
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
 LawOfFlight law_of_model(const std::filesystem::path& path, ModelFile model, const Flight& flight) {
-  LawOfFlight law{path, std::move(model), {}, false};
+  LawOfFlight law{path, std::move(model)};
   for (const auto& [role, variable] : law.model.variables) {
     // A laser may be off.
     if (role != Quantity::lams_airspeed && !flight.has(variable)) law.lacks.push_back(variable);
   }
   law.is_in_time = law.model.law.holds_on(day_of(flight));
+  if (law.fits()) law.why_not = why_not(flight, law.model);
   return law;
 }
 
@@ -67,8 +80,9 @@ std::string reasons_of(const std::vector<LawOfFlight>& laws) {
   reasons.reserve(laws.size());
   for (const LawOfFlight& law : laws) {
     const std::string name = law.path.stem().string();
-    reasons.push_back(law.lacks.empty() ? fmt::format("{} is of another time", name)
-                                        : fmt::format("{} needs {}", name, fmt::join(law.lacks, " and ")));
+    reasons.push_back(!law.is_in_time      ? fmt::format("{} is of another time", name)
+                      : !law.lacks.empty() ? fmt::format("{} needs {}", name, fmt::join(law.lacks, " and "))
+                                           : fmt::format("{}: {}", name, law.why_not));
   }
   return fmt::format("{}", fmt::join(reasons, "; "));
 }
@@ -83,8 +97,7 @@ std::vector<LawOfFlight> laws_of_flight(const Flight& flight,
   for (const std::filesystem::path& path : models) {
     try {
       ModelFile model = read_model(path);
-      if (is_of_aircraft(model.model.aircraft, flight.aircraft()))
-        laws.push_back(law_of_model(path, std::move(model), flight));
+      if (is_of_aircraft(model, flight)) laws.push_back(law_of_model(path, std::move(model), flight));
     } catch (const Error& error) {
       notes.emplace_back(error.what());
     }
@@ -95,18 +108,28 @@ std::vector<LawOfFlight> laws_of_flight(const Flight& flight,
   return laws;
 }
 
-LawOfFlight law_of_flight(const Flight& flight, const std::vector<std::filesystem::path>& models) {
-  std::vector<std::string> notes;
-  std::vector<LawOfFlight> laws = laws_of_flight(flight, models, notes);
+LawOfFlight law_of_flight(const Flight& flight, const std::vector<std::filesystem::path>& models,
+                          std::vector<std::string>& notes) {
+  std::vector<std::string> unread;
+  std::vector<LawOfFlight> laws = laws_of_flight(flight, models, unread);
+  if (!unread.empty()) throw Error(unread.front());
+  if (flight.aircraft().empty())
+    throw Error(
+        fmt::format("{}: it does not say its aircraft; name its model with --model", flight.path().string()));
   const std::string who =
       fmt::format("{}, '{}' of {}", flight.path().string(), flight.aircraft(), day_of(flight));
   if (laws.empty()) {
-    throw Error(fmt::format("{}: none of the {} models is of this aircraft; name one with --model{}", who,
-                            models.size(), notes.empty() ? "" : "; " + notes.front()));
+    throw Error(fmt::format("{}: none of the {} models is of this aircraft; name one with --model", who,
+                            models.size()));
   }
   const LawOfFlight& first = laws.front();
   if (!first.fits())
     throw Error(fmt::format("{}: no model fits it: {}; name one with --model", who, reasons_of(laws)));
+  for (const LawOfFlight& law : laws) {
+    if (!first.model.law.in_processing && law.model.law.in_processing && law.is_in_time)
+      notes.push_back(fmt::format("such flights are processed with {}, which this one does not allow: {}",
+                                  law.path.stem().string(), reasons_of({law})));
+  }
   const AircraftFamily& family = family_of(flight);
   laws.erase(
       std::find_if(laws.begin(), laws.end(),

@@ -9,7 +9,7 @@
 #include <pcor/words/error.hpp>
 #include <pcor/words/suggest.hpp>
 #include <pcor/words/utc.hpp>
-#include "roles/possible_values.hpp"
+#include "roles/recorded_series.hpp"
 #include "roles/usual_variables.hpp"
 #include "words/quoting.hpp"
 
@@ -39,6 +39,19 @@ void note_other_unit(const VariableInfo& variable, const QuantityFacts& role, co
 
 }  // namespace
 
+std::vector<Quantity> roles_of(const ModelFile& file, bool with_laser) {
+  std::vector<Quantity> roles = file.roles();
+  if (!with_laser) roles.erase(std::remove(roles.begin(), roles.end(), Quantity::lams_airspeed), roles.end());
+  return roles;
+}
+
+Chain chain_of(const Model& model, const std::vector<Quantity>& roles) {
+  BindingError why;
+  std::optional<Chain> chain = Chain::build(model, roles, &why);
+  if (!chain) throw Error(Error::Code::model, fmt::format("model '{}': {}", model.name, why.message()));
+  return std::move(*chain);
+}
+
 std::vector<ModelInput> model_inputs(const Flight& flight, const ModelFile& file, const Chain& chain,
                                      const std::vector<Quantity>& roles, std::vector<std::string>& notes) {
   const AircraftFamily& family = family_of(file, flight);
@@ -48,8 +61,8 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelFile& file
     const auto stated = file.units.find(role);
     const std::string unit = stated == file.units.end() ? family.unit_of(variable) : stated->second;
     if (flight.has(variable)) note_other_unit(flight.variable(variable), facts, unit, notes);
-    return possible_values(
-        flight.conversion(variable, std::string(facts.unit), std::string(facts.name), unit), facts.name);
+    return believed(flight.conversion(variable, std::string(facts.unit), std::string(facts.name), unit),
+                    facts);
   };
   std::vector<ModelInput> inputs;
   const auto always = {Quantity::recovery_temperature, Quantity::ambient_temperature,
@@ -116,10 +129,17 @@ std::vector<std::string> notes_on_law(const Flight& flight, const ModelFile& fil
   }
   const std::string& expected = file.model.aircraft;
   const std::string actual = flight.aircraft();
-  if (!expected.empty() && !actual.empty() && expected.find(actual) == std::string::npos) {
+  if (!expected.empty() && !actual.empty() && !is_of_aircraft(file, flight)) {
     notes.push_back(fmt::format("the model is of the aircraft '{}', the flight of '{}'", expected, actual));
   }
   return notes;
+}
+
+bool is_of_aircraft(const ModelFile& file, const Flight& flight) {
+  const std::string& model = file.model.aircraft;
+  const std::string aircraft = flight.aircraft();
+  if (model.empty() || aircraft.empty()) return false;
+  return model.find(aircraft) != std::string::npos || aircraft.find(model) != std::string::npos;
 }
 
 }  // namespace pcor::internal

@@ -17,6 +17,12 @@ struct ModelInput {
   UnitConversion conversion;
 };
 
+/// The roles of a model, without that of the laser where its reading is not wanted.
+std::vector<Quantity> roles_of(const ModelFile& file, bool with_laser);
+
+/// The chain of a model on these roles. @throws Error if the model cannot be used on them.
+Chain chain_of(const Model& model, const std::vector<Quantity>& roles);
+
 /// What `chain`, which was built for the roles `roles` of `file`, reads of `flight`: the variables of the
 /// roles, and those that formulas name. Adds to `notes` what a user should know, a sentence each.
 /// @throws Error if a variable is absent or has no value, or its unit does not fit.
@@ -29,5 +35,9 @@ void note_impossible(const ModelInput& input, std::size_t samples, std::vector<s
 
 /// What a user should know of a law that was made for another time or aircraft than the flight's.
 std::vector<std::string> notes_on_law(const Flight& flight, const ModelFile& file);
+
+/// Whether a model is of the flight's aircraft, by the registration, which stands in both: "C-130 N130AR" and
+/// "N130AR". False where one of them does not say.
+bool is_of_aircraft(const ModelFile& file, const Flight& flight);
 
 }  // namespace pcor::internal

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include <pcor/words/error.hpp>
-#include "roles/possible_values.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -20,8 +19,7 @@ void try_variable(const Flight& flight, const std::string& variable, const std::
   try {
     const UnitConversion conversion =
         UnitConversion::between(own, std::string(facts.unit), {variable, flight.path().string(), ""});
-    std::vector<double> values =
-        read_values(flight, variable, possible_values(conversion, facts.name)).values;
+    std::vector<double> values = read_values(flight, variable, believed(conversion, facts)).values;
     if (std::all_of(values.begin(), values.end(), [](double x) { return std::isnan(x); })) return;
     series.variable = variable;
     series.values = std::move(values);

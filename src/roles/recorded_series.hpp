@@ -18,6 +18,12 @@ struct RecordedSeries {
   std::string without_unit{};  ///< the first variable that was passed over because the file gives it no unit
 };
 
+/// The conversion of which nothing comes out that is beyond the limits of a series: the mark of a missing
+/// value that the file does not name, a dead sensor, or another unit.
+inline UnitConversion believed(const UnitConversion& conversion, const QuantityFacts& facts) {
+  return conversion.within(facts.least, facts.most);
+}
+
 /// The values of a variable.
 struct ReadValues {
   std::vector<double> values{};  ///< NaN where missing

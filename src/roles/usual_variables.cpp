@@ -7,10 +7,11 @@ namespace pcor::internal {
 namespace {
 
 constexpr std::array<QuantityFacts, 4> extra_series{{
-    {"other_altitude", "m", "altitude of an inertial system or of the pressure, up positive"},
-    {"longitude", "deg", "longitude, east positive"},
-    {"ground_speed_east", "m/s", "ground speed, east positive"},
-    {"ground_speed_north", "m/s", "ground speed, north positive"},
+    {"other_altitude", "m", "altitude of an inertial system or of the pressure, up positive", Quantity::count,
+     -5000.0, 100000.0},
+    {"longitude", "deg", "longitude, east positive", Quantity::count, -720.0, 720.0},
+    {"ground_speed_east", "m/s", "ground speed, east positive", Quantity::count, -1500.0, 1500.0},
+    {"ground_speed_north", "m/s", "ground speed, north positive", Quantity::count, -1500.0, 1500.0},
 }};
 
 // Several instruments measure it, so that the choice is a part of the model.

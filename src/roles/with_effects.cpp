@@ -74,6 +74,7 @@ void add(ModelFile& file, ModelEffect effect) {
 ModelFile with_effects(const ModelFile& model, const std::vector<ModelEffect>& effects,
                        const std::vector<std::string>& variables) {
   ModelFile file = model;
+  file.law.in_processing = false;
   for (const ModelEffect& effect : effects) add(file, effect);
   BindingError error;
   while (!Chain::build(file.model, file.roles(), &error)) {

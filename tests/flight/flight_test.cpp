@@ -744,7 +744,8 @@ TEST_F(FlightTest, WhatFlagsOfTheFileCallUnusableIsMissing) {
       return variable;
     };
     for (const char* name : {"VALUES", "MASKS", "HARMLESS"}) series(name, NC_FLOAT, {1, 2, 3, 4});
-    file.text(series("NAMED", NC_FLOAT, {1, 2, 3, 4}), "ancillary_variables", "NOT_THERE QUALITY");
+    file.text(series("NAMED", NC_FLOAT, {1, 2, 3, 4}), "ancillary_variables",
+              "NOT_THERE HARMLESS_FLAG QUALITY");
     // As FAAM writes them: the worse the higher, and -128 for no flag.
     const int values = series("VALUES_FLAG", NC_BYTE, {0, 1, 3, -128});
     file.numbers(values, "flag_values", NC_BYTE, {0, 1, 2, 3});
@@ -756,7 +757,7 @@ TEST_F(FlightTest, WhatFlagsOfTheFileCallUnusableIsMissing) {
     file.text(masks, "flag_meanings", "aircraft_on_ground data_out_of_range data_missing");
     const int named = series("QUALITY", NC_INT, {0, 7, 0, 7});
     file.numbers(named, "flag_values", NC_INT, {0, 7});
-    file.text(named, "flag_meanings", "good bad");
+    file.text(named, "flag_meanings", "NOT_missing BAD");
     const int harmless = series("HARMLESS_FLAG", NC_BYTE, {1, 1, 1, 1});
     file.numbers(harmless, "flag_values", NC_BYTE, {1});
     file.text(harmless, "flag_meanings", "badger_on_board");
@@ -766,8 +767,41 @@ TEST_F(FlightTest, WhatFlagsOfTheFileCallUnusableIsMissing) {
   EXPECT_THAT(read("NAMED"), ElementsAre(1, IsNan(), 3, IsNan()));
   EXPECT_THAT(read("HARMLESS"), ElementsAre(1, 2, 3, 4));
   const Flight flight(path());
-  EXPECT_EQ(flight.variable("NAMED").flags, "QUALITY");
-  EXPECT_EQ(flight.variable("HARMLESS").flags, "");
+  EXPECT_THAT(flight.variable("NAMED").flags, ElementsAre("QUALITY"));
+  EXPECT_THAT(flight.variable("HARMLESS").flags, testing::IsEmpty());
+}
+
+TEST_F(FlightTest, FlagsOfAnyTypeAreReadAsTheyAreMeant) {
+  {
+    NetcdfMaker file(path());
+    file.time({0, 1, 2, 3});
+    const int fast = file.dimension("sps2", 2);
+    const auto flagged = [&](const std::string& name, int type, const std::vector<double>& flags,
+                             const std::vector<double>& masks) {
+      file.values(file.variable(name, NC_FLOAT, {file.time_dimension}), {1, 2, 3, 4});
+      const int variable = file.variable(name + "_FLAG", type, {file.time_dimension});
+      file.values(variable, flags);
+      file.numbers(variable, "flag_masks", type == NC_INT64 ? NC_DOUBLE : NC_BYTE, masks);
+      file.text(variable, "flag_meanings", "late bad");
+      return variable;
+    };
+    flagged("UNSIGNED", NC_UBYTE, {1, 128, 129, 2}, {1, -128});
+    file.text(flagged("MARKED", NC_BYTE, {1, -128, -127, 2}, {1, -128}), "_Unsigned", "true");
+    file.numbers(flagged("FILLED", NC_BYTE, {-127, 0, 1, 3}, {2, 1}), "missing_value", NC_BYTE, {-127});
+    flagged("EMPTY", NC_BYTE, {0, 1, 2, 3}, {1, 0});
+    flagged("HUGE", NC_INT64, {0, 1, 2, 3}, {1, 1e300});
+    file.values(file.variable("FAST", NC_FLOAT, {file.time_dimension, fast}), {1, 2, 3, 4, 5, 6, 7, 8});
+    const int of_records = file.variable("FAST_FLAG", NC_INT, {file.time_dimension});
+    file.values(of_records, {0, 1, 0, 1});
+    file.numbers(of_records, "flag_values", NC_INT, {0, 1});
+    file.text(of_records, "flag_meanings", "good bad");
+  }
+  EXPECT_THAT(read("UNSIGNED"), ElementsAre(1, IsNan(), IsNan(), 4));
+  EXPECT_THAT(read("MARKED"), ElementsAre(1, IsNan(), IsNan(), 4));
+  EXPECT_THAT(read("FILLED"), ElementsAre(1, 2, IsNan(), IsNan())) << "no flag is stored where the fill is";
+  EXPECT_THAT(read("EMPTY"), ElementsAre(1, 2, 3, 4));
+  EXPECT_THAT(read("HUGE"), ElementsAre(1, 2, 3, 4));
+  EXPECT_THAT(read("FAST"), ElementsAre(1, 2, IsNan(), IsNan(), 5, 6, IsNan(), IsNan()));
 }
 
 TEST_F(FlightTest, AVariableThatIsMissingThroughoutIsAnErrorWhenRequired) {

@@ -38,5 +38,14 @@ TEST(UsualVariables, KnowsSeriesThatNoModelReads) {
   EXPECT_EQ(series_named("corrected_mach"), nullptr) << "it is a result";
 }
 
+TEST(NamesOfSeries, EachThatIsMeasuredHasLimits) {
+  for (const std::string& series : pcor::internal::names_of_series()) {
+    const pcor::QuantityFacts& facts = *pcor::internal::series_named(series);
+    if (facts.quantity == pcor::Quantity::date) continue;
+    EXPECT_GT(facts.least, -1e6) << series;
+    EXPECT_LT(facts.most, 1e6) << series;
+  }
+}
+
 }  // namespace
 }  // namespace pcor::internal

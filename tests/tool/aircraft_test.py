@@ -192,6 +192,7 @@ class OtherAircraft(unittest.TestCase):
                                 ("ROLL", "the roll and the turning of the heading"),
                                 ("GGTRK", "the turning of the ground track and that of the heading"),
                                 ("ATTACK", "the angle of attack and the pitch above the path"),
+                                ("PITCH", "the pitch and the angle of attack and of climb together"),
                                 ("SSLIP", "the sideslip and the drift")):
             with self.subTest(variable):
                 turned.write_bytes(flight.read_bytes())

@@ -249,6 +249,7 @@ class Terminal(ComparisonTest):
     def test_verdicts_are_coloured_unless_it_is_refused(self):
         plain = self.done("check", ONE).stdout
         self.assertNotIn("\033", plain)
+        self.assertRegex(self.shown(80, "check", ONE, TERM="xterm"), "\033\\[3[123]m(in)?consistent\033")
         coloured = self.shown(9000, "check", ONE, TERM="xterm")
         self.assertRegex(coloured, "(?m)^total-pressure +\033\\[3[123]m(in)?consistent\033\\[0m ")
         self.assertEqual(re.sub("\033\\[[0-9]+m", "", coloured), plain)

@@ -358,7 +358,10 @@ class ModelsByDate(ManyFlights):
 
     def test_each_flight_gets_the_model_of_its_date(self):
         result = self.process()
-        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual(result.returncode, 0)
+        self.assertEqual(result.stderr.splitlines(),
+                         [f"{name}.nc: corrected by {name} C-130 PSFD/QCR, trailing cone 2003 "
+                          f"({self.models / name}.toml)" for name in ("early", "late")])
         self.assertEqual((self.model_of("early.nc"), self.model_of("late.nc")), ("early", "late"))
         self.assertRegex(result.stdout, "early.nc .* early C-130")
         again = json.loads(self.process("--if-stale", "--json", "-").stdout)
@@ -372,6 +375,10 @@ class ModelsByDate(ManyFlights):
         result = self.process()
         self.assertEqual((result.returncode, result.stderr.count("\n")), (1, 1))
         self.assertRegex(result.stderr, "early, other fit alike")
+        broken = self.models / "broken.toml"
+        broken.write_text("no model")
+        self.assertRegex(self.process().stderr, "broken.toml:1")
+        broken.unlink()
         self.model("other", 'valid_to = "2003-12-31"\nin_processing = true')
         self.assertEqual(self.process().returncode, 0)
         self.assertEqual(self.model_of("early.nc"), "other")
@@ -383,6 +390,23 @@ class ModelsByDate(ManyFlights):
         done, left = json.loads(result.stdout)["flights"]
         self.assertEqual((done["state"], left["state"]), ("processed", "unreadable"))
         self.assertRegex(left["reason"], "early is of another time")
+
+    def test_a_law_that_the_flight_does_not_allow_is_not_taken(self):
+        self.model("late", 'valid_from = "2004-01-01"\nin_processing = true')
+        late = (self.models / "late.toml").read_text()
+        self.model("plain", 'valid_from = "2004-01-01"')
+        (self.models / "late.toml").write_text(late + '[[effect]]\nid = "mine"\nformula = "k * NOT_THERE"\n'
+                                               'parameters = { k = 1.0 }\nunit = "hPa"\nwhere = "static"\n')
+        result = self.process()
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(self.model_of("late.nc"), "plain")
+        self.assertRegex(result.stderr, "late.nc: such flights are processed with late, .*NOT_THERE")
+
+    def test_the_models_are_not_written_over(self):
+        model = self.models / "late.toml"
+        before = model.read_bytes()
+        self.assertEqual(self.process("--json", model).returncode, 1)
+        self.assertEqual(model.read_bytes(), before)
 
     def test_one_model_or_a_folder(self):
         self.assertEqual(self.process("-m", MODEL).returncode, 2)
@@ -399,8 +423,12 @@ class ModelsByDate(ManyFlights):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn(f"wrote {report}", result.stdout)
         page = report.read_text()
-        for text in ("early.nc", "late.nc", "bad.nc", "unreadable", "Delta-p in time", "early C-130"):
-            self.assertTrue(text in page, text)
+        rows = re.findall(r"<tr><td>(\w+\.nc)</td><td>(.*?)</td><td[^>]*>(\w+)", page)
+        self.assertEqual([(name, state) for name, _, state in rows],
+                         [("early.nc", "processed"), ("bad.nc", "unreadable"), ("late.nc", "processed")])
+        self.assertTrue(rows[0][1].startswith("early C-130"))
+        self.assertTrue("Delta-p in time" in page)
+        self.assertTrue("late.nc: corrected by late C-130" in page)
 
 
 if __name__ == "__main__":

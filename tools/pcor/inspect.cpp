@@ -82,7 +82,8 @@ nlohmann::ordered_json as_json(const Inspection& flight) {
     result["laws"].push_back({{"name", law.model.model.name},
                               {"model", law.path.string()},
                               {"lacks", law.lacks},
-                              {"is_in_time", law.is_in_time}});
+                              {"is_in_time", law.is_in_time},
+                              {"why_not", law.why_not}});
   }
   result["notes"] = flight.notes;
   return result;
@@ -166,9 +167,10 @@ void print(const Inspection& flight) {
   if (!flight.laws.empty()) say("\nlaws for this aircraft\n");
   for (const LawOfFlight& law : flight.laws) {
     say("  {}: {}{}\n", law.path.stem().string(), law.model.model.name,
-        !law.lacks.empty() ? fmt::format("; the flight lacks {}", fmt::join(law.lacks, ", "))
-        : !law.is_in_time  ? "; stated for another time"
-                           : "; fits the flight's pressures and its date");
+        !law.lacks.empty()     ? fmt::format("; the flight lacks {}", fmt::join(law.lacks, ", "))
+        : !law.is_in_time      ? "; stated for another time"
+        : !law.why_not.empty() ? "; " + law.why_not
+                               : "; fits the flight's pressures and its date");
   }
   for (const std::string& note : flight.notes) say("\nNote: {}.\n", note);
 }
@@ -194,8 +196,9 @@ std::string next_step(const Options& options, const Inspection& flight) {
   if (fits != flight.laws.end())
     return fmt::format("To correct it by one of these laws: {} process {} -m {} -o corrected.nc", program(),
                        path, quoted(fits->path.stem().string()));
-  return fmt::format("To have a model to start from: {} inspect {} --write-model model.toml", program(),
-                     path);
+  const std::string roles = options.roles.empty() ? "" : " --roles " + quoted(options.roles);
+  return fmt::format("To have a model to start from: {} inspect {}{} --write-model model.toml", program(),
+                     path, roles);
 }
 
 /// Looks at the flights one after the other. Where there are several, one that cannot be read ends nothing.
@@ -208,9 +211,9 @@ std::vector<Inspection> look(const Options& options, bool text, nlohmann::ordere
     try {
       all.push_back(inspect_flight(flight, laws, time_stamp, options.roles));
     } catch (const Error& error) {
-      if (options.flights.size() == 1) throw;
+      if (options.flights.size() == 1 || error.code() == Error::Code::model) throw;
       result.push_back({{"path", flight}, {"unreadable", error.what()}});
-      if (text) say("{}\n", error.what());
+      tell(error.what());
       continue;
     }
     result.push_back(as_json(all.back()));
@@ -232,6 +235,9 @@ void run(const Options& options) {
   const Inspection& first = all.front();
   OutputsTogether together;
   if (!options.model.empty()) {
+    if (first.path != options.flights.front())
+      throw Error(
+          fmt::format("{}: no model can be written, for the first flight cannot be read", options.model));
     if (!first.model)
       throw Error(fmt::format("{}: no model can be written: {}", first.path, first.notes.front()));
     deliver(*first.model, options.model, inputs);

@@ -85,6 +85,9 @@ std::vector<fs::path> named_models() {
 }
 
 std::vector<fs::path> models_in(const fs::path& folder) {
+  if (fs::is_regular_file(folder))
+    throw Error(fmt::format("'{}' is a file; give a model with --model", folder.string()));
+  if (!fs::is_directory(folder)) throw Error(fmt::format("there is no folder '{}'", folder.string()));
   std::vector<fs::path> models = files_in(folder);
   if (models.empty()) {
     throw Error(fmt::format("there is no model in '{}'; name a folder with files that end in {}",

@@ -16,6 +16,13 @@ namespace {
 
 std::vector<std::string> choices;
 
+void tell_choices(const std::vector<std::string>& notes, const CommonOptions& options) {
+  for (const std::string& note : notes) {
+    if (!options.quiet) tell(note);
+    choices.push_back(note);
+  }
+}
+
 /// A model that names no pressure, completed by the first flight that can be read and completes it. All
 /// others have to choose the same variables: a result must not depend on which flights stand beside.
 ModelFile completed(const ModelFile& open, const std::vector<std::filesystem::path>& flights,
@@ -57,20 +64,22 @@ ModelFile read_model_for(const std::filesystem::path& model,
     return file;
   std::vector<std::string> notes;
   ModelFile whole = completed(file, flights, notes);
-  for (const std::string& note : notes) {
-    if (!options.quiet) tell(note);
-    choices.push_back(note);
-  }
+  tell_choices(notes, options);
   return whole;
 }
 
 const std::vector<std::string>& choices_of_this_run() { return choices; }
 
 ModelFile model_for_flight(const std::vector<std::filesystem::path>& models,
-                           const std::filesystem::path& flight) {
+                           const std::filesystem::path& flight, const CommonOptions& options) {
   const Flight opened(flight);
   std::vector<std::string> notes;
-  return with_roles(law_of_flight(opened, models).model, opened, notes);
+  const LawOfFlight law = law_of_flight(opened, models, notes);
+  notes.insert(notes.begin(), fmt::format("corrected by {} ({})", law.model.model.name, law.path.string()));
+  ModelFile model = with_roles(law.model, opened, notes);
+  for (std::string& note : notes) note = fmt::format("{}: {}", flight.filename().string(), note);
+  tell_choices(notes, options);
+  return model;
 }
 
 }  // namespace pcor::tool

@@ -20,10 +20,10 @@ ModelFile read_model_for(const std::filesystem::path& model,
 /// and reports say it too.
 const std::vector<std::string>& choices_of_this_run();
 
-/// The model of a folder that a flight is to be corrected by (`law_of_flight`), with the units that its
-/// aircraft's data state.
+/// The model of a folder that a flight is to be corrected by (`law_of_flight`), with what it leaves to the
+/// flight's aircraft. Which it is, is among the choices of this run.
 /// @throws Error as these
 ModelFile model_for_flight(const std::vector<std::filesystem::path>& models,
-                           const std::filesystem::path& flight);
+                           const std::filesystem::path& flight, const CommonOptions& options);
 
 }  // namespace pcor::tool

@@ -231,11 +231,14 @@ std::vector<ProcessTask> tasks_of(const Options& options, bool folder) {
   const std::vector<fs::path> flights(options.inputs.begin(), options.inputs.end());
   std::vector<ProcessTask> tasks = folder ? tasks_in_folder(flights, options.output)
                                           : std::vector<ProcessTask>{{flights.front(), options.output, {}}};
+  std::vector<fs::path> models{options.model};
+  if (!options.models.empty()) models = models_in(options.models);
   refuse_overwriting({options.common.json, options.common.report}, flights);
   for (ProcessTask& task : tasks) {
     task.history = command_line(task, options);
-    refuse_overwriting({task.output, options.common.json, options.common.report},
-                       {task.input, options.model});
+    std::vector<fs::path> inputs = models;
+    inputs.push_back(task.input);
+    refuse_overwriting({task.output, options.common.json, options.common.report}, inputs);
   }
   return tasks;
 }
@@ -290,8 +293,8 @@ std::vector<ProcessedFlight> process_all(const std::vector<ProcessTask>& tasks, 
 /// One model for all, or of each flight its own.
 ModelOfFlight models_of(const Options& options) {
   if (!options.models.empty()) {
-    return [models = models_in(options.models)](const fs::path& flight) {
-      return model_for_flight(models, flight);
+    return [models = models_in(options.models), &options](const fs::path& flight) {
+      return model_for_flight(models, flight, options.common);
     };
   }
   return [model = read_model_for(options.model, {options.inputs.begin(), options.inputs.end()},

@@ -32,7 +32,7 @@ void write_report_of_run(Report report, const ReportFiles& files, const std::fil
   add(files.models.size() > 1 ? "Model files" : "Model file", files.models);
   add(files.held_out.empty() ? "Flights" : "Fitted flights", files.flights);
   add("Held-out flights", files.held_out);
-  add("Variables", choices_of_this_run());
+  add("Choices", choices_of_this_run());
   write_report(report, path);
 }
 

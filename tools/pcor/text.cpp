@@ -135,12 +135,16 @@ std::string coloured(std::string line) {
     line.insert(at, colour);
   };
   constexpr std::string_view note = "Note";
-  if (line.compare(0, note.size(), note) == 0) paint(0, note.size(), "\033[1m");
+  if (line.rfind("Note:", 0) == 0 || line.rfind("Note,", 0) == 0) paint(0, note.size(), "\033[1m");
   constexpr std::array<std::pair<std::string_view, std::string_view>, 3> verdicts{
       {{"inconsistent", "\033[31m"}, {"consistent", "\033[32m"}, {"cannot tell", "\033[33m"}}};
   for (const auto& [verdict, colour] : verdicts) {
-    const std::size_t at = line.find(fmt::format(" {}  ", verdict));
-    if (at != none) paint(at + 1, verdict.size(), colour);
+    const std::size_t at = line.find(fmt::format("  {}", verdict));
+    if (at == none) continue;
+    // A cell ends with two blanks, or with the line, which may be folded.
+    const std::size_t end = at + 2 + verdict.size();
+    if (end == line.size() || line[end] == '\n' || line.compare(end, 2, "  ") == 0)
+      paint(at + 2, verdict.size(), colour);
   }
   return line;
 }

@@ -39,7 +39,7 @@ struct VariableInfo {
   int rate = 0;            ///< samples per record: 1, or N of (Time, spsN); 0 if not a time series
   std::vector<std::string> dimensions;
   std::vector<std::pair<std::string, std::string>> attributes;  ///< all of them as text, without trailing NUL
-  std::string flags;  ///< the variable of flags that calls samples unusable, which are missing then; or empty
+  std::vector<std::string> flags;  ///< variables of flags that call samples unusable, which are missing then
   std::optional<std::array<double, 2>> modulus_range;  ///< of an angle: where it starts again
 };
 

@@ -28,7 +28,7 @@ struct ProcessedFlight {
   std::filesystem::path input;
   std::filesystem::path output;
   FlightState state = FlightState::processed;
-  ModelFile model{};         ///< by which it was corrected
+  ModelFile model{};         ///< by which it was corrected; empty where none could be told
   ProcessSummary summary{};  ///< of a flight that was processed
   std::string reason{};      ///< why it could not be read, one line
 };

@@ -13,7 +13,7 @@ namespace pcor {
 /// what the flight's own processing corrected, and how many samples have which quality bit. A flight that
 /// could not be read is a row of the table alone.
 /// @param suffix of the derived variables, as in `ProcessOptions`
-/// @throws Error if an output cannot be read
+/// @throws Error if an output, or an input of it, cannot be read
 Report process_report(const std::vector<ProcessedFlight>& flights, const std::string& suffix);
 
 }  // namespace pcor

@@ -15,9 +15,10 @@ struct LawOfFlight {
   ModelFile model;
   std::vector<std::string> lacks{};  ///< variables of the model that the flight does not have
   bool is_in_time = false;           ///< the flight is within the time for which the law is stated to hold
+  std::string why_not{};  ///< what else stands against it, as a variable that has no value; empty for nothing
 
   /// The flight can be corrected by it.
-  bool fits() const { return is_in_time && lacks.empty(); }
+  bool fits() const { return is_in_time && lacks.empty() && why_not.empty(); }
 };
 
 /// The laws of a flight's aircraft among model files, those that fit first; of these, those that its operator
@@ -29,9 +30,11 @@ std::vector<LawOfFlight> laws_of_flight(const Flight& flight,
                                         std::vector<std::string>& notes);
 
 /// The one law that a flight is to be corrected by: the first of `laws_of_flight`, where no other stands
-/// level with it.
-/// @throws Error if none fits, or if several do and nothing says which is the operator's; the message names
-/// them.
-LawOfFlight law_of_flight(const Flight& flight, const std::vector<std::filesystem::path>& models);
+/// level with it. Where the operator processes such flights with another, which needs what this one does not
+/// have, `notes` says so.
+/// @throws Error if a model cannot be read, none fits, or several do and nothing says which is the
+/// operator's; the message names them.
+LawOfFlight law_of_flight(const Flight& flight, const std::vector<std::filesystem::path>& models,
+                          std::vector<std::string>& notes);
 
 }  // namespace pcor

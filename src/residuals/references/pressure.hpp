@@ -11,7 +11,6 @@
 #include <pcor/words/error.hpp>
 #include <pcor/words/suggest.hpp>
 #include "residuals/reference_on_samples.hpp"
-#include "roles/possible_values.hpp"
 #include "roles/recorded_series.hpp"
 
 namespace pcor::internal {
@@ -66,7 +65,7 @@ class PressureReference final : public Reference {
                               flight.path().string(), variable_, meant.empty() ? "" : "; " + meant));
     }
     const UnitConversion conversion =
-        possible_values(flight.conversion(variable_, "hPa"), facts_of(Quantity::static_pressure).name);
+        believed(flight.conversion(variable_, "hPa"), facts_of(Quantity::static_pressure));
     flight.require_values(variable_);
     ModelSamples samples;
     samples.columns = {
