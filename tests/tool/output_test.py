@@ -6,6 +6,7 @@
 The example flight stands for one of another institution: it is given latitude, longitude and other conventions.
 """
 
+import json
 import subprocess
 import sys
 import tempfile
@@ -115,6 +116,18 @@ class Outputs(unittest.TestCase):
         again = self.output("--all", "--suffix", "_AGAIN", model=MODEL.read_text())
         self.assertEqual(sum(hasattr(variable, "cf_role") for variable in again.variables.values()), 1)
         self.assertEqual(again.pcor_input, "first.nc")
+
+    def test_results_are_not_missing_where_only_an_input_is(self):
+        """PCORFLAG has bits whose meanings speak of missing inputs; read back, the results beside them are there."""
+        self.edit(lambda flight: flight["TTRR"].__setitem__(slice(100, 200), -32767.0))
+        output = self.output()
+        self.assertEqual(output["PSXC"][:].count(), len(output["PSXC"]))
+        self.assertGreater(sum(flag != 0 for flag in output["PCORFLAG"][:]), 99)
+        model = self.path / "recorded.toml"
+        model.write_text(MODEL.read_text())
+        result = subprocess.run([TOOL, "compare", self.path / "out.nc", "-m", model, "--reference", "pressure:PSXC", "--json",
+                                 "-", "--min-airspeed", "0"], check=True, capture_output=True, text=True)
+        self.assertEqual(json.loads(result.stdout)["masks"]["reference_missing"], 0)
 
     def test_standard_names_are_of_the_table(self):
         for variable in self.output().variables.values():
