@@ -258,7 +258,7 @@ class ModelGenerator {
     for (std::size_t i = below(3); i > 0; --i) add_effect(file, formula(i));
     std::shuffle(file.model.effects.begin(), file.model.effects.end(), random_);
     for (const ModelEffect& effect : file.model.effects) file.fits.push_back(fit(effect));
-    if (maybe()) file.law = {words(), "2011-11-02", "2012-02-29", positive(), words()};
+    if (maybe()) file.law = {words(), "2011-11-02", "2012-02-29", maybe(), positive(), words()};
     if (maybe()) covariance(file);
     if (maybe()) uncertainty(file);
     file.provenance = provenance(3);

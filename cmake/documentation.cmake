@@ -1,0 +1,12 @@
+# The pages of the public headers: cmake --build build/release --target documentation, where there is Doxygen.
+find_package(Doxygen QUIET)
+if(DOXYGEN_FOUND)
+  set(DOXYGEN_USE_MDFILE_AS_MAINPAGE ${PROJECT_SOURCE_DIR}/README.md)
+  set(DOXYGEN_STRIP_FROM_PATH ${PROJECT_SOURCE_DIR}/include)
+  set(DOXYGEN_EXCLUDE_SYMBOLS pcor::internal)
+  set(DOXYGEN_EXTRACT_ALL YES)
+  set(DOXYGEN_JAVADOC_AUTOBRIEF YES)
+  set(DOXYGEN_QUIET YES)
+  set(DOXYGEN_WARN_IF_INCOMPLETE_DOC NO)
+  doxygen_add_docs(documentation include README.md docs data/models/FORMAT.md data/aircraft/README.md)
+endif()
