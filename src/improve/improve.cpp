@@ -416,7 +416,6 @@ class Climb {
     } catch (const Error& error) {
       return fmt::format("{} was tried, but cannot be fitted: {}", id, error.what());
     }
-    measure(step, fit, model.alike);
     const std::vector<TrialFlight> tried = loop_.try_models({top(), {fit.model, model.alike}});
     const Comparison fitted = comparison_of(tried, 0, 1, false);
     const Comparison held_out = comparison_of(tried, 0, 1, true);
@@ -424,6 +423,7 @@ class Climb {
       return fmt::format("{} was tried and dropped: with it the rms of the fit is {}, without it {}", id,
                          shown(fitted.rms_after), shown(fitted.rms_before));
     }
+    measure(step, fit, model.alike);
     // Without held-out flights the parts in turn of the diagnosis count. Where the model describes more
     // samples than before, those with flaps out, both are compared on these.
     const bool same_samples = fit.samples == result_.fit.samples;

@@ -50,20 +50,20 @@ class Signs {
     const Series heading = rise(motion_.heading, true);
     std::vector<Pair> all;
     all.push_back({"the vertical speed", motion_.vertical_speed, "the change of altitude", altitude, 5.0,
-                   "vertical_speed = \"-1 m s-1\" or altitude = \"-1 m\""});
+                   R"(vertical_speed = "-1 m s-1" or altitude = "-1 m")"});
     if (const Series* const pressure = samples_.model.find(Quantity::static_pressure))
       all.push_back({"the fall of the static pressure", negative(rise(*pressure)), "the change of altitude",
-                     altitude, 5.0, "altitude = \"-1 m\""});
+                     altitude, 5.0, R"(altitude = "-1 m")"});
     all.push_back({"the roll", motion_.roll, "the turning of the heading", heading, 2.0,
-                   "roll = \"-1 degree\" or heading = \"-1 degree\""});
+                   R"(roll = "-1 degree" or heading = "-1 degree")"});
     all.push_back({"the turning of the ground track", rise(motion_.ground_track, true), "that of the heading",
-                   heading, 2.0, "ground_track = \"-1 degree\" or heading = \"-1 degree\""});
+                   heading, 2.0, R"(ground_track = "-1 degree" or heading = "-1 degree")"});
     all.push_back({"the angle of attack", rise(motion_.attack), "the pitch above the path",
-                   rise(pitch_above_path()), 0.3, "attack = \"-1 degree\" or pitch = \"-1 degree\""});
+                   rise(pitch_above_path()), 0.3, R"(attack = "-1 degree" or pitch = "-1 degree")"});
     all.push_back({"the pitch", rise(motion_.pitch), "the angle of attack and of climb together",
-                   rise(attack_and_climb()), 0.3, "pitch = \"-1 degree\" or attack = \"-1 degree\""});
+                   rise(attack_and_climb()), 0.3, R"(pitch = "-1 degree" or attack = "-1 degree")"});
     all.push_back({"the sideslip", rise(motion_.sideslip), "the drift", rise(drift(), true), 0.3,
-                   "sideslip = \"-1 degree\" or ground_track = \"-1 degree\""});
+                   R"(sideslip = "-1 degree" or ground_track = "-1 degree")"});
     return all;
   }
 

@@ -527,7 +527,8 @@ TEST_F(FlightWriterTest, WhatIsNotFinishedIsHiddenBesideTheOutputAndGoesAtASigna
     FlightWriter first(output, flight, {}), second(output, flight, {});
     EXPECT_EQ(directory.entries(), 3) << "each has its own";
     for (const auto& entry : std::filesystem::directory_iterator(directory.path()))
-      EXPECT_THAT(entry.path().filename().string(), MatchesRegex("(\\.out\\.nc\\.......\\.part|out\\.nc)"));
+      EXPECT_THAT(entry.path().filename().string(),
+                  MatchesRegex("(\\.out\\.nc\\..*\\.......\\.part|out\\.nc)"));
     pcor::remove_unfinished_files();
     EXPECT_EQ(directory.entries(), 1);
     EXPECT_EQ(contents(output), "old");

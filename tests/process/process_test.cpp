@@ -159,7 +159,7 @@ TEST_F(Process, TakesWhatIsImpossibleAsMissing) {
   };
   put("PSFD", 3, 1e30F);
   put("PSFD", 4, 9999.0F);
-  put("PSFD", 5, 1.0F);
+  put("PSFD", 5, -9999.0F);
   put("QCF", 6, 1e20F);
   put("TTRR", 7, 9999.0F);
   ProcessOptions options;
@@ -180,9 +180,9 @@ TEST_F(Process, TakesWhatIsImpossibleAsMissing) {
   EXPECT_NEAR(p[8], 700.0, 3e-4) << "and nothing else is hurt";
   EXPECT_NEAR(temperature[8], 270.0, 1e-4);
   EXPECT_THAT(summary.notes, testing::IsSupersetOf(
-                                 {"2 samples of PSFD lie outside 10 to 1200 hPa, which is impossible, and "
+                                 {"2 samples of PSFD lie outside -2000 to 2000 hPa, which is impossible, and "
                                   "are taken as missing",
-                                  "a sample of TTRR lies outside 123 to 473 K, which is impossible, and is "
+                                  "a sample of TTRR lies outside 100 to 1000 K, which is impossible, and is "
                                   "taken as missing"}));
 }
 

@@ -276,6 +276,22 @@ class OpenFiles(ManyFlights):
             self.assertEqual(result.returncode, 0, result.stderr)
 
 
+    def test_one_that_cannot_be_read_is_left_out_where_that_is_asked_for(self):
+        flight = self.path / "0.nc"
+        self.run_tool("simulate", SOURCE / "data/scenarios/c130-short.toml", "-o", flight)
+        bad = self.bad_flight()
+        model = ["-m", SOURCE / "data/scenarios/models/c130-psfd-eq18.toml"]
+        for command in (["compare"], ["refit", "-o", self.path / "fitted.toml", "--force"], ["check"]):
+            with self.subTest(command=command[0]):
+                refused = self.run_tool(*command, flight, bad, *model)
+                self.assertEqual(refused.returncode, 1)
+                result = self.run_tool(*command, flight, bad, *model, "--skip-unreadable", "--json", "-")
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertRegex(result.stderr, "left out: .*bad.nc")
+                self.assertRegex(json.loads(result.stdout)["choices"][0], "left out: .*bad.nc")
+                self.assertEqual(self.run_tool(*command, bad, *model, "--skip-unreadable").returncode, 1)
+
+
 class ModelNames(ManyFlights):
     def test_a_shipped_model_is_found_by_its_name(self):
         (flight,) = self.flights("a.nc")

@@ -147,7 +147,7 @@ class Usage(ToolTest):
         self.assert_refused(self.run_tool("proces"), "proces", "process", status=2)
 
     def test_missing_option(self):
-        self.assert_refused(self.run_tool("process", "flight.nc"), "--model", status=2)
+        self.assert_refused(self.run_tool("process", "flight.nc", "-o", "out.nc"), "--model", status=2)
 
     def test_wrong_choice(self):
         result = self.process(self.flight(), None, None, "--correct-with", "radar")

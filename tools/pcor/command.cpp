@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include <pcor/words/error.hpp>
-#include "model_of_flight.hpp"
+#include "choices.hpp"
 
 #include "text.hpp"
 

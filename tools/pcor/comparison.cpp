@@ -9,8 +9,10 @@
 #include <cmath>
 #include <system_error>
 
+#include <pcor/flight/flight.hpp>
 #include <pcor/words/error.hpp>
 #include <pcor/words/suggest.hpp>
+#include "choices.hpp"
 
 namespace pcor::tool {
 
@@ -35,6 +37,25 @@ void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
       ->type_name("REFERENCE");
 }
 
+namespace {
+
+/// Takes out the flights that cannot be opened, and says so. @throws Error if none is left.
+void leave_out_unreadable(std::vector<std::string>& flights) {
+  std::vector<std::string> readable;
+  for (const std::string& flight : flights) {
+    try {
+      const Flight opened(flight);
+      readable.push_back(flight);
+    } catch (const Error& error) {
+      tell_choices({fmt::format("left out: {}", error.what())}, false);
+    }
+  }
+  if (readable.empty()) throw Error(fmt::format("none of the {} flights can be read", flights.size()));
+  flights = std::move(readable);
+}
+
+}  // namespace
+
 void add_flight_options(CLI::App& command, ComparisonOptions& options) {
   command.add_option("flights", options.flights, "the flights, netCDF files")->required()->type_name("IN.nc");
   add_list_option(command, "--exclude", options.exclude,
@@ -58,6 +79,11 @@ void add_flight_options(CLI::App& command, ComparisonOptions& options) {
                   "whether the time of a record is the beginning or the middle of its second")
       ->check(CLI::IsMember({"begin", "middle"}))
       ->capture_default_str();
+  command.add_flag("--skip-unreadable", options.skip_unreadable,
+                   "leave out a flight that is damaged or is none, and say so");
+  command.parse_complete_callback([&options] {
+    if (options.skip_unreadable) leave_out_unreadable(options.flights);
+  });
 }
 
 Regime regime_of(const std::string& name, const std::string& option) {

@@ -20,6 +20,7 @@ struct ComparisonOptions {
   double least_airspeed = MaskOptions{}.least_airspeed;
   std::optional<double> most_flaps{};
   std::string time_stamp = "begin";
+  bool skip_unreadable = false;  ///< flights that cannot be opened are taken from `flights`
 };
 
 /// A check of an option: a finite number, zero or more.

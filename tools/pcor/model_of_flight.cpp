@@ -9,19 +9,10 @@
 #include <pcor/roles/with_roles.hpp>
 #include <pcor/words/error.hpp>
 
-#include "text.hpp"
+#include "choices.hpp"
 
 namespace pcor::tool {
 namespace {
-
-std::vector<std::string> choices;
-
-void tell_choices(const std::vector<std::string>& notes, const CommonOptions& options) {
-  for (const std::string& note : notes) {
-    if (!options.quiet) tell(note);
-    choices.push_back(note);
-  }
-}
 
 /// A model that names no pressure, completed by the first flight that can be read and completes it. All
 /// others have to choose the same variables: a result must not depend on which flights stand beside.
@@ -64,11 +55,9 @@ ModelFile read_model_for(const std::filesystem::path& model,
     return file;
   std::vector<std::string> notes;
   ModelFile whole = completed(file, flights, notes);
-  tell_choices(notes, options);
+  tell_choices(notes, options.quiet);
   return whole;
 }
-
-const std::vector<std::string>& choices_of_this_run() { return choices; }
 
 ModelFile model_for_flight(const std::vector<std::filesystem::path>& models,
                            const std::filesystem::path& flight, const CommonOptions& options) {
@@ -78,7 +67,7 @@ ModelFile model_for_flight(const std::vector<std::filesystem::path>& models,
   notes.insert(notes.begin(), fmt::format("corrected by {} ({})", law.model.model.name, law.path.string()));
   ModelFile model = with_roles(law.model, opened, notes);
   for (std::string& note : notes) note = fmt::format("{}: {}", flight.filename().string(), note);
-  tell_choices(notes, options);
+  tell_choices(notes, options.quiet);
   return model;
 }
 

@@ -16,10 +16,6 @@ namespace pcor::tool {
 ModelFile read_model_for(const std::filesystem::path& model,
                          const std::vector<std::filesystem::path>& flights, const CommonOptions& options);
 
-/// What was chosen for the models of this run that left their variables open, a sentence each; JSON results
-/// and reports say it too.
-const std::vector<std::string>& choices_of_this_run();
-
 /// The model of a folder that a flight is to be corrected by (`law_of_flight`), with what it leaves to the
 /// flight's aircraft. Which it is, is among the choices of this run.
 /// @throws Error as these

@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <pcor/words/error.hpp>
@@ -246,7 +247,7 @@ std::vector<ProcessTask> tasks_of(const Options& options, bool folder) {
 /// The folder for several flights, made where it is not there, and taken away again if nothing came into it.
 class OutputFolder {
  public:
-  explicit OutputFolder(const fs::path& folder) : folder_(folder) {
+  explicit OutputFolder(fs::path folder) : folder_(std::move(folder)) {
     std::error_code code;
     is_new_ = fs::create_directories(folder_, code);
     if (code) {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include <pcor/words/utc.hpp>
+#include "choices.hpp"
 #include "command.hpp"
-#include "model_of_flight.hpp"
 
 namespace pcor::tool {
 namespace {

@@ -19,7 +19,8 @@ void set_program(const std::string& name_as_called);
 std::string quoted(const std::string& word);
 
 /// Prints text for people on standard output, whose lines are folded at the width of the terminal, with the
-/// verdicts of checks in colour and notes bold unless NO_COLOR is set. Where standard output is no terminal they stay as they are.
+/// verdicts of checks in colour and notes bold unless NO_COLOR is set. Where standard output is no terminal
+/// they stay as they are.
 void say_text(std::string_view text);
 
 /// As `say_text`, formatted as by fmt::print.
