@@ -259,7 +259,7 @@ RefitResult fit(const Sources& sources, const ModelFile& model, const References
   require_sense(sources, reference, options);
   require_one_kind(sources, options);
   RefitOptions shared = options;
-  shared.memory /= references.size();  // each keeps samples of its own
+  shared.memory /= references.size() * (1 + options.stages.size());  // each keeps samples of its own
   const FitTask task = task_of(model, references, shared);
   const Fitted fitted = fit_in_stages(sources, task);
   const Solution& solution = fitted.solution;

@@ -304,6 +304,7 @@ class Shell(ComparisonTest):
         self.assertEqual(self.completed("refit", "one.nc", "--holdout", "t"), ["two.nc"])
         self.assertEqual(self.completed("refit", "--reference", "static", ":", "l"), ["law.toml"])
         self.assertEqual(self.completed("process", "one.nc", "--json", "no"), ["notes.txt"])
+        self.assertEqual(self.completed("process", "one.nc", "--models", ""), ["flights"])
 
     def test_a_colon_is_not_quoted(self):
         """Readline quotes what it takes for file names, as it should where they hold blanks."""
@@ -341,6 +342,8 @@ class Shell(ComparisonTest):
         self.assertEqual(completed("pcor refit --exclude pitch"), {"pitch manoeuvre"})
         self.assertLessEqual({"one.nc"}, completed("pcor refit o"))
         self.assertLessEqual({"law.toml"}, completed("pcor refit -m l"))
+        (self.path / "flights").mkdir()
+        self.assertEqual(completed("pcor process --models "), {"flights/"})
 
     def test_manual_pages(self):
         self.done("man", "--folder", self.path)

@@ -70,6 +70,7 @@ Offer offer_of(const CLI::Option& option) {
   if (value == "REFERENCE") return {{"lams", "height", "wind", "static:", "total:", "pressure:"}, ""};
   if (value == "static:OTHER.toml") return {{"static:"}, ""};
   if (value == "FILE") return {{}, "*"};
+  if (value == "FOLDER") return {{}, "*/"};
   const std::size_t dot = value.rfind('.');
   return {{}, dot == std::string::npos ? "" : "*" + value.substr(dot)};
 }

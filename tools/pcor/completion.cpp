@@ -175,9 +175,9 @@ std::string fish_offer(const Offer& offer) {
     return fmt::format(" -fa {}", in_fish_quotes(fmt::format("{}", fmt::join(words, " "))));
   }
   if (offer.files.empty()) return "";
-  return offer.files == "*"
-             ? " -F"
-             : fmt::format(" -fka '(__fish_complete_suffix {})'", offer.files.substr(offer.files.find('.')));
+  if (offer.files == "*") return " -F";
+  if (offer.files == "*/") return " -fa '(__fish_complete_directories)'";
+  return fmt::format(" -fka '(__fish_complete_suffix {})'", offer.files.substr(offer.files.find('.')));
 }
 
 std::string fish_completion(const CLI::App& program) {
