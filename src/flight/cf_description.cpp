@@ -5,21 +5,14 @@
 #include <netcdf.h>
 
 #include <algorithm>
-#include <sstream>
 
 #include <pcor/units/units.hpp>
+#include "words/phrasing.hpp"
 
 namespace pcor::internal {
 namespace {
 
 constexpr const char* degrees = "degree";
-
-std::vector<std::string> words_of(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;) words.push_back(word);
-  return words;
-}
 
 /// Whether values in the unit are degrees. What says nothing, or nothing that is known, is believed to be.
 bool is_in_degrees(const std::string& unit) {

@@ -5,20 +5,14 @@
 #include <cctype>
 #include <cmath>
 #include <optional>
-#include <sstream>
 #include <string_view>
+
+#include "words/phrasing.hpp"
 
 namespace pcor::internal {
 namespace {
 
 constexpr unsigned long all_bits = 0xFF'FF'FF'FFUL;
-
-std::vector<std::string> words_of(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;) words.push_back(word);
-  return words;
-}
 
 /// Whether a meaning, "data_bad_or_missing", says that the sample is none.
 bool says_unusable(const std::string& meaning) {

@@ -100,12 +100,7 @@ class Look {
     find_roles();
     look_at_samples();
     result_.laws = laws_of_flight(flight_, laws, result_.notes);
-    for (const PressurePair& pair : family_.processed) {
-      if (result_.corrected_pressure.empty() &&
-          has_values(flight_, pair.static_pressure, std::string(facts_of(Quantity::static_pressure).unit),
-                     family_.unit_of(pair.static_pressure)))
-        result_.corrected_pressure = pair.static_pressure;
-    }
+    result_.corrected_pressure = processed_static_pressure(flight_, family_);
     return std::move(result_);
   }
 

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include <pcor/words/utc.hpp>
+#include "report/present_columns.hpp"
 #include "roles/recorded_series.hpp"
 
 namespace pcor {
@@ -33,21 +34,7 @@ class FlightColumns {
       part.resize(flight.samples->time.size(), std::nan(""));
       values.insert(values.end(), part.begin(), part.end());
     }
-    if (std::none_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); })) return;
-    report_.columns.push_back({name, title, unit, std::move(values)});
-  }
-
-  bool has(const std::string& name) const {
-    return std::any_of(report_.columns.begin(), report_.columns.end(),
-                       [&](const ReportColumn& column) { return column.name == name; });
-  }
-
-  void add_time(const char* title, const char* caption, std::initializer_list<const char*> names) {
-    std::vector<std::string> there;
-    for (const char* name : names) {
-      if (has(name)) there.emplace_back(name);
-    }
-    if (!there.empty()) report_.items.emplace_back(TimePanel{title, caption, std::move(there)});
+    add_if_present(report_, ReportColumn{name, title, unit, std::move(values)});
   }
 
  private:
@@ -120,13 +107,16 @@ Report inspection_report(const std::vector<Inspection>& flights) {
     columns.add("roll", "roll", "deg", [](const Inspection& f) { return f.samples->motion.roll; });
     columns.add("latitude", "latitude", "deg", recorded("latitude"));
     columns.add("longitude", "longitude", "deg", recorded("longitude"));
-    columns.add_time("Height",
-                     "Altitude in time; regimes are shaded. Drag over a time range, or choose a regime, and "
-                     "every picture shows its samples alone.",
-                     {"altitude"});
-    columns.add_time("Speed", "True airspeed and speed over the ground.", {"airspeed", "ground_speed"});
-    columns.add_time("Attitude", "Pitch and roll.", {"pitch", "roll"});
-    if (columns.has("latitude") && columns.has("longitude") && columns.has("altitude"))
+    add_if_present(
+        report,
+        TimePanel{"Height",
+                  "Altitude in time; regimes are shaded. Drag over a time range, or choose a regime, and "
+                  "every picture shows its samples alone.",
+                  {"altitude"}});
+    add_if_present(
+        report, TimePanel{"Speed", "True airspeed and speed over the ground.", {"airspeed", "ground_speed"}});
+    add_if_present(report, TimePanel{"Attitude", "Pitch and roll.", {"pitch", "roll"}});
+    if (has_column(report, "latitude") && has_column(report, "longitude") && has_column(report, "altitude"))
       report.items.emplace_back(PlanePanel{"Track", "The track over the ground, by its height.", "longitude",
                                            "latitude", "altitude", false, false});
   }

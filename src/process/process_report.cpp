@@ -9,6 +9,7 @@
 
 #include <pcor/flight/flight.hpp>
 #include <pcor/words/replacement_file.hpp>
+#include "report/present_columns.hpp"
 #include "roles/recorded_series.hpp"
 #include "roles/usual_variables.hpp"
 
@@ -37,21 +38,12 @@ constexpr std::array<Shown, 7> shown{{{"PCOR", "delta-p", "hPa"},
 
 constexpr const char* own_difference = "own_difference";
 
-bool any_value(const Series& values) {
-  return std::any_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
-}
-
 /// The static pressure that the flight's own processing corrected, hPa; empty where it has none.
 Series own_static_pressure(const Flight& input) {
   const AircraftFamily& family = family_of(input);
-  for (const PressurePair& pair : family.processed) {
-    const std::string stated = family.unit_of(pair.static_pressure);
-    if (has_values(input, pair.static_pressure, "hPa", stated))
-      return read_values(input, pair.static_pressure,
-                         input.conversion(pair.static_pressure, "hPa", "", stated))
-          .values;
-  }
-  return {};
+  const std::string variable = processed_static_pressure(input, family);
+  if (variable.empty()) return {};
+  return read_values(input, variable, input.conversion(variable, "hPa", "", family.unit_of(variable))).values;
 }
 
 /// The series of the outputs, one flight after another.
@@ -85,9 +77,7 @@ class Outputs {
   }
 
   void end() {
-    for (ReportColumn& column : columns_) {
-      if (any_value(column.values)) report_.columns.push_back(std::move(column));
-    }
+    for (ReportColumn& column : columns_) add_if_present(report_, std::move(column));
   }
 
  private:
@@ -101,42 +91,35 @@ class Outputs {
   std::vector<ReportColumn> columns_;
 };
 
-bool has(const Report& report, std::string_view name) {
-  return std::any_of(report.columns.begin(), report.columns.end(),
-                     [&](const ReportColumn& column) { return column.name == name; });
-}
-
-void add_time(Report& report, const char* title, const char* caption,
-              std::initializer_list<const char*> names, const char* axis = "") {
-  std::vector<std::string> there;
-  for (const char* name : names) {
-    if (has(report, name)) there.emplace_back(name);
-  }
-  if (!there.empty()) report.items.emplace_back(TimePanel{title, caption, std::move(there), axis});
-}
-
 void add_pictures(Report& report) {
-  add_time(report, "Delta-p in time",
-           "What was added to the static pressure and taken off the dynamic pressure, with its standard "
-           "uncertainty where the model states one. Drag over a time range, and every picture shows its "
-           "samples alone.",
-           {"PCOR", "PCOR_uncertainty"});
-  if (has(report, "PCOR")) {
+  add_if_present(
+      report,
+      TimePanel{"Delta-p in time",
+                "What was added to the static pressure and taken off the dynamic pressure, with its standard "
+                "uncertainty where the model states one. Drag over a time range, and every picture shows its "
+                "samples alone.",
+                {"PCOR", "PCOR_uncertainty"}});
+  if (has_column(report, "PCOR")) {
     std::vector<std::string> states;
     for (const char* name : {"MACHX", "QCXC", "PSXC"}) {
-      if (has(report, name)) states.emplace_back(name);
+      if (has_column(report, name)) states.emplace_back(name);
     }
     if (!states.empty())
       report.items.emplace_back(BinnedPanel{
           "Delta-p by the state of flight", "The samples, and their mean in each bin.", {"PCOR"}, states});
   }
-  add_time(report, "Difference from the flight's own processing",
-           "The corrected static pressure less the one that the input holds already: 1 hPa is about 8 m of "
-           "height at the ground.",
-           {own_difference}, "difference of static pressure");
-  add_time(report, "True airspeed", "Of the corrected pressures.", {"TASX"});
-  add_time(report, "Ambient temperature", "Of the recovery temperature and the corrected Mach number.",
-           {"ATX"});
+  add_if_present(
+      report,
+      TimePanel{
+          "Difference from the flight's own processing",
+          "The corrected static pressure less the one that the input holds already: 1 hPa is about 8 m of "
+          "height at the ground.",
+          {own_difference},
+          "difference of static pressure"});
+  add_if_present(report, TimePanel{"True airspeed", "Of the corrected pressures.", {"TASX"}});
+  add_if_present(report, TimePanel{"Ambient temperature",
+                                   "Of the recovery temperature and the corrected Mach number.",
+                                   {"ATX"}});
 }
 
 std::string hpa(double value) { return std::isfinite(value) ? fmt::format("{:.2f}", value) : std::string(); }

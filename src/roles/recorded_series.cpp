@@ -87,4 +87,13 @@ bool has_values(const Flight& flight, const std::string& variable, const std::st
   return true;
 }
 
+std::string processed_static_pressure(const Flight& flight, const AircraftFamily& family) {
+  const std::string unit(facts_of(Quantity::static_pressure).unit);
+  for (const PressurePair& pair : family.processed) {
+    if (has_values(flight, pair.static_pressure, unit, family.unit_of(pair.static_pressure)))
+      return pair.static_pressure;
+  }
+  return "";
+}
+
 }  // namespace pcor::internal

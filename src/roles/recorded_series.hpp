@@ -48,4 +48,7 @@ RecordedSeries read_role(const Flight& flight, const ModelFile& model, Quantity 
 bool has_values(const Flight& flight, const std::string& variable, const std::string& unit,
                 const std::string& stated = "");
 
+/// The variable of the static pressure that the flight's own processing corrected; empty where it has none.
+std::string processed_static_pressure(const Flight& flight, const AircraftFamily& family);
+
 }  // namespace pcor::internal

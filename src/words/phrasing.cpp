@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -17,6 +18,13 @@ std::string sentence(std::string text) {
     text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
   if (std::string_view(".!?").find(text.back()) == std::string_view::npos) text += ".";
   return text;
+}
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
 }
 
 std::string list_text(const std::vector<std::string>& all) {

@@ -12,6 +12,9 @@ namespace pcor::internal {
 /// has one. Empty for an empty text.
 std::string sentence(std::string text);
 
+/// The words of a text, which blanks part.
+std::vector<std::string> words_of(const std::string& text);
+
 /// "a", "a and b", "a, b and c".
 std::string list_text(const std::vector<std::string>& all);
 

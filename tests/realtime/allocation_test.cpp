@@ -5,6 +5,7 @@
 #include <new>
 
 #include <pcor/realtime/loop.hpp>
+#include "support/uncertain_in_everything.hpp"
 
 namespace {
 
@@ -92,17 +93,6 @@ Model everything(pcor::LamsApproach approach) {
   return model;
 }
 
-// Of every parameter and of every role.
-pcor::ModelUncertainty of_everything(const Model& model) {
-  std::size_t count = 0;
-  for (const pcor::ModelEffect& effect : model.effects) count += effect.parameters.size();
-  pcor::ModelUncertainty uncertainty;
-  uncertainty.covariance.assign(count * count, 0.0);
-  for (std::size_t i = 0; i < count; ++i) uncertainty.covariance[i * count + i] = 1e-6;
-  uncertainty.random.fill(0.1);
-  return uncertainty;
-}
-
 TEST(Allocation, IsCountedByThisTest) {
   const std::size_t before = allocations;
   const auto value = std::make_unique<double>(1.0);
@@ -113,7 +103,7 @@ TEST(Allocation, IsCountedByThisTest) {
 TEST(Allocation, DoesNotHappenInTheLoop) {
   for (const auto approach : {pcor::LamsApproach::simultaneous, pcor::LamsApproach::iterated}) {
     std::string error;
-    const pcor::ModelUncertainty uncertainty = of_everything(everything(approach));
+    const pcor::ModelUncertainty uncertainty = pcor::test::uncertain_in_everything(everything(approach));
     auto loop =
         Loop::build(everything(approach),
                     {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::radome_dynamic_pressure,

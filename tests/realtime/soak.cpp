@@ -24,6 +24,7 @@
 #include <vector>
 
 #include <pcor/realtime/loop.hpp>
+#include "support/uncertain_in_everything.hpp"
 
 namespace {
 
@@ -168,25 +169,14 @@ std::vector<World> worlds() {
           {late, and_of(radome, {dew_point, torque})}};
 }
 
-// Of every parameter and of every role.
-pcor::ModelUncertainty uncertainty_of(const Model& model) {
-  std::size_t count = 0;
-  for (const pcor::ModelEffect& effect : model.effects) count += effect.parameters.size();
-  pcor::ModelUncertainty uncertainty;
-  uncertainty.covariance.assign(count * count, 0.0);
-  for (std::size_t i = 0; i < count; ++i) uncertainty.covariance[i * count + i] = 1e-6;
-  uncertainty.random.fill(0.1);
-  return uncertainty;
-}
-
 Loop loop_of(const World& world) {
   std::vector<Quantity> recorded;
   for (const Usual& role : world.roles) {
     if (pcor::is_role(role.quantity)) recorded.push_back(role.quantity);
   }
   std::string error;
-  std::optional<Loop> loop =
-      Loop::build(world.model, recorded, rate, &error, world.with, uncertainty_of(world.model));
+  std::optional<Loop> loop = Loop::build(world.model, recorded, rate, &error, world.with,
+                                         pcor::test::uncertain_in_everything(world.model));
   if (loop) return std::move(*loop);
   std::fprintf(stderr, "%s\n", error.c_str());
   std::exit(2);
