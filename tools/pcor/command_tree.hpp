@@ -24,7 +24,7 @@ std::string value_name(const CLI::Option& option);
 /// What a shell may offer as value of an option.
 struct Offer {
   std::vector<std::string> words{};  ///< all there are
-  std::string files{};               ///< else files of this pattern, such as "*.nc", "*/" for folders; empty for none
+  std::string files{};  ///< else files of this pattern, such as "*.nc", "*/" for folders; empty for none
 };
 
 Offer offer_of(const CLI::Option& option);
