@@ -11,7 +11,6 @@
 #include "numerics/decompositions.hpp"
 #include "numerics/median.hpp"
 #include "numerics/triangular_factor.hpp"
-#include "numerics/whitening.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -82,9 +81,9 @@ StructureTest::StructureTest(const std::vector<Binning>& bins, const std::vector
   for (const double part : parts_of_drift) {
     if (part < 1.0 && !noise.drifts()) break;
     Whitened& flights = whitened_.emplace_back();
-    flights.noise = noise;
-    for (double& slow : flights.noise.slow) slow *= part;
-    const Scores scores = find_scores(bins, columns, residuals, flights.noise);
+    NoiseModel left = noise;
+    for (double& slow : left.slow) slow *= part;
+    const Scores scores = find_scores(bins, columns, residuals, left);
     const Eigen::Index width = scores.columns();
     flights.scale = scores.information.diagonal().head(width).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     flights.inverse =
@@ -97,7 +96,7 @@ StructureTest::StructureTest(const std::vector<Binning>& bins, const std::vector
     for (std::size_t f = 0; f < bins.size(); ++f) {
       flights.model.emplace_back(scores.rows[f].leftCols(width));
       flights.left.push_back(scores.left(f, solution));
-      flights.determinant += Whitening(bins[f], flights.noise, f).log_determinant();
+      flights.determinant += flights.whitening.emplace_back(bins[f], left, f).log_determinant();
     }
     const std::vector<Eigen::VectorXd> noise_alone = left_by(aside, flights);
     flights.model_with_drawn = Eigen::MatrixXd::Zero(width, 2 * draws);
@@ -125,7 +124,7 @@ std::vector<Eigen::VectorXd> StructureTest::left_by(const std::vector<Eigen::Mat
   Eigen::VectorXd right = Eigen::VectorXd::Zero(width + count);
   for (std::size_t f = 0; f < bins_->size(); ++f) {
     Eigen::MatrixXd& columns = all.emplace_back(flights.model[f].rows(), width + count);
-    columns << flights.model[f], whitened(aside[f], (*bins_)[f], flights.noise, f);
+    columns << flights.model[f], flights.whitening[f](aside[f]);
     information += columns.transpose() * columns;
     right += columns.transpose() * flights.left[f];
   }
@@ -192,7 +191,7 @@ StructureTest::Taken StructureTest::taken_by(const std::vector<Eigen::MatrixXd>&
   Eigen::VectorXd score = Eigen::VectorXd::Zero(count);
   Eigen::MatrixXd drawn = Eigen::MatrixXd::Zero(count, 2 * draws);
   for (std::size_t f = 0; f < bins_->size(); ++f) {
-    const Eigen::MatrixXd white = whitened(columns[f], (*bins_)[f], flights.noise, f);
+    const Eigen::MatrixXd white = flights.whitening[f](columns[f]);
     own += white.transpose() * white;
     with_model += flights.model[f].transpose() * white;
     score += white.transpose() * flights.left[f];

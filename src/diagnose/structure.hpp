@@ -9,6 +9,7 @@
 #include "diagnose/smooth.hpp"
 #include "numerics/binning.hpp"
 #include "numerics/noise_model.hpp"
+#include "numerics/whitening.hpp"
 
 namespace pcor::internal {
 
@@ -70,7 +71,7 @@ class StructureTest {
  private:
   /// The flights whitened with some of the drift.
   struct Whitened {
-    NoiseModel noise{};
+    std::vector<Whitening> whitening{};
     std::vector<Eigen::MatrixXd> model{};  // columns of each flight
     std::vector<Eigen::VectorXd> left{};   // of the residuals, by the model
     std::vector<Eigen::MatrixXd> drawn{};  // the same by columns, each shifted or with signs at random

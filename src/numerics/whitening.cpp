@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "numerics/triangular_factor.hpp"
 
@@ -32,19 +33,22 @@ std::vector<double> autocovariance(const std::vector<double>& coefficients) {
   return result;
 }
 
-/// A covariance of a handful of variables, of which the upper triangle is kept. In loops by hand: blocks of
-/// such a size cost a matrix library more than they compute.
+/// A covariance of a few dozen variables, of which the upper triangle is kept, by columns. In loops by hand:
+/// blocks of such a size cost a matrix library more than they compute.
 class Covariance {
  public:
-  explicit Covariance(Eigen::Index size) : size_(size), values_(static_cast<std::size_t>(size * size), 0.0) {}
-  double& operator()(Eigen::Index row, Eigen::Index column) {
-    return values_[static_cast<std::size_t>(row * size_ + column)];
-  }
+  explicit Covariance(std::size_t size) : size_(size), values_(size * size, 0.0) {}
+  double* column(std::size_t column) { return &values_[column * size_]; }
 
  private:
-  Eigen::Index size_;
+  std::size_t size_;
   std::vector<double> values_;
 };
+
+double dot(const double* a, const double* b, std::size_t count) {
+  using Values = Eigen::Map<const Eigen::VectorXd>;
+  return Values(a, as_index(count)).dot(Values(b, as_index(count)));
+}
 
 }  // namespace
 
@@ -59,28 +63,21 @@ Whitening::Whitening(const Binning& bins, const NoiseModel& noise, std::size_t f
     slow_time.push_back(slow_times[j]);
     slow_variance.push_back(noise.slow[j] * noise.slow[j]);
   }
-  const Eigen::Index order = as_index(order_);
-  const Eigen::Index slow = as_index(slow_time.size());
-  slow_variance_ = Eigen::Map<const Eigen::VectorXd>(slow_variance.data(), slow);
-  const Eigen::Index size = order + slow;
+  const std::size_t slow = slow_time.size();
+  slow_variance_ = Eigen::Map<const Eigen::VectorXd>(slow_variance.data(), as_index(slow));
+  const std::size_t size = order_ + slow;
   const Eigen::Index count = as_index(bins.size());
-  decay_ = Eigen::MatrixXd::Zero(slow, count);
-  gain_.resize(size, count);
+  decay_ = Eigen::MatrixXd::Zero(as_index(slow), count);
+  gain_.resize(as_index(size), count);
   deviation_.resize(count);
 
-  const Eigen::Map<const Eigen::VectorXd> coefficients(coefficients_.data(), order);
-  const std::vector<double> lags = autocovariance(coefficients_);
-  Eigen::MatrixXd stationary(order, order);
-  for (Eigen::Index i = 0; i < order; ++i) {
-    for (Eigen::Index j = 0; j < order; ++j)
-      stationary(i, j) = lags[static_cast<std::size_t>(std::abs(i - j))];
-  }
+  const std::vector<double> stationary = autocovariance(coefficients_);
   Covariance now(size);  // of the state
   Covariance next(size);
-  for (Eigen::Index j = 0; j < slow; ++j) now(order + j, order + j) = slow_variance_[j];
-  Eigen::VectorXd seen(size);   // covariance of state and observation
-  Eigen::VectorXd ahead(size);  // of the next value of the autoregression and the state
-  Eigen::VectorXd decay = Eigen::VectorXd::Ones(slow);
+  for (std::size_t j = 0; j < slow; ++j) now.column(order_ + j)[order_ + j] = slow_variance[j];
+  std::vector<double> seen(size);   // covariance of state and observation
+  std::vector<double> ahead(size);  // of the next value of the autoregression and the state
+  std::vector<double> decay(slow, 1.0);
   for (const Stretch& stretch : bins.stretches()) begins_.push_back(as_index(stretch.first));
   std::size_t stretch = 0;
   double usual = 0.0;  // s from the bin before
@@ -88,72 +85,88 @@ Whitening::Whitening(const Binning& bins, const NoiseModel& noise, std::size_t f
     if (t > 0) {
       const double since =
           bins.time()[static_cast<std::size_t>(t)] - bins.time()[static_cast<std::size_t>(t - 1)];
-      for (Eigen::Index j = 0; j < slow && since != usual; ++j)
-        decay[j] = std::exp(-since / slow_time[static_cast<std::size_t>(j)]);
+      for (std::size_t j = 0; j < slow && since != usual; ++j) decay[j] = std::exp(-since / slow_time[j]);
       usual = since;
     }
-    decay_.col(t) = decay;
-    for (Eigen::Index j = 0; j < slow; ++j) {
-      for (Eigen::Index i = 0; i <= j; ++i)
-        next(order + i, order + j) = decay[i] * decay[j] * now(order + i, order + j);
-      next(order + j, order + j) += (1.0 - decay[j] * decay[j]) * slow_variance_[j];
+    std::copy(decay.begin(), decay.end(), decay_.col(t).data());
+    for (std::size_t j = 0; j < slow; ++j) {
+      const double* const from = now.column(order_ + j) + order_;
+      double* const to = next.column(order_ + j) + order_;
+      for (std::size_t i = 0; i <= j; ++i) to[i] = decay[i] * decay[j] * from[i];
+      to[j] += (1.0 - decay[j] * decay[j]) * slow_variance[j];
     }
     if (stretch < begins_.size() && begins_[stretch] == t) {
       ++stretch;
-      for (Eigen::Index j = 0; j < order; ++j) {
-        for (Eigen::Index i = 0; i <= j; ++i) next(i, j) = stationary(i, j);
-      }
-      for (Eigen::Index j = order; j < size; ++j) {
-        for (Eigen::Index i = 0; i < order; ++i) next(i, j) = 0.0;
-      }
+      for (std::size_t j = 0; j < order_; ++j)
+        std::reverse_copy(stationary.begin(), stationary.begin() + static_cast<std::ptrdiff_t>(j + 1),
+                          next.column(j));
+      for (std::size_t j = order_; j < size; ++j) std::fill_n(next.column(j), order_, 0.0);
     } else {
-      for (Eigen::Index j = 0; j < size; ++j) {
-        ahead[j] = 0.0;
-        for (Eigen::Index k = 0; k < order; ++k)
-          ahead[j] += coefficients[k] * now(std::min(k, j), std::max(k, j));
+      std::fill(ahead.begin(), ahead.end(), 0.0);
+      for (std::size_t k = 0; k < order_; ++k) {
+        const double* const from = now.column(k);
+        for (std::size_t i = 0; i < k; ++i) ahead[i] += coefficients_[k] * from[i];
+        ahead[k] += dot(from, coefficients_.data(), k + 1);
       }
-      next(0, 0) = 1.0;
-      for (Eigen::Index k = 0; k < order; ++k) next(0, 0) += ahead[k] * coefficients[k];
-      for (Eigen::Index j = 1; j < order; ++j) {
-        next(0, j) = ahead[j - 1];
-        for (Eigen::Index i = 1; i <= j; ++i) next(i, j) = now(i - 1, j - 1);
+      for (std::size_t j = order_; j < size; ++j) ahead[j] = dot(now.column(j), coefficients_.data(), order_);
+      next.column(0)[0] = 1.0 + dot(ahead.data(), coefficients_.data(), order_);
+      for (std::size_t j = 1; j < order_; ++j) {
+        next.column(j)[0] = ahead[j - 1];
+        std::copy_n(now.column(j - 1), j, next.column(j) + 1);
       }
-      for (Eigen::Index j = order; j < size; ++j) {
-        next(0, j) = ahead[j] * decay[j - order];
-        for (Eigen::Index i = 1; i < order; ++i) next(i, j) = now(i - 1, j) * decay[j - order];
+      for (std::size_t j = order_; j < size; ++j) {
+        const double* const from = now.column(j);
+        double* const to = next.column(j);
+        to[0] = ahead[j] * decay[j - order_];
+        for (std::size_t i = 1; i < order_; ++i) to[i] = from[i - 1] * decay[j - order_];
       }
     }
-    double variance = 0.0;
-    for (Eigen::Index i = 0; i < size; ++i) {
-      seen[i] = level_[t] * next(0, i);
-      for (Eigen::Index j = order; j < size; ++j) seen[i] += next(std::min(i, j), std::max(i, j));
-      variance += i == 0 ? level_[t] * seen[0] : i < order ? 0.0 : seen[i];
+    for (std::size_t i = 0; i < size; ++i) seen[i] = level_[t] * next.column(i)[0];
+    for (std::size_t j = order_; j < size; ++j) {
+      const double* const from = next.column(j);
+      for (std::size_t i = 0; i <= j; ++i) seen[i] += from[i];
+      for (std::size_t i = order_; i < j; ++i) seen[j] += from[i];
     }
-    gain_.col(t) = seen / variance;
-    for (Eigen::Index j = 0; j < size; ++j) {
-      for (Eigen::Index i = 0; i <= j; ++i) now(i, j) = next(i, j) - gain_(i, t) * seen[j];
+    const double variance =
+        std::accumulate(seen.begin() + static_cast<std::ptrdiff_t>(order_), seen.end(), level_[t] * seen[0]);
+    double* const gain = gain_.col(t).data();
+    for (std::size_t i = 0; i < size; ++i) gain[i] = seen[i] / variance;
+    for (std::size_t j = 0; j < size; ++j) {
+      const double* const from = next.column(j);
+      double* const to = now.column(j);
+      for (std::size_t i = 0; i <= j; ++i) to[i] = from[i] - gain[i] * seen[j];
     }
     deviation_[t] = std::sqrt(variance);
     log_determinant_ += std::log(variance);
   }
 }
 
+namespace {
+
+/// How many columns the filter takes at a time: what they wait for, each for itself, they wait for together.
+constexpr Eigen::Index columns_at_a_time = 8;
+
+}  // namespace
+
 Eigen::MatrixXd Whitening::operator()(const Eigen::Ref<const Eigen::MatrixXd>& columns) const {
+  using Row = Eigen::Array<double, columns_at_a_time, 1>;
   const auto order = static_cast<Eigen::Index>(order_);
   const Eigen::Index slow = decay_.rows();
   Eigen::MatrixXd result(columns.rows(), columns.cols());
-  std::vector<double> state(static_cast<std::size_t>(order + slow));
-  double* const fast = state.data();
-  double* const drift = state.data() + order;
-  for (Eigen::Index c = 0; c < columns.cols(); ++c) {
-    std::fill(state.begin(), state.end(), 0.0);
+  std::vector<Row> state(static_cast<std::size_t>(order + slow));
+  Row* const fast = state.data();
+  Row* const drift = state.data() + order;
+  for (Eigen::Index first = 0; first < columns.cols(); first += columns_at_a_time) {
+    const Eigen::Index width = std::min(columns_at_a_time, columns.cols() - first);
+    Row innovation = Row::Zero();
+    std::fill(state.begin(), state.end(), Row::Zero());
     std::size_t stretch = 0;
     for (Eigen::Index t = 0; t < columns.rows(); ++t) {
       if (stretch < begins_.size() && begins_[stretch] == t) {
         ++stretch;
-        std::fill_n(fast, order, 0.0);
+        std::fill_n(fast, order, Row::Zero());
       } else {
-        double foreseen = 0.0;
+        Row foreseen = Row::Zero();
         for (Eigen::Index k = order - 1; k >= 0; --k) {
           foreseen += coefficients_[static_cast<std::size_t>(k)] * fast[k];
           if (k > 0) fast[k] = fast[k - 1];
@@ -161,15 +174,15 @@ Eigen::MatrixXd Whitening::operator()(const Eigen::Ref<const Eigen::MatrixXd>& c
         fast[0] = foreseen;
       }
       const double* const decay = decay_.data() + t * slow;
-      double predicted = level_[t] * fast[0];
+      Row predicted = level_[t] * fast[0];
       for (Eigen::Index j = 0; j < slow; ++j) {
         drift[j] *= decay[j];
         predicted += drift[j];
       }
-      const double innovation = columns(t, c) - predicted;
+      for (Eigen::Index c = 0; c < width; ++c) innovation[c] = columns(t, first + c) - predicted[c];
       const double* const gain = gain_.data() + t * (order + slow);
       for (std::size_t k = 0; k < state.size(); ++k) state[k] += gain[k] * innovation;
-      result(t, c) = innovation / deviation_[t];
+      for (Eigen::Index c = 0; c < width; ++c) result(t, first + c) = innovation[c] / deviation_[t];
     }
   }
   return result;
