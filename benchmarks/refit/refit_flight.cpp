@@ -59,6 +59,9 @@ Arguments read_arguments(const std::vector<std::string>& given) {
 pcor::ModelFile neutral_model() {
   pcor::ModelFile file;
   file.model.name = "equation 20";
+  file.variables = {{pcor::Quantity::static_pressure, "PSF"},
+                    {pcor::Quantity::dynamic_pressure, "QCF"},
+                    {pcor::Quantity::mach, "MACH"}};
   for (const char* id : {"static-constant", "static-qp", "static-mach", "static-mach2", "static-mach3"})
     file.model.effects.push_back(pcor::neutral_effect(id));
   return file;
@@ -83,7 +86,7 @@ std::shared_ptr<const pcor::FlightSamples> make_flight(std::size_t samples, doub
   std::vector<double> dynamic_pressure(samples);
   std::vector<double> mach(samples);
   flight->time.resize(samples);
-  flight->pressure.resize(samples);
+  std::vector<double> reference(samples);
   for (std::size_t i = 0; i < samples; ++i) {
     const double x = static_cast<double>(i) / static_cast<double>(samples);
     const double climbed = std::min({1.0, 6.0 * x, 6.0 * (1.0 - x)});
@@ -96,13 +99,14 @@ std::shared_ptr<const pcor::FlightSamples> make_flight(std::size_t samples, doub
     dynamic_pressure[i] = q;
     mach[i] = measured;
     flight->time[i] = begin + static_cast<double>(i) + 0.5;
-    flight->pressure[i] = p + static_defect(p, q, measured) + 0.28 * normal(random) + outlier;
+    reference[i] = p + static_defect(p, q, measured) + 0.28 * normal(random) + outlier;
   }
   flight->model.roles = {pcor::Quantity::static_pressure, pcor::Quantity::dynamic_pressure,
                          pcor::Quantity::mach};
   flight->model.columns.emplace_back(pcor::Quantity::static_pressure, std::move(static_pressure));
   flight->model.columns.emplace_back(pcor::Quantity::dynamic_pressure, std::move(dynamic_pressure));
   flight->model.columns.emplace_back(pcor::Quantity::mach, std::move(mach));
+  flight->reference.columns.emplace_back(pcor::Quantity::corrected_static_pressure, std::move(reference));
   return flight;
 }
 
@@ -135,7 +139,7 @@ void write(const Flights& flights, const std::filesystem::path& folder) {
     write(*flight->model.find(pcor::Quantity::static_pressure), p);
     write(*flight->model.find(pcor::Quantity::dynamic_pressure), q);
     write(*flight->model.find(pcor::Quantity::mach), mach);
-    write(flight->pressure, reference);
+    write(*flight->reference.find(pcor::Quantity::corrected_static_pressure), reference);
   }
 }
 
@@ -153,7 +157,7 @@ void run(const Arguments& arguments) {
   if (!arguments.folder.empty()) write(flights, arguments.folder);
   const double memory_before = peak_memory();
   const pcor::ModelFile model = neutral_model();
-  const auto reference = pcor::pressure_reference("REFERENCE");
+  const pcor::References references{pcor::pressure_reference("REFERENCE")};
   pcor::RefitOptions options;
   options.loss = pcor::Loss::soft_l1;
   options.threads = arguments.threads;
@@ -162,7 +166,7 @@ void run(const Arguments& arguments) {
   options.progress = [&passes](std::size_t, std::size_t) { ++passes; };
 
   const auto begin = std::chrono::steady_clock::now();
-  const pcor::RefitResult result = pcor::refit(flights, model, *reference, options);
+  const pcor::RefitResult result = pcor::refit(flights, model, references, options);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
 
   std::printf("{\"samples\": %zu, \"flights\": %zu, \"seconds\": %.6f, \"passes\": %zu, ", result.samples,

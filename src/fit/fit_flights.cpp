@@ -244,7 +244,8 @@ void FitFlights::measure_noise(const Eigen::VectorXd& parameters, const Eigen::V
     if (number % every == 0) columns[number] = rows.leftCols(as_index(setup_.wanted.size()));
   });
   auto found = std::make_shared<FitNoise>();
-  found->model = drift ? find_noise(bins, columns, residuals).model : estimate_noise(bins, residuals);
+  found->model = drift ? find_noise(bins, columns, residuals, task_.options.threads).model
+                       : estimate_noise(bins, residuals);
   for (const Binning& each : bins) found->time.push_back(each.time());
   noise_ = std::move(found);
   visit([&](std::size_t number, std::size_t, FitFlight& fit) {

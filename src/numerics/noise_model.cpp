@@ -4,8 +4,10 @@
 #include <cmath>
 #include <functional>
 #include <nlopt.hpp>
+#include <numeric>
 
 #include "numerics/decompositions.hpp"
+#include "numerics/in_parallel.hpp"
 #include "numerics/local_noise.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "numerics/whitening.hpp"
@@ -20,6 +22,13 @@ constexpr std::size_t fewest_innovations = 20;
 /// Twice the logarithm of the likelihood that a slow part has to be worth.
 constexpr double worth_of_a_part = 2.0;
 
+/// The columns' products with each other: half the work of a product of matrices.
+Eigen::MatrixXd squares_of(const Eigen::Ref<const Eigen::MatrixXd>& columns) {
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
+  result.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
+  return result.selfadjointView<Eigen::Lower>();
+}
+
 /// The shapes of slow drift over a flight, cos(pi k t/T)/k: periods down to five minutes, at most 48.
 Eigen::MatrixXd drift_shapes(const Binning& bins) {
   if (bins.size() < 2) return {as_index(bins.size()), 0};
@@ -28,11 +37,17 @@ Eigen::MatrixXd drift_shapes(const Binning& bins) {
   const auto by_period = static_cast<std::size_t>(2.0 * length / shortest_period);
   const std::size_t count = std::min({most_shapes, by_period, bins.size() / 15});
   Eigen::MatrixXd shapes(as_index(bins.size()), as_index(count));
-  for (std::size_t k = 1; k <= count; ++k) {
-    for (std::size_t i = 0; i < bins.size(); ++i) {
-      const double phase = pi * static_cast<double>(k) * (bins.time()[i] - begin) / length;
-      shapes(as_index(i), as_index(k - 1)) = std::cos(phase) / static_cast<double>(k);
-    }
+  if (count == 0) return shapes;
+  // Chebyshev's recursion from one shape to the next, exact to 1e-12 up to the last.
+  const Eigen::Map<const Eigen::ArrayXd> time(bins.time().data(), shapes.rows());
+  const Eigen::ArrayXd first = (pi * (time - begin) / length).cos();
+  Eigen::ArrayXd before = Eigen::ArrayXd::Ones(shapes.rows());
+  Eigen::ArrayXd now = first;
+  for (Eigen::Index k = 0; k < shapes.cols(); ++k) {
+    shapes.col(k) = now / static_cast<double>(k + 1);
+    const Eigen::ArrayXd next = 2.0 * first * now - before;
+    before = now;
+    now = next;
   }
   return shapes;
 }
@@ -40,11 +55,9 @@ Eigen::MatrixXd drift_shapes(const Binning& bins) {
 Eigen::VectorXd without_drift(const Binning& bins, const Eigen::VectorXd& residual) {
   const Eigen::MatrixXd shapes = drift_shapes(bins);
   if (shapes.cols() == 0) return residual;
-  const Eigen::MatrixXd normal = shapes.transpose() * shapes;
-  const double ridge = 1e-9 * normal.trace();
-  const Eigen::MatrixXd conditioned =
-      normal + ridge * Eigen::MatrixXd::Identity(normal.rows(), normal.cols());
-  return residual - shapes * symmetric_solution(conditioned, shapes.transpose() * residual);
+  Eigen::MatrixXd normal = squares_of(shapes);
+  normal.diagonal().array() += 1e-9 * normal.trace();
+  return residual - shapes * symmetric_solution(normal, shapes.transpose() * residual);
 }
 
 }  // namespace
@@ -109,12 +122,14 @@ namespace {
 class RestrictedLikelihood {
  public:
   RestrictedLikelihood(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
-                       const std::vector<Eigen::VectorXd>& residuals,
-                       const std::vector<std::size_t>& flights) {
+                       const std::vector<Eigen::VectorXd>& residuals, const std::vector<std::size_t>& flights,
+                       std::size_t threads)
+      : threads_(threads) {
     for (const std::size_t f : flights) {
       bins_.push_back(&bins[f]);
       Eigen::MatrixXd& all = rows_.emplace_back(columns[f].rows(), columns[f].cols() + 1);
       all << columns[f], residuals[f];
+      first_.push_back(count_);
       count_ += all.rows();
     }
     white_.resize(count_, rows_.front().cols());
@@ -128,19 +143,18 @@ class RestrictedLikelihood {
   };
 
   Value operator()(const NoiseModel& noise) {
-    double determinant = 0.0;
-    Eigen::Index first = 0;
-    for (std::size_t f = 0; f < bins_.size(); ++f) {
+    std::vector<double> determinants(bins_.size());
+    in_parallel(bins_.size(), threads_, [&](std::size_t f) {
       const Whitening whitening(*bins_[f], noise, f);
-      white_.middleRows(first, rows_[f].rows()) = whitening(rows_[f]);
-      first += rows_[f].rows();
-      determinant += whitening.log_determinant();
-    }
+      white_.middleRows(first_[f], rows_[f].rows()) = whitening(rows_[f]);
+      determinants[f] = whitening.log_determinant();
+    });
+    const double determinant = std::accumulate(determinants.begin(), determinants.end(), 0.0);
     const Eigen::Index width = white_.cols() - 1;
     Eigen::VectorXd innovation = white_.col(width);
     double columns = 0.0;  // the determinant of their information
     if (width > 0) {
-      const Eigen::MatrixXd information = white_.leftCols(width).transpose() * white_.leftCols(width);
+      const Eigen::MatrixXd information = squares_of(white_.leftCols(width));
       innovation -= white_.leftCols(width) *
                     pseudo_solution(information, white_.leftCols(width).transpose() * innovation, 1e-11);
       const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt();
@@ -167,8 +181,10 @@ class RestrictedLikelihood {
  private:
   static constexpr double clipped_variance = 0.9950;  // of a normal variable, squares cut off at nine
 
+  std::size_t threads_;
   std::vector<const Binning*> bins_;
   std::vector<Eigen::MatrixXd> rows_;
+  std::vector<Eigen::Index> first_;  // row of each flight in `white_`
   Eigen::Index count_ = 0;
   Eigen::MatrixXd white_;
 };
@@ -203,7 +219,7 @@ std::vector<double> least_of(const Cost& cost, std::size_t parts) {
 }  // namespace
 
 FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
-                      const std::vector<Eigen::VectorXd>& residuals) {
+                      const std::vector<Eigen::VectorXd>& residuals, std::size_t threads) {
   FoundNoise found{estimate_noise(bins, residuals)};
   NoiseModel& whole = found.model;
   NoiseModel noise;  // of the flights that take part
@@ -220,7 +236,7 @@ FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen:
   }
   const double rms = robust_deviation(all);
   if (!(rms > 0.0)) return found;
-  RestrictedLikelihood likelihood(bins, columns, residuals, part);
+  RestrictedLikelihood likelihood(bins, columns, residuals, part, threads);
   const auto with = [&](const std::vector<double>& sizes) {
     for (std::size_t k = 0; k < sizes.size(); ++k) noise.slow[k] = sizes[k] * rms;
     return likelihood(noise);

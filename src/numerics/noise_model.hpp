@@ -45,8 +45,9 @@ NoiseModel estimate_noise(const std::vector<Binning>& bins, const std::vector<Ei
 /// @param columns of each flight, in bins: of all that is fitted. Flights without columns do not take part in
 ///        the search for slow parts.
 /// @param residuals of each flight, in bins, after the fit, hPa
+/// @param threads flights that are filtered at a time; 0: as many as processors
 FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
-                      const std::vector<Eigen::VectorXd>& residuals);
+                      const std::vector<Eigen::VectorXd>& residuals, std::size_t threads = 0);
 
 /// The noise as if it went on beyond what the flights tell: each part as large, at least, as the two before
 /// it are in the mean, as it is of 1/f noise. That the slowest parts are not seen in a flight or two does not

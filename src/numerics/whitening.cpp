@@ -80,7 +80,8 @@ Whitening::Whitening(const Binning& bins, const NoiseModel& noise, std::size_t f
   std::vector<double> decay(slow, 1.0);
   for (const Stretch& stretch : bins.stretches()) begins_.push_back(as_index(stretch.first));
   std::size_t stretch = 0;
-  double usual = 0.0;  // s from the bin before
+  std::size_t since_begin = 0;  // bins in this stretch
+  double usual = 0.0;           // s from the bin before
   for (Eigen::Index t = 0; t < count; ++t) {
     if (t > 0) {
       const double since =
@@ -89,13 +90,24 @@ Whitening::Whitening(const Binning& bins, const NoiseModel& noise, std::size_t f
       usual = since;
     }
     std::copy(decay.begin(), decay.end(), decay_.col(t).data());
+    const bool begins = stretch < begins_.size() && begins_[stretch] == t;
+    if (begins) since_begin = 0;
+    if (slow == 0 && since_begin++ >= order_) {
+      // An autoregression alone is known when as many values of it were seen: its innovation is all that is
+      // new.
+      gain_.col(t).setZero();
+      gain_(0, t) = 1.0 / level_[t];
+      deviation_[t] = level_[t];
+      log_determinant_ += 2.0 * std::log(level_[t]);
+      continue;
+    }
     for (std::size_t j = 0; j < slow; ++j) {
       const double* const from = now.column(order_ + j) + order_;
       double* const to = next.column(order_ + j) + order_;
       for (std::size_t i = 0; i <= j; ++i) to[i] = decay[i] * decay[j] * from[i];
       to[j] += (1.0 - decay[j] * decay[j]) * slow_variance[j];
     }
-    if (stretch < begins_.size() && begins_[stretch] == t) {
+    if (begins) {
       ++stretch;
       for (std::size_t j = 0; j < order_; ++j)
         std::reverse_copy(stationary.begin(), stationary.begin() + static_cast<std::ptrdiff_t>(j + 1),

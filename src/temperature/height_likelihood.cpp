@@ -4,11 +4,11 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <future>
 #include <limits>
 #include <nlopt.hpp>
 
 #include "numerics/decompositions.hpp"
+#include "numerics/in_parallel.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 
@@ -385,17 +385,9 @@ HeightRecord without_unknowns(HeightRecord record, const HeightEquations::Vector
 
 HeightEquations height_equations(const std::vector<HeightRecord>& records, const HeightNoise& noise,
                                  const HeightPrior& prior, std::size_t threads) {
-  const std::size_t parts = std::max<std::size_t>(1, std::min(threads, records.size()));
   std::vector<HeightEquations> each(records.size());
-  const auto fill = [&](std::size_t part) {
-    for (std::size_t i = part; i < records.size(); i += parts)
-      each[i] = height_equations(records[i], noise, prior);
-  };
-  std::vector<std::future<void>> others;
-  for (std::size_t part = 1; part < parts; ++part)
-    others.push_back(std::async(std::launch::async, fill, part));
-  fill(0);
-  for (std::future<void>& other : others) other.get();
+  in_parallel(records.size(), threads,
+              [&](std::size_t i) { each[i] = height_equations(records[i], noise, prior); });
   HeightEquations sum;
   sum.sizes = prior.pressure;
   for (const HeightEquations& one : each) sum += one;

@@ -92,6 +92,27 @@ TEST(Whitening, TurnsTheCovarianceOfSlowPartsIntoUnity) {
 }
 
 // The error of a mean under drift: what generalised least squares states is what it does, over many flights.
+TEST(Whitening, OfAnAutoregressionAloneIsThatOfVanishingSlowParts) {
+  std::vector<double> residual(60, 1.0);
+  residual[2] = residual[5] = missing;  // a stretch that is shorter than the autoregression
+  for (std::size_t i = 20; i < 30; ++i) residual[i] = missing;
+  const Binning bins = bins_of(residual);
+  const auto count = static_cast<Eigen::Index>(bins.size());
+  NoiseModel noise;
+  noise.coefficients = {0.5, -0.3, 0.2, 0.1};
+  noise.level = {Eigen::VectorXd::LinSpaced(count, 0.3, 0.5)};
+  const Whitening alone(bins, noise, 0);
+  noise.slow = {1e-7};  // of the level, squared: 1e-13
+  const Whitening vanishing(bins, noise, 0);
+  // More columns than the filter takes at a time, and not a multiple of them.
+  const Eigen::MatrixXd columns = Eigen::MatrixXd::Random(count, 11);
+  EXPECT_LT((alone(columns) - vanishing(columns)).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_NEAR(alone.log_determinant(), vanishing.log_determinant(), 1e-9);
+  const Eigen::VectorXd one = columns.col(9);
+  EXPECT_EQ(alone(one), alone(columns).col(9));
+  EXPECT_LT((alone.transposed(one) - vanishing.transposed(one)).cwiseAbs().maxCoeff(), 1e-9);
+}
+
 TEST(SlowNoise, GivesTheMeanOfAFlightItsError) {
   constexpr std::size_t count = 1800;  // two hours
   const std::vector<Binning> bins{bins_of(std::vector<double>(count, 0.0))};
