@@ -93,7 +93,7 @@ struct Extent {
 
 }  // namespace
 
-std::optional<std::uintmax_t> promised_size_of_classic(const std::filesystem::path& path) {
+std::optional<ClassicLayout> layout_of_classic(const std::filesystem::path& path) {
   Header header(path);
   const std::uint64_t records = header.count();
 
@@ -136,7 +136,8 @@ std::optional<std::uintmax_t> promised_size_of_classic(const std::filesystem::pa
     ++record_variables;
     record_bytes = plus(record_bytes, padded(variable.bytes));
   }
-  std::uintmax_t size = 0;
+  ClassicLayout layout{0, record_bytes};
+  std::uintmax_t& size = layout.size;
   for (const Extent& variable : variables) {
     const std::uint64_t stride = record_variables == 1 ? variable.bytes : record_bytes;
     const std::uint64_t end = plus(variable.begin, variable.bytes);
@@ -145,7 +146,7 @@ std::optional<std::uintmax_t> promised_size_of_classic(const std::filesystem::pa
     else if (records > 0)
       size = std::max(size, plus(end, times(records - 1, stride)));
   }
-  return size;
+  return layout;
 }
 
 }  // namespace pcor::internal

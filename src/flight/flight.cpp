@@ -366,6 +366,7 @@ Flight::~Flight() = default;
 const FlightFile& Flight::file() const { return *implementation_->file; }
 const std::filesystem::path& Flight::path() const { return implementation_->file->path(); }
 std::size_t Flight::records() const { return implementation_->records; }
+std::vector<RecordBlock> Flight::blocks() const { return blocks_of(records(), file().records_at_once()); }
 const TimeAxis& Flight::time() const { return implementation_->axis; }
 TimeStamp Flight::time_stamp() const { return implementation_->time_stamp; }
 

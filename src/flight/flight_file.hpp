@@ -57,6 +57,9 @@ class FlightFile {
   /// where the file states none. @throws Error if what it states is no range.
   virtual std::array<double, 2> valid_range(int variable) const = 0;
 
+  /// How many records should be read, one variable after the other, before the next are.
+  virtual std::size_t records_at_once() const { return records_per_block; }
+
   /// Reads the stored numbers of some records, the first dimension, with all that belongs to them; of a
   /// variable without dimensions its number. @throws Error if they cannot be read.
   virtual void read(int variable, RecordBlock records, double* out) const = 0;

@@ -361,7 +361,7 @@ struct FlightWriter::Implementation {
   void copy_series(const Series& copied) const {
     const auto rate = static_cast<std::size_t>(input->variable(copied.name).rate);
     std::vector<double> values;
-    for (const RecordBlock block : blocks_of(input->records())) {
+    for (const RecordBlock block : input->blocks()) {
       values.resize(block.count * rate);
       input->read(copied.name, block, UnitConversion(), values.data());
       std::replace_if(
@@ -382,7 +382,7 @@ struct FlightWriter::Implementation {
     const auto rate = static_cast<std::size_t>(input->variable(name).rate);
     Range range;
     std::vector<double> values;
-    for (const RecordBlock block : blocks_of(input->records())) {
+    for (const RecordBlock block : input->blocks()) {
       values.resize(block.count * rate);
       input->read(name, block, UnitConversion(), values.data());
       for (const double value : values)
@@ -408,7 +408,7 @@ struct FlightWriter::Implementation {
   void finish() {
     if (input) {
       std::vector<double> times;
-      for (const RecordBlock block : blocks_of(input->records())) {
+      for (const RecordBlock block : input->blocks()) {
         times.resize(block.count);
         input->read_time_stamps(block, times.data());
         write_time_stamps(block, times.data());

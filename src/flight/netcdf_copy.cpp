@@ -17,8 +17,6 @@ namespace {
 /// of the next one.
 constexpr const char* own_attributes = "pcor_";
 
-constexpr std::size_t copied_bytes_at_once = std::size_t{4} << 20;
-
 // Where in a copied variable the records of a block are.
 struct Slab {
   std::vector<std::size_t> start, count;
@@ -156,36 +154,22 @@ void NetcdfCopy::copy_values(std::size_t records) const {
     read(variable, {}, buffer.data());
     write(variable, {}, buffer.data());
   }
-  if (source_has_records() || !output_.is_hdf5()) return copy_records(series, records);
-  for (const Copied* variable : series)
-    for (const RecordBlock block : blocks_of(records)) {
-      buffer.resize(block.count * record_bytes(*variable));
-      read(*variable, block, buffer.data());
-      write(*variable, block, buffer.data());
-    }
-}
-
-// All variables together, block by block, and within a block by as many records as the library keeps in
-// memory.
-void NetcdfCopy::copy_records(const std::vector<const Copied*>& series, std::size_t records) const {
   std::size_t bytes = 1;
   for (const Copied* variable : series) bytes += record_bytes(*variable);
-  const std::size_t at_once = std::clamp<std::size_t>(copied_bytes_at_once / bytes, 1, records_per_block);
-  const std::size_t in_buffer = std::clamp<std::size_t>(classic_buffer_bytes * 3 / 4 / bytes, 1, at_once);
-  const bool reads_records = source_has_records();
-  std::vector<std::vector<char>> buffers(series.size());
-  for (const RecordBlock block : blocks_of(records, at_once)) {
-    for (std::size_t i = 0; i < series.size(); ++i) buffers[i].resize(block.count * record_bytes(*series[i]));
-    const auto each = [&](bool by_records, auto&& move) {
-      for (const RecordBlock part : blocks_of(block.count, by_records ? in_buffer : block.count))
-        for (std::size_t i = 0; i < series.size(); ++i)
-          move(*series[i], RecordBlock{block.first + part.first, part.count},
-               buffers[i].data() + part.first * record_bytes(*series[i]));
-    };
-    each(reads_records,
-         [this](const Copied& variable, RecordBlock part, char* values) { read(variable, part, values); });
-    each(!output_.is_hdf5(),
-         [this](const Copied& variable, RecordBlock part, char* values) { write(variable, part, values); });
+  const auto copy = [&](const Copied& variable, RecordBlock block) {
+    buffer.resize(block.count * record_bytes(variable));
+    read(variable, block, buffer.data());
+    write(variable, block, buffer.data());
+  };
+  // HDF5 holds chunks of each variable, so its variables come one after the other; records of classic files
+  // are moved together.
+  if (source_has_records() || !output_.is_hdf5()) {
+    for (const RecordBlock block :
+         blocks_of(records, std::min(records_in_buffer(bytes), source_.records_at_once())))
+      for (const Copied* variable : series) copy(*variable, block);
+  } else {
+    for (const Copied* variable : series)
+      for (const RecordBlock block : blocks_of(records)) copy(*variable, block);
   }
 }
 

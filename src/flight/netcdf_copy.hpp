@@ -40,7 +40,6 @@ class NetcdfCopy {
   void read(const Copied& variable, RecordBlock block, char* buffer) const;
   void write(const Copied& variable, RecordBlock block, char* buffer) const;
   bool source_has_records() const;
-  void copy_records(const std::vector<const Copied*>& series, std::size_t records) const;
 
   const NetcdfFile& source_;
   int time_dimension_;

@@ -87,20 +87,21 @@ std::string without_trailing_blanks(std::string text) {
   return text;
 }
 
-void check_size_of_classic(const std::filesystem::path& path) {
-  const auto promised = promised_size_of_classic(path);
-  if (!promised)
+ClassicLayout checked_layout_of_classic(const std::filesystem::path& path) {
+  const auto layout = layout_of_classic(path);
+  if (!layout)
     throw Error(Error::Code::file,
                 path.string() +
                     " is truncated or damaged: its header cannot be read; fetch it again from its source");
   const auto size = std::filesystem::file_size(path);
-  if (size < *promised)
+  if (size < layout->size)
     throw Error(
         Error::Code::file,
         fmt::format(
             "{} is truncated or damaged: its header promises {} bytes and it has {}; fetch it again from its "
             "source",
-            path.string(), *promised, size));
+            path.string(), layout->size, size));
+  return *layout;
 }
 
 }  // namespace
@@ -111,6 +112,16 @@ std::size_t elements(const std::vector<std::size_t>& shape) {
   return product;
 }
 
+std::size_t records_in_buffer(std::size_t record_bytes) {
+  // A block does not begin where a buffer does.
+  constexpr std::size_t least = 16, most_bytes = classic_buffer_bytes / 4 * 3;
+  return std::clamp(most_bytes / std::max<std::size_t>(record_bytes, 1), least, records_per_block);
+}
+
+std::size_t NetcdfFile::records_at_once() const {
+  return record_bytes_ > 0 ? records_in_buffer(record_bytes_) : records_per_block;
+}
+
 std::string netcdf_reason(int status) { return status > 0 ? std::strerror(status) : nc_strerror(status); }
 
 bool is_netcdf(const std::filesystem::path& path) { return content_of(path) != Content::other; }
@@ -118,14 +129,19 @@ bool is_netcdf(const std::filesystem::path& path) { return content_of(path) != C
 NetcdfFile NetcdfFile::open(const std::filesystem::path& path) {
   const std::string name = path.string();
   const FileState state(path);
-  if (content_of(path) == Content::classic) check_size_of_classic(path);
+  std::size_t record_bytes = 0;
+  if (content_of(path) == Content::classic) record_bytes = checked_layout_of_classic(path).record_bytes;
   int id = closed;
-  std::size_t buffer = classic_buffer_bytes;
+  // Of large records only the pages are read that hold what is wanted.
+  constexpr std::size_t large = std::size_t{32} << 10;
+  std::size_t buffer = record_bytes > large ? large : classic_buffer_bytes;
   const int opened = nc__open(name.c_str(), NC_NOWRITE, &buffer, &id);
   if (opened != NC_NOERR)
     throw Error(Error::Code::file, name + " is truncated or damaged (" + netcdf_reason(opened) +
                                        "); fetch it again from its source");
-  return {id, path, Use::reading, state};
+  NetcdfFile file(id, path, Use::reading, state);
+  file.record_bytes_ = record_bytes;
+  return file;
 }
 
 NetcdfFile NetcdfFile::create(const std::filesystem::path& path, const std::filesystem::path& shown_path,
@@ -143,6 +159,7 @@ NetcdfFile::NetcdfFile(NetcdfFile&& other) noexcept
       path_(std::move(other.path_)),
       use_(other.use_),
       state_(other.state_),
+      record_bytes_(other.record_bytes_),
       fitted_(std::move(other.fitted_)) {}
 
 NetcdfFile::~NetcdfFile() {

@@ -52,6 +52,7 @@ class NetcdfFile final : public FlightFile {
   int type_of(int variable) const;
 
   const std::filesystem::path& path() const override { return path_; }
+  std::size_t records_at_once() const override;
   int variable_count() const override;
   std::optional<int> find_variable(const std::string& name) const override;
   std::string variable_name(int variable) const override;
@@ -88,6 +89,7 @@ class NetcdfFile final : public FlightFile {
   std::filesystem::path path_;
   Use use_;
   FileState state_;               // as it was opened for reading
+  std::size_t record_bytes_ = 0;  // of a classic file with records
   mutable std::set<int> fitted_;  // variables whose chunk cache is fit
 };
 
@@ -98,9 +100,11 @@ std::size_t elements(const std::vector<std::size_t>& shape);
 std::string netcdf_reason(int status);
 
 /// How much of a classic file the library keeps in memory, bytes. Its records lie one after the other, each
-/// with all the variables, and the library moves whole buffers: a large one is slow where few bytes of each
-/// record are wanted, and a walk through a block of records, variable after variable, is slow where the block
-/// is larger.
-constexpr std::size_t classic_buffer_bytes = std::size_t{32} << 10;
+/// with all the variables, and the library moves whole buffers, so that a block of records is walked through
+/// variable after variable while it is in the buffer.
+constexpr std::size_t classic_buffer_bytes = std::size_t{4} << 20;
+
+/// Records of so many bytes that are in the buffer of a classic file together.
+std::size_t records_in_buffer(std::size_t record_bytes);
 
 }  // namespace pcor::internal

@@ -502,7 +502,7 @@ ProcessSummary Processing::run(const std::filesystem::path& output) {
   define_flags(writer);
 
   std::vector<double> times;
-  for (const RecordBlock block : blocks_of(flight_.records())) {
+  for (const RecordBlock block : flight_.blocks()) {
     process_block(block, times);
     if (block.first + block.count == flight_.records()) flush();
     for (const auto line : {&results_, &filtered_})

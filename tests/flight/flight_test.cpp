@@ -963,6 +963,33 @@ TEST_F(FlightTest, BlocksOfAnySizeGiveTheSame) {
   }
 }
 
+TEST_F(FlightTest, BlocksHoldEveryRecordOnceAndWhatLiesTogetherIsReadTogether) {
+  constexpr std::size_t records = 5000;
+  const auto longest_block = [&](int mode, int rate) {
+    {
+      NetcdfMaker maker(path(), mode);
+      maker.time(sequence(0, records));
+      maker.series("PSFD", "hPa", std::vector<double>(records * static_cast<std::size_t>(rate), 800.0), rate);
+    }
+    const Flight flight(path());
+    std::size_t next = 0;
+    std::size_t longest = 0;
+    for (const RecordBlock block : flight.blocks()) {
+      EXPECT_EQ(block.first, next);
+      next += block.count;
+      longest = std::max(longest, block.count);
+    }
+    EXPECT_EQ(next, records);
+    return longest;
+  };
+  EXPECT_EQ(longest_block(NC_NETCDF4, 1000), pcor::records_per_block);
+  EXPECT_EQ(longest_block(0, 1), pcor::records_per_block);
+  // Records of 4,004 bytes: as many as are in a buffer of 4 MiB wherever the first of them lies in it.
+  const std::size_t together = longest_block(0, 1000);
+  EXPECT_LT(together * 4004, std::size_t{4} << 20);
+  EXPECT_GT(together * 4004, std::size_t{2} << 20);
+}
+
 // The real thing
 
 TEST(RealFlight, OfJuly2004IsRead) {

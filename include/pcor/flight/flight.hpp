@@ -104,6 +104,8 @@ class Flight {
 
   const std::filesystem::path& path() const;
   std::size_t records() const;
+  /// All records in blocks that are best read one after the other, every variable of one before the next.
+  std::vector<RecordBlock> blocks() const;
   const TimeAxis& time() const;
   TimeStamp time_stamp() const;
 
