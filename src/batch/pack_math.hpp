@@ -100,18 +100,24 @@ template <class Arch>
 
 /// (1 + part/whole)^exponent - 1 within a few units in the last place.
 ///
-/// Where all lanes are as in flight, below Mach 0.85, it is the two polynomials of `pcor::power_less_one`.
+/// Where all lanes are as in flight, below Mach 0.85, it is two polynomials, as in `pcor::power_less_one`;
+/// that of the exponential goes further here, so that the pressure of a given airspeed is in it.
 template <class Arch>
 [[gnu::always_inline]] inline xsimd::batch<double, Arch> power_less_one(
     const xsimd::batch<double, Arch>& part, const xsimd::batch<double, Arch>& whole,
     const xsimd::batch<double, Arch>& exponent) {
   using Register = xsimd::batch<double, Arch>;
+  // (e^y - 1)/y for y from 0 to 0.5, within 2e-16.
+  static constexpr std::array<double, 10> exponential_less_one{
+      0.9999999999999999,     0.500000000000023,     0.1666666666651493,     0.041666666705435784,
+      0.008333332830896939,   0.00138889262293704,   0.00019839584455276513, 2.4848478548539537e-05,
+      2.6775176924987106e-06, 3.4637663589508023e-07};
   const Register s = part / (whole + whole + part);
   const Register square = s * s;
   const Register y = exponent * s * detail::polynomial(square, pcor::detail::twice_artanh);
   if (xsimd::all((square <= Register(pcor::detail::greatest_square)) & (y >= Register(0.0)) &
-                 (y <= Register(pcor::detail::greatest_exponent)))) {
-    return y * detail::polynomial(y, pcor::detail::exponential_less_one);
+                 (y <= Register(0.5)))) {
+    return y * detail::polynomial(y, exponential_less_one);
   }
   return exponential(exponent * logarithm(Register(1.0) + part / whole)) - Register(1.0);
 }
