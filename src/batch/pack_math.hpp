@@ -1,9 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <xsimd/xsimd.hpp>
+
+#include <pcor/physics/scalar.hpp>
 
 namespace pcor::internal {
 
@@ -14,7 +17,7 @@ namespace detail {
 
 /// c[0] + c[1] x + c[2] x^2 + ..., the even and the odd powers at the same time.
 template <class Register, std::size_t Count>
-Register polynomial(const Register& x, const double (&c)[Count]) {
+Register polynomial(const Register& x, const std::array<double, Count>& c) {
   static_assert(Count % 2 == 0);
   const Register square = x * x;
   Register even(c[Count - 2]);
@@ -37,20 +40,20 @@ template <class Arch>
 [[gnu::always_inline]] inline xsimd::batch<double, Arch> exponential(const xsimd::batch<double, Arch>& x) {
   using Register = xsimd::batch<double, Arch>;
   using Bits = xsimd::batch<std::uint64_t, Arch>;
-  static constexpr double series[] = {1.0,
-                                      1.0,
-                                      1.0 / 2.0,
-                                      1.0 / 6.0,
-                                      1.0 / 24.0,
-                                      1.0 / 120.0,
-                                      1.0 / 720.0,
-                                      1.0 / 5040.0,
-                                      1.0 / 40320.0,
-                                      1.0 / 362880.0,
-                                      1.0 / 3628800.0,
-                                      1.0 / 39916800.0,
-                                      1.0 / 479001600.0,
-                                      1.0 / 6227020800.0};
+  static constexpr std::array<double, 14> series{1.0,
+                                                 1.0,
+                                                 1.0 / 2.0,
+                                                 1.0 / 6.0,
+                                                 1.0 / 24.0,
+                                                 1.0 / 120.0,
+                                                 1.0 / 720.0,
+                                                 1.0 / 5040.0,
+                                                 1.0 / 40320.0,
+                                                 1.0 / 362880.0,
+                                                 1.0 / 3628800.0,
+                                                 1.0 / 39916800.0,
+                                                 1.0 / 479001600.0,
+                                                 1.0 / 6227020800.0};
   const Register half_ln2(0.34657359027997264);
   if (xsimd::all(xsimd::abs(x) <= half_ln2)) return detail::polynomial(x, series);
   // x = n ln 2 + r with whole n. Added to so large a number, n stands in its last bits.
@@ -71,8 +74,8 @@ template <class Arch>
 [[gnu::always_inline]] inline xsimd::batch<double, Arch> logarithm(const xsimd::batch<double, Arch>& x) {
   using Register = xsimd::batch<double, Arch>;
   using Bits = xsimd::batch<std::uint64_t, Arch>;
-  static constexpr double series[] = {2.0 / 3.0,  2.0 / 5.0,  2.0 / 7.0,  2.0 / 9.0,  2.0 / 11.0,
-                                      2.0 / 13.0, 2.0 / 15.0, 2.0 / 17.0, 2.0 / 19.0, 2.0 / 21.0};
+  static constexpr std::array<double, 10> series{2.0 / 3.0,  2.0 / 5.0,  2.0 / 7.0,  2.0 / 9.0,  2.0 / 11.0,
+                                                 2.0 / 13.0, 2.0 / 15.0, 2.0 / 17.0, 2.0 / 19.0, 2.0 / 21.0};
   constexpr std::uint64_t one = 0x3ff0000000000000;
   constexpr std::uint64_t root_of_half = 0x3fe6a09e667f3bcd;
   // x = 2^n m with m between the roots of a half and of two.
@@ -97,33 +100,23 @@ template <class Arch>
 
 /// (1 + part/whole)^exponent - 1 within a few units in the last place.
 ///
-/// Where all lanes are as in flight, below Mach 0.85, it is the two series alone: ln(1 + x) = 2 artanh s with
-/// s = x/(2 + x), and e^y - 1.
+/// Where all lanes are as in flight, below Mach 0.85, it is two polynomials, as in `pcor::power_less_one`;
+/// that of the exponential goes further here, so that the pressure of a given airspeed is in it.
 template <class Arch>
 [[gnu::always_inline]] inline xsimd::batch<double, Arch> power_less_one(
     const xsimd::batch<double, Arch>& part, const xsimd::batch<double, Arch>& whole,
     const xsimd::batch<double, Arch>& exponent) {
   using Register = xsimd::batch<double, Arch>;
-  static constexpr double artanh[] = {2.0,        2.0 / 3.0,  2.0 / 5.0,  2.0 / 7.0,  2.0 / 9.0,  2.0 / 11.0,
-                                      2.0 / 13.0, 2.0 / 15.0, 2.0 / 17.0, 2.0 / 19.0, 2.0 / 21.0, 2.0 / 23.0};
-  static constexpr double exponential_less_one[] = {1.0,
-                                                    1.0 / 2.0,
-                                                    1.0 / 6.0,
-                                                    1.0 / 24.0,
-                                                    1.0 / 120.0,
-                                                    1.0 / 720.0,
-                                                    1.0 / 5040.0,
-                                                    1.0 / 40320.0,
-                                                    1.0 / 362880.0,
-                                                    1.0 / 3628800.0,
-                                                    1.0 / 39916800.0,
-                                                    1.0 / 479001600.0,
-                                                    1.0 / 6227020800.0,
-                                                    1.0 / 87178291200.0};
+  // (e^y - 1)/y for y from 0 to 0.5, within 2e-16.
+  static constexpr std::array<double, 10> exponential_less_one{
+      0.9999999999999999,     0.500000000000023,     0.1666666666651493,     0.041666666705435784,
+      0.008333332830896939,   0.00138889262293704,   0.00019839584455276513, 2.4848478548539537e-05,
+      2.6775176924987106e-06, 3.4637663589508023e-07};
   const Register s = part / (whole + whole + part);
   const Register square = s * s;
-  const Register y = exponent * s * detail::polynomial(square, artanh);
-  if (xsimd::all((square <= Register(0.0533)) & (xsimd::abs(y) <= Register(0.5)))) {
+  const Register y = exponent * s * detail::polynomial(square, pcor::detail::twice_artanh);
+  if (xsimd::all((square <= Register(pcor::detail::greatest_square)) & (y >= Register(0.0)) &
+                 (y <= Register(0.5)))) {
     return y * detail::polynomial(y, exponential_less_one);
   }
   return exponential(exponent * logarithm(Register(1.0) + part / whole)) - Register(1.0);

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 #include <pcor/physics/air_data.hpp>
+#include <pcor/physics/recovery_factor.hpp>
 #include "support/atmosphere.hpp"
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -119,6 +121,26 @@ TEST(AirData, EnergyAndEntropyAreConserved) {
                 1e-14);
     EXPECT_NEAR(at_rest / T, std::pow((p + q) / p, air.gas_constant / air.specific_heat_pressure), 1e-14);
   }
+}
+
+TEST(AirData, HeatingIsWhatMachNumberTemperatureAndAirspeedShare) {
+  // To a few units of the last place of each factor.
+  for (const double e_over_p : {0.0, 0.01, 0.05}) {
+    const MoistAir<double> air = moist_air(e_over_p);
+    for (const auto& [p, q, T] :
+         {std::array{1000.0, 30.0, 295.0}, {700.0, 68.0, 275.0}, {190.0, 98.0, 215.0}}) {
+      const double heating = pcor::dynamic_heating(p, q, air);
+      const double mach = mach_number(p, q, air);
+      EXPECT_NEAR(stagnation_temperature(T, mach, air), T * (1.0 + heating), 1e-12);
+      EXPECT_NEAR(pcor::true_airspeed_from_heating(heating, T, air), true_airspeed(mach, T, air), 1e-12);
+      const double recovered = pcor::recovery_temperature(T, mach, 0.97, air);
+      EXPECT_NEAR(pcor::ambient_temperature_from_heating(recovered, heating, 0.97), T, 1e-12);
+      EXPECT_NEAR(pcor::mach_number_from_heating(heating, air), mach, 1e-15);
+    }
+  }
+  EXPECT_TRUE(std::isnan(pcor::mach_number_from_heating(-0.01, dry)));
+  EXPECT_TRUE(std::isnan(pcor::true_airspeed_from_heating(-0.01, 280.0, dry)));
+  EXPECT_TRUE(std::isnan(pcor::dynamic_heating(0.0, 10.0, dry)));
 }
 
 TEST(AirData, MachNumberDependsOnTheRatioOfThePressuresOnly) {

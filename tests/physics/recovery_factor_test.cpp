@@ -37,6 +37,16 @@ TEST(RecoveryFactor, ALawOfTheMachNumberIsAPolynomialOfItsLogarithm) {
   EXPECT_TRUE(std::isnan(law(-0.3)));
 }
 
+TEST(RecoveryFactor, IsTheSameBySquareOfTheMachNumber) {
+  for (const auto& known : published_recovery_factors) {
+    for (double mach = 0.05; mach <= 1.2; mach += 0.05)
+      EXPECT_NEAR(known.law.at_square(mach * mach), known.law(mach), 1e-14) << known.name << " at " << mach;
+  }
+  const RecoveryFactor law{{0.9, 0.1, 0.01, 0.001}};
+  EXPECT_TRUE(std::isnan(law.at_square(0.0)));
+  EXPECT_TRUE(std::isnan(law.at_square(-0.3)));
+}
+
 TEST(RecoveryFactor, PublishedNamesAreUniqueAndEachSaysWhereItIsFrom) {
   for (const auto& law : published_recovery_factors) {
     const auto same = [&law](const auto& other) { return other.name == law.name; };

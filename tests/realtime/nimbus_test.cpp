@@ -202,13 +202,13 @@ std::vector<DERTBL> both_systems() {
   };
 }
 
-// A climb with pitch oscillations; temperatures in degC.
+// Climbs with pitch oscillations; temperatures in degC.
 float raw_value(const std::string& name, double time) {
   const auto wave = [time](double mean, double size, double period) {
     return static_cast<float>(mean + size * std::sin(6.283185307179586 * time / period));
   };
-  if (name == "PSFD") return wave(700.0 - 0.6 * time, 2.0, 31.0);
-  if (name == "PSFRD") return wave(701.2 - 0.6 * time, 2.0, 31.0);
+  if (name == "PSFD") return wave(700.0 - 0.6 * std::fmod(time, 100.0), 2.0, 31.0);
+  if (name == "PSFRD") return wave(701.2 - 0.6 * std::fmod(time, 100.0), 2.0, 31.0);
   if (name == "QCF") return wave(67.6, 3.0, 17.0);
   if (name == "QCFR") return wave(66.8, 3.0, 17.0);
   if (name == "QCR") return wave(67.1, 3.0, 17.0);
@@ -278,6 +278,7 @@ void expect_plain_loops(const std::vector<double>& seconds, Raw raw) {
   ASSERT_TRUE(install_both());
   Table table(raw_names, both_systems());
   Loop low = plain(fuselage_model(), fuselage_roles, 1.0);
+  bool were_all_there = false;
   Loop high = plain(fuselage_model(), fuselage_roles, 25.0);
   Loop low_radome = plain(radome_model(), radome_roles, 1.0);
   Loop high_radome = plain(radome_model(), radome_roles, 25.0);
@@ -298,7 +299,9 @@ void expect_plain_loops(const std::vector<double>& seconds, Raw raw) {
       run_plain(high_radome, radome_roles, radome_inputs, time, raw);
       expect_radome(high_radome, high_value);
     }
+    were_all_there |= !std::isnan(table.low("TASX") + table.high("TASX", 24) + table.low("TASX_R"));
   }
+  EXPECT_TRUE(were_all_there) << "there is something to compare";
 }
 
 std::vector<double> seconds(double from, double to) {
@@ -321,8 +324,8 @@ TEST(NimbusSystem, RecoversAfterMissingSamplesAsPlainLoopsDo) {
 }
 
 TEST(NimbusSystem, StartsTheStateOfEachRateAnewAfterAGap) {
-  std::vector<double> with_gap = seconds(100.0, 105.0);
-  for (const double second : seconds(108.0, 112.0)) with_gap.push_back(second);
+  std::vector<double> with_gap = seconds(100.0, 110.0);
+  for (const double second : seconds(113.0, 122.0)) with_gap.push_back(second);
   expect_plain_loops(with_gap, raw_value);
 }
 
@@ -409,6 +412,86 @@ TEST(NimbusSystem, NeverPassesOffAnEarlierSampleAsThisOne) {
     table.entry(name).compute(&table.entry(name));
     EXPECT_THAT(table.low(name), IsNan()) << "the leader has not run for this second";
   }
+}
+
+TEST(NimbusSystem, PutsNothingInAnEntryThatComesBeforeTheLeader) {
+  // Its values would be those of the sample before, at every sample but the first.
+  ASSERT_TRUE(install_both());
+  Table table(raw_names, {{"PSXC", {}, Fuselage::fetch<Quantity::corrected_static_pressure>},
+                          {"PCORFLAG", {}, Fuselage::fetch_quality},
+                          {"PCOR", fuselage_inputs, Fuselage::compute},
+                          {"MACHX", {"PCOR"}, Fuselage::fetch<Quantity::corrected_mach>}});
+  for (const double second : seconds(0.0, 3.0)) {
+    table.compute(second, raw_value);
+    for (const char* name : {"PSXC", "PCORFLAG"}) {
+      EXPECT_THAT(table.low(name), IsNan());
+      EXPECT_THAT(table.high(name, 20), IsNan());
+    }
+    EXPECT_FALSE(std::isnan(table.low("MACHX")));
+  }
+}
+
+TEST(NimbusSystem, GivesAResultToSeveralEntries) {
+  ASSERT_TRUE(install_both());
+  Table table(raw_names, {{"PCOR", fuselage_inputs, Fuselage::compute},
+                          {"PSXC", {"PCOR"}, Fuselage::fetch<Quantity::corrected_static_pressure>},
+                          {"PSX", {"PCOR"}, Fuselage::fetch<Quantity::corrected_static_pressure>}});
+  for (const double second : seconds(0.0, 3.0)) {
+    table.compute(second, raw_value);
+    EXPECT_FALSE(std::isnan(table.low("PSXC")));
+    EXPECT_EQ(table.low("PSX"), table.low("PSXC"));
+    EXPECT_EQ(table.high("PSX", 24), table.high("PSXC", 24));
+  }
+}
+
+// A host that is not told the time.
+struct Timeless {
+  using Entry = DERTBL;
+  static double get(Entry* entry, std::size_t input) { return Host::get(entry, input); }
+  static void put(Entry* entry, double value) { Host::put(entry, value); }
+  static bool high_rate() { return Host::high_rate(); }
+};
+
+TEST(NimbusSystem, CountsTheSamplesOfAHostWithoutTime) {
+  using System = NimbusSystem<Timeless, struct TimelessTag>;
+  std::string error;
+  ASSERT_TRUE(System::install(radome_model(), radome_roles, 1.0, 25.0, &error)) << error;
+  ASSERT_TRUE(install_both());
+  Table table(raw_names, {{"PCOR", radome_inputs, System::compute},
+                          {"PSXC", {"PCOR"}, System::fetch<Quantity::corrected_static_pressure>},
+                          {"PCOR_R", radome_inputs, Radome::compute},
+                          {"PSXC_R", {"PCOR_R"}, Radome::fetch<Quantity::corrected_static_pressure>}});
+  for (const double second : seconds(36000.0, 36012.0)) {
+    table.compute(second, raw_value);
+    expect_same(table.low("PSXC"), static_cast<double>(table.low("PSXC_R")));
+    expect_same(table.high("PSXC", 7), static_cast<double>(table.high("PSXC_R", 7)));
+  }
+  EXPECT_FALSE(std::isnan(table.low("PSXC"))) << "without steps in time there is no gap";
+  System::reset();
+  table.compute(36012.0, raw_value);
+  EXPECT_THAT(table.low("PSXC"), IsNan());
+}
+
+TEST(NimbusSystem, AsksForTheTimeOnceInASample) {
+  struct Clock {
+    using Entry = DERTBL;
+    static double get(Entry* entry, std::size_t input) { return Host::get(entry, input); }
+    static void put(Entry* entry, double value) { Host::put(entry, value); }
+    static bool high_rate() { return Host::high_rate(); }
+    static double time() { return ++asked(), sample_time(); }
+    static int& asked() {
+      static int count = 0;
+      return count;
+    }
+  };
+  using System = NimbusSystem<Clock, struct ClockTag>;
+  std::string error;
+  ASSERT_TRUE(System::install(fuselage_model(), fuselage_roles, 1.0, 25.0, &error)) << error;
+  Table table(raw_names, {{"PCOR", fuselage_inputs, System::compute},
+                          {"PSXC", {"PCOR"}, System::fetch<Quantity::corrected_static_pressure>},
+                          {"PCORFLAG", {"PCOR"}, System::fetch_quality}});
+  table.compute(0.0, raw_value);
+  EXPECT_EQ(Clock::asked(), 26);
 }
 
 TEST(NimbusSystem, StartsAnewWhenReset) {
@@ -544,6 +627,36 @@ TEST(NimbusDefaults, TellOfOverridesThatNothingReads) {
   EXPECT_THAT(pcor::unread_defaults(fuselage_model(), "PCOR", defaults.names()),
               ElementsAre("PCOR.static-constant.a1", "PCOR.static-mach.m1"));
   EXPECT_THAT(pcor::unread_defaults(radome_model(), "PCOR_R", defaults.names()), IsEmpty());
+}
+
+TEST(NimbusDefaults, AreRefusedWhereNothingReadsThem) {
+  const auto error_of = [](const std::vector<std::string>& keys, pcor::Overrides expected) {
+    std::string error;
+    const bool good = pcor::check_defaults(fuselage_model(), "PCOR", keys, expected, &error);
+    EXPECT_EQ(good, error.empty());
+    EXPECT_EQ(pcor::check_defaults(fuselage_model(), "PCOR", keys, expected, nullptr), good);
+    return error;
+  };
+  const auto some = pcor::Overrides::some;
+  EXPECT_EQ(error_of({}, some), "");
+  EXPECT_EQ(error_of({"RECFB", "PCOR_R.static-lag.tau", "PCOR.STATIC-QP.A2"}, some), "");
+  EXPECT_EQ(
+      error_of({"PCOR.STATIC-QP.A9"}, some),
+      "the defaults file has 'PCOR.STATIC-QP.A9', which no coefficient of the model reads; the nearest is "
+      "'PCOR.static-qp.a2'");
+  EXPECT_EQ(
+      error_of({"PCOR.STATC-ALPHA.A1"}, some),
+      "the defaults file has 'PCOR.STATC-ALPHA.A1', which no coefficient of the model reads; the nearest "
+      "is 'PCOR.static-alpha.a1'");
+  const auto all = pcor::Overrides::all;
+  EXPECT_EQ(error_of({"PCOR.STATIC-CONSTANT.A0", "PCOR.static-alpha.a1", "PCOR.STATIC-QP.A2"}, all), "");
+  EXPECT_EQ(
+      error_of({"PCOR.STATIC-CONSTANT.A0", "PCOR.static-alpha.a1", "PCOR_STATIC-QP.A2"}, all),
+      "the defaults file lacks the coefficient 'PCOR.static-qp.a2'; the nearest is 'PCOR_STATIC-QP.A2'");
+  EXPECT_EQ(error_of({}, all), "the defaults file lacks the coefficient 'PCOR.static-constant.a0'");
+  std::string error;
+  EXPECT_FALSE(pcor::check_defaults({}, "PCOR", {"PCOR.STATIC-QP.A2"}, some, &error));
+  EXPECT_EQ(error, "the defaults file has 'PCOR.STATIC-QP.A2', which no coefficient of the model reads");
 }
 
 }  // namespace

@@ -4,20 +4,35 @@
 
 namespace pcor {
 
+/// By what part of its temperature air warms where it is brought to rest, from static pressure `p` and
+/// dynamic pressure `q` (same unit):
+///
+///     h = T*/T - 1 = ((p+q)/p)^(R_a/c_p) - 1 = M^2 (gamma - 1)/2 = v^2/(2 c_p T)
+///
+/// `q` is the impact pressure of compressible flow, pt - p. Result: 1. Domain: p > 0, anything else gives
+/// NaN; below zero where q is. Source: memo eq. 5-7.
+template <class S>
+S dynamic_heating(const S& p, const S& q, const MoistAir<S>& air) {
+  return select(p > S(0.0), power_less_one(q, p, air.poisson_exponent), missing<S>());
+}
+
+/// Mach number of air of which `dynamic_heating` is `heating`: M = (h 2 c_v/R_a)^(1/2). NaN below zero.
+template <class S>
+S mach_number_from_heating(const S& heating, const MoistAir<S>& air) {
+  using std::sqrt;
+  return sqrt(air.degrees_of_freedom * heating);
+}
+
 /// Mach number from static pressure `p` and dynamic pressure `q` (same unit):
 ///
 ///     M = { (2 c_v/R_a) [ ((p+q)/p)^(R_a/c_p) - 1 ] }^(1/2)
 ///
-/// `q` is the impact pressure of compressible flow, pt - p. Result: 1, zero or above.
-/// Domain: p > 0, q >= 0; anything else gives NaN. The temperature is not needed.
+/// Result: 1, zero or above. Domain: p > 0, q >= 0; anything else gives NaN. The temperature is not needed.
 /// Accuracy: 1e-14 relative at q/p = 0.1, 1e-10 at q/p = 1e-5. Source: memo eq. 7 (2 c_v/R_a, see its
 /// misprint).
 template <class S>
 S mach_number(const S& p, const S& q, const MoistAir<S>& air) {
-  using std::sqrt;
-  const S heating = power_less_one(q, p, air.poisson_exponent);
-  const S mach = sqrt(S(2.0) * air.specific_heat_volume / air.gas_constant * heating);
-  return select(p > S(0.0), mach, missing<S>());
+  return mach_number_from_heating(dynamic_heating(p, q, air), air);
 }
 
 /// Dynamic pressure at Mach number `mach` and static pressure `p`, in the unit of `p`: the inverse of
@@ -65,6 +80,14 @@ S speed_of_sound(const S& temperature, const MoistAir<S>& air) {
 template <class S>
 S true_airspeed(const S& mach, const S& temperature, const MoistAir<S>& air) {
   return mach * speed_of_sound(temperature, air);
+}
+
+/// True airspeed, m/s, of air of which `dynamic_heating` is `heating`, with the ambient `temperature` in K:
+/// v = (2 c_p T h)^(1/2). NaN where the product is below zero. Source: memo eq. 5.
+template <class S>
+S true_airspeed_from_heating(const S& heating, const S& temperature, const MoistAir<S>& air) {
+  using std::sqrt;
+  return sqrt(S(2.0) * air.specific_heat_pressure * temperature * heating);
 }
 
 /// Temperature where the air is brought to rest, K: T* = T + v^2/(2 c_p) = T (1 + M^2 (gamma-1)/2).

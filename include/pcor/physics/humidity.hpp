@@ -27,15 +27,16 @@ S vapor_pressure_over_water(const S& temperature) {
 /// A vapour pressure, hPa, that is surely below saturation over water at `temperature` in K, for a fraction
 /// of what `vapor_pressure_over_water` costs:
 ///
-///     e = (1.3454 - 86.55/T)^64
+///     e = ((T - 147.5 K)/103.15 K)^9 hPa
 ///
-/// Between 0.951 and 0.997 of saturation from 200 to 320 K and below it everywhere: the Clausius-Clapeyron
-/// law with a latent heat that falls with temperature. Zero below 100 K. NaN gives NaN.
+/// Between 0.95 and 0.996 of saturation from 220 to 310 K and below it everywhere. Zero below 147.5
+/// and above 332 K. NaN gives NaN.
 template <class S>
 S vapor_pressure_below_saturation(const S& temperature) {
-  S power = S(1.3454) - S(86.55) / temperature;
-  for (int doubling = 0; doubling < 6; ++doubling) power = power * power;
-  return select(temperature < S(100.0), S(0.0), power);
+  const S base = (temperature - S(147.5)) * S(1.0 / 103.15);
+  const S square = base * base;
+  const S fourth = square * square;
+  return select(base < S(0.0) || temperature > S(332.0), S(0.0), S(fourth * fourth * base));
 }
 
 /// Saturation vapour pressure over ice, hPa, at `temperature` in K.

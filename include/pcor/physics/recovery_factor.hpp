@@ -23,12 +23,24 @@ struct RecoveryFactor {
   /// The recovery factor at Mach number `mach`.
   template <class S>
   S operator()(const S& mach) const {
+    return is_constant() ? S(coefficients[0]) : at(decimal_logarithm(mach), S(mach));
+  }
+
+  /// The recovery factor where the Mach number has the square `square`: its root is not waited for.
+  template <class S>
+  S at_square(const S& square) const {
+    using std::log;
     if (is_constant()) return S(coefficients[0]);
-    const S logarithm = decimal_logarithm(mach);
-    const S factor =
-        S(coefficients[0]) +
-        logarithm * (S(coefficients[1]) + logarithm * (S(coefficients[2]) + logarithm * S(coefficients[3])));
-    return select(mach > S(0.0), factor, missing<S>());
+    return at(S(S(0.5 * decimal_logarithm_of_e) * log(square)), square);
+  }
+
+ private:
+  // Missing where `moving`, the Mach number or its square, is not above zero.
+  template <class S>
+  S at(const S& logarithm, const S& moving) const {
+    const S factor = S(coefficients[0]) + logarithm * S(coefficients[1]) +
+                     logarithm * logarithm * (S(coefficients[2]) + logarithm * S(coefficients[3]));
+    return select(moving > S(0.0), factor, missing<S>());
   }
 };
 
@@ -95,6 +107,14 @@ S ambient_temperature(const S& recovery_temperature, const S& mach, const S& rec
                       const MoistAir<S>& air) {
   return recovery_temperature /
          (S(1.0) + recovery_factor * mach * mach * (air.heat_capacity_ratio - S(1.0)) * S(0.5));
+}
+
+/// Ambient temperature, K, from the recovery temperature `recovery_temperature` (K) in air of which
+/// `dynamic_heating` is `heating`: T = T_r/(1 + a_r h).
+template <class S>
+S ambient_temperature_from_heating(const S& recovery_temperature, const S& heating,
+                                   const S& recovery_factor) {
+  return recovery_temperature / (S(1.0) + recovery_factor * heating);
 }
 
 /// The temperature that a thermometer of recovery factor `recovery_factor` shows in air of `temperature` (K)

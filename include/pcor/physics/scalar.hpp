@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -82,17 +84,66 @@ S power(const S& base, double exponent) {
   return exp(S(exponent) * log(base));
 }
 
+namespace detail {
+
+// 2 artanh(s)/s as a polynomial in s^2, and (e^y - 1)/y as one in y, interpolated at the zeros of Chebyshev
+// polynomials: within 2e-16 up to these limits, which air below Mach 0.85 does not pass.
+inline constexpr double greatest_square = 0.0533;
+inline constexpr std::array<double, 8> twice_artanh{
+    1.9999999999999998, 0.6666666666673486, 0.39999999973182804, 0.2857143258165603,
+    0.2222192846459124, 0.1819345637926683, 0.15131155731283713, 0.16152981762545976};
+inline constexpr double greatest_exponent = 0.15;
+inline constexpr std::array<double, 8> exponential_less_one{1.0,
+                                                            0.5000000000000195,
+                                                            0.16666666666393407,
+                                                            0.04166666681223684,
+                                                            0.00833332952814301,
+                                                            0.001388942834516122,
+                                                            0.00019799005809029933,
+                                                            2.6515439600063568e-05};
+
+template <std::size_t... Pair>
+constexpr double polynomial(double x, const std::array<double, 2 * sizeof...(Pair)>& c,
+                            std::index_sequence<Pair...>) {
+  const std::array<double, sizeof...(Pair)> pairs{(c[2 * Pair] + x * c[2 * Pair + 1])...};
+  if constexpr (pairs.size() == 1) {
+    return pairs[0];
+  } else {
+    return polynomial(x * x, pairs, std::make_index_sequence<pairs.size() / 2>());
+  }
+}
+
+// c[0] + c[1] x + ... + c[7] x^7: in pairs, and pairs of pairs, which a processor computes side by side.
+constexpr double polynomial(double x, const std::array<double, 8>& c) {
+  return polynomial(x, c, std::make_index_sequence<4>());
+}
+
+}  // namespace detail
+
 /// (1 + part/whole)^exponent - 1, for part/whole above -1.
+///
+/// With `double` within 1e-15 of the result where that is as in flight, below Mach 0.85: two polynomials, by
+/// ln(1 + x) = 2 artanh(x/(2 + x)), which are there before two calls of the library are.
 template <class S>
 S power_less_one(const S& part, const S& whole, const S& exponent) {
+  if constexpr (std::is_same_v<S, double>) {
+    const S s = part / (whole + whole + part);
+    const S square = s * s;
+    const S y = exponent * s * detail::polynomial(square, detail::twice_artanh);
+    if (square <= detail::greatest_square && y >= 0.0 && y <= detail::greatest_exponent)
+      return y * detail::polynomial(y, detail::exponential_less_one);
+  }
   return power(S(1.0) + part / whole, exponent) - S(1.0);
 }
+
+/// The decimal logarithm of e.
+inline constexpr double decimal_logarithm_of_e = 0.43429448190325182765;
 
 /// Decimal logarithm, from the natural one: half the time of `std::log10`, within one part in 10^15 of it.
 template <class S>
 S decimal_logarithm(const S& x) {
   using std::log;
-  return S(0.43429448190325182765) * log(x);
+  return S(decimal_logarithm_of_e) * log(x);
 }
 
 /// Hyperbolic tangent, from one exponential.

@@ -142,9 +142,9 @@ class Chain : public BoundModel {
       flags.set(is_missing(delta), Quality::effect_input_missing);
     }
     S humidity = recorded_humidity(state, parameters, p, flags);
-    MoistAir<S> constants = solve_air(state, parameters, humidity, thermometer, delta, flags);
+    AirOf<S> air = solve_air(state, parameters, humidity, thermometer, delta, flags);
     if (limit_to_saturation(humidity, p, state[Quantity::ambient_temperature], flags))
-      constants = solve_air(state, parameters, humidity, thermometer, delta, flags);
+      air = solve_air(state, parameters, humidity, thermometer, delta, flags);
     const auto still = state[Quantity::corrected_dynamic_pressure] < S(policy_.least_dynamic_pressure);
     flags.set(still, Quality::no_airflow);
     S& mach = state[Quantity::corrected_mach];
@@ -152,7 +152,8 @@ class Chain : public BoundModel {
         Quality::impossible_dynamic_pressure);
     state[Quantity::humidity] = humidity;
     state[Quantity::corrected_airspeed] =
-        true_airspeed(mach, state[Quantity::ambient_temperature], constants);
+        select(is_missing(mach), missing<S>(),
+               true_airspeed_from_heating(air.heating, state[Quantity::ambient_temperature], air.constants));
   }
 
   /// Delta-p that LAMS asks for at this sample, hPa, by the approach of the model. NaN where the laser or
@@ -459,21 +460,30 @@ class Chain : public BoundModel {
                            : lams_iterated(p, q, v, thermometer, e, recovery, 1e-7, 30, calibrate);
   }
 
+  // What goes on from the solution of a sample: the constants of its air, and its dynamic heating.
+  template <class S>
+  struct AirOf {
+    MoistAir<S> constants;
+    S heating;
+  };
+
   template <class S, class P, class Flags>
-  MoistAir<S> solve_air(State<S>& state, const P* parameters, const S& humidity, const S& thermometer,
-                        const S& delta, Flags& flags) const {
+  AirOf<S> solve_air(State<S>& state, const P* parameters, const S& humidity, const S& thermometer,
+                     const S& delta, Flags& flags) const {
     const MoistAir<S> constants = moist_air(humidity);
-    const S mach = mach_number(state[Quantity::corrected_static_pressure],
-                               state[Quantity::corrected_dynamic_pressure], constants);
-    state[Quantity::corrected_mach] = mach;
+    const S heating = dynamic_heating(state[Quantity::corrected_static_pressure],
+                                      state[Quantity::corrected_dynamic_pressure], constants);
+    state[Quantity::corrected_mach] = mach_number_from_heating(heating, constants);
     if (derives_temperature()) {
       S& ambient = state[Quantity::ambient_temperature];
       put(Quantity::ambient_temperature,
-          ambient_temperature(thermometer, mach, S(recovery_(mach) + delta), constants), state, flags,
-          Quality::temperature_missing);
+          ambient_temperature_from_heating(
+              thermometer, heating,
+              S(recovery_.at_square(S(constants.degrees_of_freedom * heating)) + delta)),
+          state, flags, Quality::temperature_missing);
       if (acts(Where::ambient_temperature)) ambient = calibrated(ambient, state, parameters, flags);
     }
-    return constants;
+    return {constants, heating};
   }
 };
 

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -11,6 +14,16 @@
 #include <pcor/realtime/loop.hpp>
 
 namespace pcor {
+
+namespace detail {
+
+template <class Host, class = void>
+struct HasTime : std::false_type {};
+
+template <class Host>
+struct HasTime<Host, std::void_t<decltype(Host::time())>> : std::true_type {};
+
+}  // namespace detail
 
 /// One pressure system in a host like NCAR nimbus: a table of derived variables, each with one output and a
 /// callback `void compute(Entry*)` that has no context pointer and runs at a low and at a high rate.
@@ -22,6 +35,7 @@ namespace pcor {
 ///
 ///     using Fuselage = pcor::NimbusSystem<Host, struct FuselageTag>;
 ///     pcor::read_defaults(model, "PCOR", find);                        // optional overrides, by name
+///     pcor::check_defaults(model, "PCOR", names, pcor::Overrides::some, &error);
 ///     Fuselage::install(model, {"static_pressure", "dynamic_pressure", "recovery_temperature"}, 1, 25,
 ///     &error);
 ///     {"PCOR", {"PSFD", "QCF", "RTF1"}, Fuselage::compute},
@@ -38,6 +52,10 @@ namespace pcor {
 ///       static bool high_rate();                        // which of the two rates is being computed
 ///       static double time();                           // of this sample, s; it grows, midnight or not
 ///     };
+///
+/// The leader alone asks for the time, once in a sample. A host without `time` is taken to call at every
+/// sample of a rate, without a gap; where there is one it calls `reset`. examples/realtime/nimbus is such a
+/// host.
 ///
 /// Units are those of the library but for temperatures: whatever it has in K travels in degC, both ways.
 /// Variables of formulas travel as they are.
@@ -92,46 +110,55 @@ class NimbusSystem {
       places.push_back({quantity, zero_of(quantity)});
     }
     inputs_ = std::move(places);
-    low_ = std::move(low);
-    high_ = std::move(high);
+    low_ = {std::move(low), low_rate};
+    high_ = {std::move(high), high_rate};
+    reset();
     return true;
   }
 
   /// The callback of the leader: runs the sample and puts delta-p of the model, hPa. NaN where nothing is
   /// installed.
   static void compute(Entry* entry) {
-    std::optional<Loop>& loop = current();
-    if (loop) {
-      for (std::size_t i = 0; i < inputs_.size(); ++i) {
-        loop->state()[inputs_[i].quantity] = Host::get(entry, i) + inputs_[i].zero;
-      }
-      loop->run(Host::time());
+    Rate& rate = current();
+    if (!rate.loop) return Host::put(entry, missing<double>());
+    State<double>& state = rate.loop->state();
+    for (std::size_t i = 0; i < inputs_.size(); ++i) {
+      state[inputs_[i].quantity] = Host::get(entry, i) + inputs_[i].zero;
     }
-    fetch<Quantity::static_defect>(entry);
+    rate.loop->run(time_of(rate));
+    latest_ = &*rate.loop;
+    ++run_;
+    Host::put(entry, state[Quantity::static_defect]);
   }
 
   /// The callback of an entry that is another result of the leader's run. NaN where the leader has not run
-  /// for this very sample, so that no value of an earlier one is passed off as this one's.
+  /// since this entry was last put, and for good where the entry is called before the leader's first run, as
+  /// its values would be those of the sample before: its dependency line lacks the leader.
   template <Quantity quantity>
   static void fetch(Entry* entry) {
-    Host::put(entry, is_fresh() ? current()->state()[quantity] - zero_of(quantity) : missing<double>());
+    Host::put(entry, has_turn(turns_[index(quantity)], entry) ? latest_->state()[quantity] - zero_of(quantity)
+                                                              : missing<double>());
   }
 
   /// The callback of an entry that is the quality bits of the leader's run, as a number. NaN as of `fetch`.
   static void fetch_quality(Entry* entry) {
-    Host::put(entry, is_fresh() ? static_cast<double>(current()->quality().bits()) : missing<double>());
+    Host::put(entry, has_turn(turns_.back(), entry) ? static_cast<double>(latest_->quality().bits())
+                                                    : missing<double>());
   }
 
   /// How many samples ago the values were that are put at the current rate (`Loop::delay`): 0 for a model
   /// without effects of rates of change. The host moves them back in its files, and has the last ones before
   /// a gap and at the end by computing on with missing inputs.
-  static std::size_t delay() { return current() ? current()->delay() : 0; }
+  static std::size_t delay() { return current().loop ? current().loop->delay() : 0; }
 
   /// Forgets all earlier samples of both rates, as at the start of a flight.
   static void reset() {
-    for (std::optional<Loop>* loop : {&low_, &high_}) {
-      if (*loop) (*loop)->reset();
+    for (Rate* rate : {&low_, &high_}) {
+      if (rate->loop) rate->loop->reset();
+      rate->samples = 0;
     }
+    run_ = 0;
+    turns_.fill({});
   }
 
  private:
@@ -140,22 +167,50 @@ class NimbusSystem {
     double zero;
   };
 
+  struct Rate {
+    std::optional<Loop> loop{};
+    double samples_per_second = 0.0;
+    std::size_t samples = 0;
+  };
+
+  // The run of which a result was last put, and by which entry.
+  struct Turn {
+    std::size_t run = 0;
+    const Entry* entry = nullptr;
+  };
+
+  static constexpr std::size_t never = std::numeric_limits<std::size_t>::max();
+
   // What the library calls the zero of the host's unit. An uncertainty in K is a difference.
   static constexpr double zero_of(Quantity quantity) {
     if (quantity == Quantity::ambient_temperature_uncertainty) return 0.0;
     return index(quantity) < quantity_count && facts_of(quantity).unit == "K" ? constants::ice_point : 0.0;
   }
 
-  static std::optional<Loop>& current() { return Host::high_rate() ? high_ : low_; }
+  static Rate& current() { return Host::high_rate() ? high_ : low_; }
 
-  static bool is_fresh() {
-    const std::optional<Loop>& loop = current();
-    return loop && loop->last_time() == Host::time();
+  static double time_of(Rate& rate) {
+    if constexpr (detail::HasTime<Host>::value) {
+      return Host::time();
+    } else {
+      return static_cast<double>(rate.samples++) / rate.samples_per_second;
+    }
+  }
+
+  // True where the entry comes after a run of the leader that it has not put yet.
+  static bool has_turn(Turn& turn, const Entry* entry) {
+    if (run_ == 0) turn.run = never;
+    if (turn.run == never || (turn.run == run_ && turn.entry == entry)) return false;
+    turn = {run_, entry};
+    return true;
   }
 
   static inline std::vector<Input> inputs_;
-  static inline std::optional<Loop> low_;
-  static inline std::optional<Loop> high_;
+  static inline Rate low_;
+  static inline Rate high_;
+  static inline const Loop* latest_ = nullptr;
+  static inline std::size_t run_ = 0;
+  static inline std::array<Turn, state_capacity + 1> turns_{};  // of every quantity, and of the quality bits
 };
 
 /// The name in a defaults file of the coefficient number `number` of `effect`: `PCOR.static-alpha.a1`, where
@@ -206,6 +261,25 @@ std::size_t read_defaults(Model& model, const std::string& prefix, Find find) {
   return replaced;
 }
 
+namespace detail {
+
+// That of `names` which has most letters at its beginning and end in common with `name`, in whatever case.
+inline std::string nearest_name(const std::string& name, const std::vector<std::string>& names) {
+  const std::string wanted = in_capitals(name);
+  const auto in_common = [&wanted](const std::string& other) {
+    const std::string found = in_capitals(other);
+    const auto begin = std::mismatch(wanted.begin(), wanted.end(), found.begin(), found.end()).first;
+    const auto end = std::mismatch(wanted.rbegin(), wanted.rend(), found.rbegin(), found.rend()).first;
+    return (begin - wanted.begin()) + (end - wanted.rbegin());
+  };
+  const auto nearest = std::max_element(
+      names.begin(), names.end(),
+      [&in_common](const std::string& a, const std::string& b) { return in_common(a) < in_common(b); });
+  return nearest == names.end() ? std::string() : *nearest;
+}
+
+}  // namespace detail
+
 /// Those of the names `keys` of a defaults file that begin with `prefix` and a point and are no coefficient
 /// of `model`, in whatever case: overrides that nothing reads. A host reports them, and does not go on.
 inline std::vector<std::string> unread_defaults(const Model& model, const std::string& prefix,
@@ -219,6 +293,37 @@ inline std::vector<std::string> unread_defaults(const Model& model, const std::s
       unread.push_back(key);
   }
   return unread;
+}
+
+/// Whether a defaults file may leave coefficients of a model to the model.
+enum class Overrides { some, all };
+
+/// False where one of the names `keys` of a defaults file that begin with `prefix` and a point is no
+/// coefficient of `model`, or where `all` are expected and one is not there. `error` then says which, and the
+/// nearest name.
+inline bool check_defaults(const Model& model, const std::string& prefix,
+                           const std::vector<std::string>& keys, Overrides expected, std::string* error) {
+  const std::vector<std::string> coefficients = default_keys(model, prefix);
+  const auto fail = [error](const std::string& why, const std::string& name,
+                            const std::vector<std::string>& others) {
+    const std::string nearest = detail::nearest_name(name, others);
+    if (error != nullptr) *error = why + (nearest.empty() ? "" : "; the nearest is '" + nearest + "'");
+    return false;
+  };
+  const std::vector<std::string> unread = unread_defaults(model, prefix, keys);
+  if (!unread.empty()) {
+    return fail("the defaults file has '" + unread.front() + "', which no coefficient of the model reads",
+                unread.front(), coefficients);
+  }
+  if (expected == Overrides::some) return true;
+  for (const std::string& coefficient : coefficients) {
+    const bool is_there = std::any_of(keys.begin(), keys.end(), [&coefficient](const std::string& key) {
+      return in_capitals(key) == in_capitals(coefficient);
+    });
+    if (!is_there)
+      return fail("the defaults file lacks the coefficient '" + coefficient + "'", coefficient, keys);
+  }
+  return true;
 }
 
 }  // namespace pcor
