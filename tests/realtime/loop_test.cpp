@@ -566,6 +566,26 @@ TEST(LoopLams, CorrectsWhereItIsValidAndSaysSo) {
   EXPECT_EQ(with_lams.quality().bits(), bits({Quality::lams_missing}));
 }
 
+TEST(Loop, LeavesTheFilterOfTheLaserOut) {
+  std::vector<Quantity> recorded;
+  for (const auto& each : level) recorded.push_back(each.first);
+  std::string error;
+  std::optional<Loop> bare =
+      Loop::build(c130(), recorded, 1.0, &error, CorrectWith::model, {}, pcor::LaserFilter::without);
+  ASSERT_TRUE(bare) << error;
+  EXPECT_FALSE(bare->writes(Quantity::filtered_lams_temperature));
+  Loop filtered = build(c130(), level, 1.0);
+  EXPECT_TRUE(filtered.writes(Quantity::filtered_lams_temperature));
+  for (int second = 0; second < 20; ++second) {
+    run(*bare, level, second);
+    run(filtered, level, second);
+  }
+  EXPECT_FALSE(std::isnan(filtered.state()[Quantity::filtered_lams_temperature]));
+  EXPECT_TRUE(std::isnan(bare->state()[Quantity::filtered_lams_temperature]));
+  EXPECT_EQ(bare->state()[Quantity::lams_temperature], filtered.state()[Quantity::lams_temperature]);
+  EXPECT_EQ(bare->quality().bits(), filtered.quality().bits());
+}
+
 // Delta-p from LAMS needs the humidity, so a humidity may not wait for the pressures that it corrects.
 TEST(LoopFunctors, MayNotWaitForWhatWaitsForThem) {
   const auto add_inlet = [](Loop loop, std::string* error) {

@@ -38,6 +38,10 @@ class StageFunctor final : public Functor {
   CorrectWith with_;
 };
 
+/// Whether a loop with a laser filters its temperature: 12 s of samples for every new one, 300 of them at 25
+/// Hz.
+enum class LaserFilter { with, without };
+
 /// The host of a sample loop at one rate: runs functors in the order of their dependencies, sample by sample.
 ///
 /// All memory is taken while the loop is set up. `run` allocates nothing, throws nothing, takes no lock and
@@ -58,18 +62,21 @@ class Loop {
 
   /// A loop that runs `model` on the roles `recorded`: delta-p, corrected pressures, Mach number, humidity,
   /// ambient temperature, airspeed, and what LAMS says where its airspeed is recorded, its temperature also
-  /// filtered (`LowPass`). Where an uncertainty is stated, those of the results, too (`ResultUncertainty`).
-  /// Returns nothing where the model cannot be used; `error` says why.
+  /// filtered (`LowPass`) unless that is left out; where only the model's correction is wanted leave out the
+  /// role, and nothing of the laser is run. Where an uncertainty is stated, those of the results, too
+  /// (`ResultUncertainty`). Returns nothing where the model cannot be used; `error` says why.
   static std::optional<Loop> build(const Model& model, const std::vector<Quantity>& recorded, double rate,
                                    std::string* error, CorrectWith with = CorrectWith::model,
-                                   const ModelUncertainty& uncertainty = {});
+                                   const ModelUncertainty& uncertainty = {},
+                                   LaserFilter filter = LaserFilter::with);
 
   /// The same for a chain that is built already, whose rates of change have no periods shorter than
   /// `periods`; the delay grows with these.
   static std::optional<Loop> build(std::shared_ptr<const Chain> chain, double rate, std::string* error,
                                    CorrectWith with = CorrectWith::model,
                                    const ModelUncertainty& uncertainty = {},
-                                   const ShortestPeriods& periods = {});
+                                   const ShortestPeriods& periods = {},
+                                   LaserFilter filter = LaserFilter::with);
 
   /// The place of the variable `name` for functors of the user's own: the one it has already, as a quantity
   /// of the library or in a formula, else a new one. Nothing where the room is used up.
@@ -212,19 +219,19 @@ inline bool Loop::order(std::string* error) {
 
 inline std::optional<Loop> Loop::build(const Model& model, const std::vector<Quantity>& recorded, double rate,
                                        std::string* error, CorrectWith with,
-                                       const ModelUncertainty& uncertainty) {
+                                       const ModelUncertainty& uncertainty, LaserFilter filter) {
   BindingError why;
   std::optional<Chain> chain = Chain::build(model, recorded, &why);
   if (!chain) {
     if (error != nullptr) *error = why.message();
     return std::nullopt;
   }
-  return build(std::make_shared<const Chain>(std::move(*chain)), rate, error, with, uncertainty);
+  return build(std::make_shared<const Chain>(std::move(*chain)), rate, error, with, uncertainty, {}, filter);
 }
 
 inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, double rate, std::string* error,
                                        CorrectWith with, const ModelUncertainty& uncertainty,
-                                       const ShortestPeriods& periods) {
+                                       const ShortestPeriods& periods, LaserFilter filter) {
   const auto fail = [error](const char* why) {
     if (error != nullptr) *error = why;
     return std::nullopt;
@@ -250,7 +257,7 @@ inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, doubl
     auto functor = std::make_unique<StageFunctor<decltype(stage)>>(chain, with);
     if (!functor->outputs().empty()) loop.add(std::move(functor));
   });
-  if (chain->has_lams()) {
+  if (chain->has_lams() && filter == LaserFilter::with) {
     loop.add(
         std::make_unique<LowPass>(Quantity::lams_temperature, Quantity::filtered_lams_temperature, rate));
   }
