@@ -169,7 +169,10 @@ UnitConversion UnitConversion::between(const std::string& from, const std::strin
   double scale = (convert(span) - convert(-span)) / (2 * span);
   if (std::abs(scale - 1) < 1e-12) scale = 1;
   const double middle = convert(span / 4);
-  if (!(std::abs(middle - (scale * span / 4 + offset)) <= 1e-9 * (std::abs(middle) + std::abs(offset))))
+  const bool is_line =
+      std::isnormal(scale) && std::isfinite(offset) &&
+      std::abs(middle - (scale * span / 4 + offset)) <= 1e-9 * (std::abs(middle) + std::abs(offset));
+  if (!is_line)
     throw Error(Error::Code::unit, whose + " has the unit \"" + shown + "\", which is not proportional to " +
                                        to + "; " + how_to_state(owner, to));
   return {scale, offset};
