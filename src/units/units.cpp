@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <string_view>
 #include <utility>
 
@@ -121,7 +122,9 @@ ut_system* udunits() {
 
 Unit parse(const std::string& unit) {
   if (unit.empty()) return nullptr;
-  return Unit(ut_parse(udunits(), standard_unit(unit).c_str(), UT_UTF8));
+  Unit parsed(ut_parse(udunits(), standard_unit(unit).c_str(), UT_UTF8));
+  if (!parsed && ut_get_status() == UT_OS) throw std::bad_alloc();
+  return parsed;
 }
 
 std::string how_to_state(const UnitOwner& owner, const std::string& to) {
