@@ -52,7 +52,7 @@ bool is_in_library() {
   for (int i = 0; i < count; ++i) {
     Dl_info place{};
     if (dladdr(frames[i], &place) == 0 || place.dli_fname == nullptr) continue;
-    for (const char* library : {"/libhdf5", "/libnetcdf", "/libudunits"})
+    for (const char* library : {"/libhdf5", "/libnetcdf", "/libudunits", "/libcrypto"})
       if (std::strstr(place.dli_fname, library) != nullptr) return true;
   }
   return false;
