@@ -20,12 +20,14 @@
 #include <cstring>
 #include <ctime>
 
+// NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming): names of the C library
 extern "C" {
 // Those of the C library, by names that nobody takes the place of: dlsym itself asks for memory.
 void* __libc_malloc(std::size_t bytes);
 void* __libc_calloc(std::size_t count, std::size_t bytes);
 void* __libc_realloc(void* memory, std::size_t bytes);
 }
+// NOLINTEND(bugprone-reserved-identifier, readability-identifier-naming)
 
 namespace {
 
@@ -80,6 +82,7 @@ int count_from_here(int argc, char** argv, char** environment) {
 
 extern "C" {
 
+// NOLINTNEXTLINE(bugprone-reserved-identifier, readability-identifier-naming)
 int __libc_start_main(Main* main, int argc, char** argv, Main* init, void (*fini)(), void (*linker)(),
                       void* stack) {
   program = main;
