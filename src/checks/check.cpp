@@ -35,6 +35,7 @@ std::string without_values(const Flight& flight, const ModelFile& model) {
     try {
       flight.require_values(variable);
     } catch (const Error& error) {
+      if (error.code() == Error::Code::file) throw;
       return error.what();
     }
   }

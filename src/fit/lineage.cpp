@@ -6,7 +6,6 @@
 #include <utility>
 
 #include <pcor/flight/flight.hpp>
-#include <pcor/words/error.hpp>
 #include <pcor/words/utc.hpp>
 
 namespace pcor::internal {
@@ -32,17 +31,12 @@ Provenance entry_of(const ModelFile& model) {
 }  // namespace
 
 std::string flight_text(const std::filesystem::path& path) {
-  const std::string file = path.filename().string();
-  try {
-    const Flight flight(path);
-    std::string text;
-    for (const std::string& part : {flight.project(), flight.flight_number()}) {
-      if (!part.empty()) text += part + " ";
-    }
-    return (text.empty() ? file + " " : text) + utc_text(flight.time().first, "%Y-%m-%d");
-  } catch (const Error&) {
-    return file;
+  const Flight flight(path);
+  std::string text;
+  for (const std::string& part : {flight.project(), flight.flight_number()}) {
+    if (!part.empty()) text += part + " ";
   }
+  return (text.empty() ? path.filename().string() + " " : text) + utc_text(flight.time().first, "%Y-%m-%d");
 }
 
 std::string flights_text(const std::vector<std::string>& flights) {

@@ -8,8 +8,8 @@
 
 namespace pcor::internal {
 
-/// What a flight is called: its project, number and date; the name of its file where it does not say, or
-/// cannot be read.
+/// What a flight is called: its project, number and date; the name of its file where it does not say.
+/// @throws Error if it cannot be read
 std::string flight_text(const std::filesystem::path& flight);
 
 /// Several flights in a few words: "GOTEX rf06 2004-02-18 and 2 more".

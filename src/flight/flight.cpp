@@ -255,22 +255,28 @@ struct Flight::Implementation {
     file->read(variable.id, block, out);
   }
 
-  static void clean(const Variable& variable, std::size_t count, double* values) {
+  static LeftOut clean(const Variable& variable, std::size_t count, double* values) {
     for (const double marker : variable.missing_values)
       for (std::size_t i = 0; i < count; ++i) values[i] = values[i] == marker ? missing : values[i];
+    LeftOut left_out;
     const auto [least, greatest] = variable.valid_range;
     for (std::size_t i = 0; i < count; ++i) {
-      const bool is_value = values[i] >= least && values[i] <= greatest && std::abs(values[i]) < no_value;
-      values[i] = is_value ? variable.unpacking(values[i]) : missing;
+      const bool is_invalid = values[i] < least || values[i] > greatest;
+      const bool is_enormous = std::abs(values[i]) >= no_value;
+      left_out.invalid += is_invalid && !is_enormous ? 1 : 0;
+      left_out.enormous += is_enormous ? 1 : 0;
+      values[i] = is_invalid || is_enormous ? missing : variable.unpacking(values[i]);
     }
+    return left_out;
   }
 
-  void read(Variable& variable, RecordBlock block, double* out) {
+  LeftOut read(Variable& variable, RecordBlock block, double* out) {
     if (variable.refusal) throw Error(*variable.refusal);
     read_stored(variable, block, out);
     const std::size_t count = block.count * static_cast<std::size_t>(variable.info.rate);
-    clean(variable, count, out);
+    const LeftOut left_out = clean(variable, count, out);
     for (const StatusFlags& each : variable.flags) leave_out(each, block, count, out);
+    return left_out;
   }
 
   void leave_out(const StatusFlags& unusable, RecordBlock block, std::size_t count, double* values) {
@@ -431,22 +437,21 @@ void Flight::require_values(const std::string& name) const {
                           path().string(), name, records()));
 }
 
-std::size_t Flight::read(const std::string& name, RecordBlock block, const UnitConversion& conversion,
-                         double* out) const {
+LeftOut Flight::read(const std::string& name, RecordBlock block, const UnitConversion& conversion,
+                     double* out) const {
   Variable& variable = implementation_->find_series(name);
-  implementation_->read(variable, block, out);
-  std::size_t impossible = 0;
+  LeftOut left_out = implementation_->read(variable, block, out);
   const std::size_t count = block.count * static_cast<std::size_t>(variable.info.rate);
   for (std::size_t i = 0; i < count; ++i) {
     const double converted = conversion(out[i]);
-    impossible += std::isnan(converted) && !std::isnan(out[i]) ? 1 : 0;
+    left_out.impossible += std::isnan(converted) && !std::isnan(out[i]) ? 1 : 0;
     out[i] = converted;
   }
-  return impossible;
+  return left_out;
 }
 
-std::size_t Flight::read_at_rate(int rate, const std::string& name, RecordBlock block,
-                                 const UnitConversion& conversion, double* out) const {
+LeftOut Flight::read_at_rate(int rate, const std::string& name, RecordBlock block,
+                             const UnitConversion& conversion, double* out) const {
   Variable& variable = implementation_->find_series(name);
   const int own = variable.info.rate;
   if (rate == own) return read(name, block, conversion, out);
@@ -458,18 +463,17 @@ std::size_t Flight::read_at_rate(int rate, const std::string& name, RecordBlock 
         path().string(), name, own, rate, implementation_->rates_that_fit(rate)));
   std::vector<double>& values = implementation_->scratch;
   values.resize(block.count * static_cast<std::size_t>(own));
-  implementation_->read(variable, block, values.data());
-  std::size_t impossible = 0;
+  LeftOut left_out = implementation_->read(variable, block, values.data());
   for (double& value : values) {
     if (std::isnan(value) || !std::isnan(conversion(value))) continue;
     value = missing;
-    ++impossible;
+    ++left_out.impossible;
   }
   const auto wanted = block.count * static_cast<std::size_t>(rate);
   if (rate > own) {
     const auto held = static_cast<std::size_t>(rate / own);
     for (std::size_t i = 0; i < wanted; ++i) out[i] = conversion(values[i / held]);
-    return impossible;
+    return left_out;
   }
   const int group = own / rate;
   const auto& circle = variable.info.modulus_range;
@@ -477,7 +481,7 @@ std::size_t Flight::read_at_rate(int rate, const std::string& name, RecordBlock 
     const double* samples = values.data() + i * static_cast<std::size_t>(group);
     out[i] = conversion(circle ? mean_on_circle(samples, group, *circle) : mean(samples, group));
   }
-  return impossible;
+  return left_out;
 }
 
 void Flight::read_time_stamps(RecordBlock block, double* out) const {

@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "flight/classic_netcdf.hpp"
+#include "flight/file_in_hand.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -136,6 +137,10 @@ NetcdfFile NetcdfFile::open(const std::filesystem::path& path) {
   constexpr std::size_t large = std::size_t{32} << 10;
   std::size_t buffer = record_bytes > large ? large : classic_buffer_bytes;
   const int opened = nc__open(name.c_str(), NC_NOWRITE, &buffer, &id);
+  if (opened == NC_ENOMEM || opened == ENOMEM) throw std::bad_alloc();
+  if (opened > 0)
+    throw Error(Error::Code::file, name + " cannot be read: " + netcdf_reason(opened) +
+                                       "; check its disk and the limits of the system");
   if (opened != NC_NOERR)
     throw Error(Error::Code::file, name + " is truncated or damaged (" + netcdf_reason(opened) +
                                        "); fetch it again from its source");
@@ -163,7 +168,10 @@ NetcdfFile::NetcdfFile(NetcdfFile&& other) noexcept
       fitted_(std::move(other.fitted_)) {}
 
 NetcdfFile::~NetcdfFile() {
-  if (id_ != closed) nc_close(id_);
+  if (id_ == closed) return;
+  std::optional<FileInHand> in_hand;  // the library may crash where the system does not close the file
+  if (use_ == Use::reading) in_hand.emplace(path_);
+  nc_close(id_);
 }
 
 void NetcdfFile::check(int status, const std::string& doing) const {

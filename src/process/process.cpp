@@ -37,7 +37,7 @@ namespace {
 /// A variable of the file that the loop reads.
 struct Input : ModelInput {
   std::vector<double> values{};  // of one block
-  std::size_t impossible = 0;    // how many of all were
+  LeftOut left_out{};            // of all of them
 };
 
 /// The place of a bit among `quality_facts`.
@@ -461,7 +461,7 @@ void Processing::process_block(RecordBlock block, std::vector<double>& times) {
   const std::size_t samples = block.count * static_cast<std::size_t>(summary_.rate);
   for (Input& input : inputs_) {
     input.values.resize(samples);
-    input.impossible +=
+    input.left_out +=
         flight_.read_at_rate(summary_.rate, input.variable, block, input.conversion, input.values.data());
   }
   times.resize(samples);
@@ -517,7 +517,7 @@ ProcessSummary Processing::run(const std::filesystem::path& output) {
   } else {
     summary_.mean_defect = summary_.least_defect = summary_.greatest_defect = missing<double>();
   }
-  for (const Input& input : inputs_) note_impossible(input, input.impossible, summary_.notes);
+  for (const Input& input : inputs_) note_left_out(input, input.left_out, summary_.notes);
   if (summary_.corrected == 0) note("no sample could be corrected: see the quality bits");
   return summary_;
 }

@@ -6,7 +6,7 @@
 #include <array>
 #include <fstream>
 #include <memory>
-#include <stdexcept>
+#include <new>
 #include <vector>
 
 #include <pcor/words/error.hpp>
@@ -34,8 +34,9 @@ class Sha256 {
   }
 
  private:
+  // Every libcrypto has SHA-256: it fails for memory.
   static void require(bool done) {
-    if (!done) throw std::runtime_error("libcrypto has no SHA-256");
+    if (!done) throw std::bad_alloc();
   }
 
   std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;

@@ -107,14 +107,19 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelFile& file
   return inputs;
 }
 
-void note_impossible(const ModelInput& input, std::size_t samples, std::vector<std::string>& notes) {
-  if (samples == 0) return;
+void note_left_out(const ModelInput& input, const LeftOut& left_out, std::vector<std::string>& notes) {
+  const auto note = [&](std::size_t samples, const std::string& where) {
+    if (samples == 0) return;
+    notes.push_back(fmt::format("{} {}, and {} taken as missing",
+                                samples == 1 ? fmt::format("a sample of {} lies", input.variable)
+                                             : fmt::format("{} samples of {} lie", samples, input.variable),
+                                where, samples == 1 ? "is" : "are"));
+  };
   const std::string unit = is_role(input.quantity) ? fmt::format(" {}", facts_of(input.quantity).unit) : "";
-  notes.push_back(fmt::format("{} outside {:g} to {:g}{}, which is impossible, and {} taken as missing",
-                              samples == 1 ? fmt::format("a sample of {} lies", input.variable)
-                                           : fmt::format("{} samples of {} lie", samples, input.variable),
-                              input.conversion.least(), input.conversion.greatest(), unit,
-                              samples == 1 ? "is" : "are"));
+  note(left_out.impossible, fmt::format("outside {:g} to {:g}{}, which is impossible",
+                                        input.conversion.least(), input.conversion.greatest(), unit));
+  note(left_out.invalid, "outside the range that the file states as valid");
+  note(left_out.enormous, "beyond 1e30, which marks no value");
 }
 
 std::vector<std::string> notes_on_law(const Flight& flight, const ModelFile& file) {

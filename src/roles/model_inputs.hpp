@@ -29,9 +29,9 @@ Chain chain_of(const Model& model, const std::vector<Quantity>& roles);
 std::vector<ModelInput> model_inputs(const Flight& flight, const ModelFile& file, const Chain& chain,
                                      const std::vector<Quantity>& roles, std::vector<std::string>& notes);
 
-/// Adds to `notes` that so many samples of an input are taken as missing because its conversion calls them
-/// impossible; nothing where there are none.
-void note_impossible(const ModelInput& input, std::size_t samples, std::vector<std::string>& notes);
+/// Adds to `notes` how many samples of an input are taken as missing though the file does not mark them so,
+/// and why; nothing where there are none.
+void note_left_out(const ModelInput& input, const LeftOut& left_out, std::vector<std::string>& notes);
 
 /// What a user should know of a law that was made for another time or aircraft than the flight's.
 std::vector<std::string> notes_on_law(const Flight& flight, const ModelFile& file);

@@ -27,7 +27,7 @@ inline UnitConversion believed(const UnitConversion& conversion, const QuantityF
 /// The values of a variable.
 struct ReadValues {
   std::vector<double> values{};  ///< NaN where missing
-  std::size_t impossible = 0;    ///< how many are missing because the conversion calls them impossible
+  LeftOut left_out{};            ///< what is missing though the file does not mark it so
 };
 
 /// All values of a variable, converted, at `rate` samples in a record. @throws Error if it is absent.

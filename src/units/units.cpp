@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <string_view>
 #include <utility>
 
@@ -121,7 +122,9 @@ ut_system* udunits() {
 
 Unit parse(const std::string& unit) {
   if (unit.empty()) return nullptr;
-  return Unit(ut_parse(udunits(), standard_unit(unit).c_str(), UT_UTF8));
+  Unit parsed(ut_parse(udunits(), standard_unit(unit).c_str(), UT_UTF8));
+  if (!parsed && ut_get_status() == UT_OS) throw std::bad_alloc();
+  return parsed;
 }
 
 std::string how_to_state(const UnitOwner& owner, const std::string& to) {
@@ -169,7 +172,10 @@ UnitConversion UnitConversion::between(const std::string& from, const std::strin
   double scale = (convert(span) - convert(-span)) / (2 * span);
   if (std::abs(scale - 1) < 1e-12) scale = 1;
   const double middle = convert(span / 4);
-  if (!(std::abs(middle - (scale * span / 4 + offset)) <= 1e-9 * (std::abs(middle) + std::abs(offset))))
+  const bool is_line =
+      std::isnormal(scale) && std::isfinite(offset) &&
+      std::abs(middle - (scale * span / 4 + offset)) <= 1e-9 * (std::abs(middle) + std::abs(offset));
+  if (!is_line)
     throw Error(Error::Code::unit, whose + " has the unit \"" + shown + "\", which is not proportional to " +
                                        to + "; " + how_to_state(owner, to));
   return {scale, offset};

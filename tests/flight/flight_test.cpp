@@ -727,9 +727,9 @@ TEST_F(FlightTest, WhatAConversionCallsImpossibleIsCountedAndTakesNoPartInAMean)
   const Flight flight(path());
   const UnitConversion possible = UnitConversion(0.1, 0).within(1, 120);
   std::vector<double> values(6);
-  EXPECT_EQ(flight.read("PSFD", {0, 2}, possible, values.data()), 2);
+  EXPECT_EQ(flight.read("PSFD", {0, 2}, possible, values.data()).impossible, 2U);
   EXPECT_THAT(values, ElementsAre(80, DoubleEq(80.2), IsNan(), DoubleEq(80.6), IsNan(), IsNan()));
-  EXPECT_EQ(flight.read_at_rate(1, "PSFD", {0, 2}, possible, values.data()), 2);
+  EXPECT_EQ(flight.read_at_rate(1, "PSFD", {0, 2}, possible, values.data()).impossible, 2U);
   EXPECT_THAT(values,
               ElementsAre(DoubleEq(80.1), DoubleEq(80.6), testing::_, testing::_, testing::_, testing::_));
 }

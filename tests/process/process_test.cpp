@@ -162,6 +162,13 @@ TEST_F(Process, TakesWhatIsImpossibleAsMissing) {
   put("PSFD", 5, -9999.0F);
   put("QCF", 6, 1e20F);
   put("TTRR", 7, 9999.0F);
+  int file = 0, dynamic_pressure = 0;
+  const float valid_max = 500.0F;
+  ASSERT_EQ(nc_open(input_.c_str(), NC_WRITE, &file), NC_NOERR);
+  ASSERT_EQ(nc_inq_varid(file, "QCF", &dynamic_pressure), NC_NOERR);
+  nc_redef(file);
+  ASSERT_EQ(nc_put_att_float(file, dynamic_pressure, "valid_max", NC_FLOAT, 1, &valid_max), NC_NOERR);
+  nc_close(file);
   ProcessOptions options;
   options.correct_with = CorrectWith::lams;
   const ProcessSummary summary = process_flight(input_, lams_model(), output_, options);
@@ -179,11 +186,15 @@ TEST_F(Process, TakesWhatIsImpossibleAsMissing) {
   EXPECT_TRUE(has(7, Quality::temperature_missing));
   EXPECT_NEAR(p[8], 700.0, 3e-4) << "and nothing else is hurt";
   EXPECT_NEAR(temperature[8], 270.0, 1e-4);
-  EXPECT_THAT(summary.notes, testing::IsSupersetOf(
-                                 {"2 samples of PSFD lie outside -2000 to 2000 hPa, which is impossible, and "
-                                  "are taken as missing",
-                                  "a sample of TTRR lies outside 100 to 1000 K, which is impossible, and is "
-                                  "taken as missing"}));
+  EXPECT_THAT(summary.notes,
+              testing::IsSupersetOf(
+                  {"2 samples of PSFD lie outside -2000 to 2000 hPa, which is impossible, and "
+                   "are taken as missing",
+                   "a sample of PSFD lies beyond 1e30, which marks no value, and is taken as missing",
+                   "a sample of QCF lies outside the range that the file states as valid, and "
+                   "is taken as missing",
+                   "a sample of TTRR lies outside 100 to 1000 K, which is impossible, and is "
+                   "taken as missing"}));
 }
 
 TEST_F(Process, KeepsTheTotalPressure) {

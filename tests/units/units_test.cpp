@@ -117,6 +117,16 @@ TEST(Units, AnotherQuantityIsRefused) {
 
 TEST(Units, ALogarithmicUnitIsRefused) { EXPECT_THAT(message("dBZ", "m3"), HasSubstr("not proportional")); }
 
+// UDUNITS converts a unit to its reciprocal, by a hyperbola.
+TEST(Units, AReciprocalIsRefused) {
+  EXPECT_THAT(message("s/m", "m/s"), HasSubstr("not proportional"));
+  EXPECT_THAT(message("0.1 ks-1 @ 5", "seconds since 1970-01-01"), HasSubstr("not proportional"));
+}
+
+TEST(Units, AnOriginThatHidesEveryValueIsRefused) {
+  EXPECT_THAT(message("hPa @ 1e300", "hPa"), HasSubstr("not proportional"));
+}
+
 TEST(Units, WithoutARoleTheMessageNamesNoTable) {
   EXPECT_THAT(message("", "hPa", {"PSFD", "", ""}),
               AllOf(HasSubstr("PSFD has no unit"), Not(HasSubstr("[units]"))));

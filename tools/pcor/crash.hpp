@@ -2,9 +2,16 @@
 
 namespace pcor::tool {
 
-/// Has a crash on a damaged flight, as in the HDF5 library, and one from which that never comes back, end
-/// like other errors: with a line that names the file, exit status 1, and nothing unfinished left behind. A
-/// crash without a flight in hand stays what it is.
-void explain_crashes();
+/// As long as one lives, a crash in the libraries that read files, as on a damaged flight, one from which
+/// they never come back, and their way of ending a program that has no memory left end like other errors:
+/// with a line that names the flight that was read, exit status 1, and nothing unfinished left behind. A
+/// crash of pcor itself stays what it is.
+class CrashesExplained {
+ public:
+  CrashesExplained();
+  CrashesExplained(const CrashesExplained&) = delete;
+  CrashesExplained& operator=(const CrashesExplained&) = delete;
+  ~CrashesExplained();
+};
 
 }  // namespace pcor::tool

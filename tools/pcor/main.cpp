@@ -55,8 +55,8 @@ void fill_closed_streams() {
   }
 }
 
-/// Ends the program after an output that could not be written: HDF5 would try once more at the exit, and
-/// crash.
+/// Ends the program after a file that could not be written or read, or without memory: HDF5 would try once
+/// more at the exit, and crash.
 [[noreturn]] void leave(int status) {
   std::fflush(nullptr);
   std::_Exit(status);
@@ -109,10 +109,10 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   mind_signals();
-  pcor::tool::explain_crashes();
+  const pcor::tool::CrashesExplained explained;
   fill_closed_streams();
-  pcor::tool::set_program(argv[0]);
   try {
+    pcor::tool::set_program(argv[0]);
     const int status = run(argc, argv);
     pcor::tool::finish_text();
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
@@ -121,7 +121,8 @@ int main(int argc, char** argv) {
     return status;
   } catch (const pcor::Error& error) {
     pcor::tool::tell(fmt::format("pcor: {}", error.what()));
-    if (error.code() == pcor::Error::Code::output) leave(work_not_done);
+    if (error.code() == pcor::Error::Code::output || error.code() == pcor::Error::Code::file)
+      leave(work_not_done);
   } catch (const std::filesystem::filesystem_error& error) {
     pcor::tool::tell(fmt::format("pcor: {}: {}; check this path and its permissions", error.path1().string(),
                                  error.code().message()));
@@ -132,6 +133,7 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     pcor::tool::tell(
         "pcor: the memory is exhausted; give fewer or shorter flights at a time, or a machine with more");
+    leave(work_not_done);
   } catch (const std::exception& error) {
     pcor::tool::tell(fmt::format("pcor: a fault of the program itself, please report it: {}", error.what()));
   }

@@ -112,14 +112,15 @@ void take_models_by_name(CLI::App& program) {
       {"--model", model_file}, {"--second", model_file}, {"--reference", reference_with_model_file}};
   for (CLI::App* const command : program.get_subcommands({})) {
     for (const auto& [name, find] : options) {
-      CLI::Option* const option = command->get_option_no_throw(name);
-      if (option == nullptr) continue;
-      option->transform(CLI::Validator(
-          [find = find](std::string& text) {
-            text = find(text);
-            return std::string();
-          },
-          ""));
+      const auto is_named = [name = name](const CLI::Option* option) { return option->check_name(name); };
+      for (CLI::Option* const option : command->get_options(is_named)) {
+        option->transform(CLI::Validator(
+            [find = find](std::string& text) {
+              text = find(text);
+              return std::string();
+            },
+            ""));
+      }
     }
   }
 }

@@ -66,6 +66,20 @@ struct TimeAxis {
   std::vector<std::size_t> midnight_wraps;  ///< records at which seconds of the day began again at zero
 };
 
+/// Recorded numbers that are taken as missing though the file does not mark them so, counted by the reason.
+struct LeftOut {
+  std::size_t impossible = 0;  ///< the conversion calls them so
+  std::size_t invalid = 0;     ///< outside the range that the file states as valid
+  std::size_t enormous = 0;    ///< 1e30 and more, infinity too
+
+  LeftOut& operator+=(const LeftOut& other) {
+    impossible += other.impossible;
+    invalid += other.invalid;
+    enormous += other.enormous;
+    return *this;
+  }
+};
+
 /// Which moment of its interval a record's time is. NCAR files have both; half a second is 0.9 hPa in a
 /// climb.
 enum class TimeStamp { begin, middle };
@@ -140,19 +154,19 @@ class Flight {
   void require_values(const std::string& name) const;
 
   /// Reads `block.count * rate` values at the variable's own rate, converted, into `out`. Missing is NaN.
-  /// @return how many recorded values are missing because the conversion calls them impossible
+  /// @return what is missing though the file does not mark it so
   /// @throws Error if the variable is absent, not a time series, or has an attribute by which its numbers
   /// cannot be told, if the block goes beyond the last record, or the file was replaced or changed meanwhile.
-  std::size_t read(const std::string& name, RecordBlock block, const UnitConversion& conversion,
-                   double* out) const;
+  LeftOut read(const std::string& name, RecordBlock block, const UnitConversion& conversion,
+               double* out) const;
 
   /// Reads `block.count * rate` values at the wanted rate. The variable's own rate is exact. A lower one is
   /// held constant over its interval. A higher one gives the mean of the values that are there (NaN if there
   /// are none); for an angle (`modulus_range`) the mean on the circle.
-  /// Impossible values, which are counted at the variable's own rate, take no part in a mean.
+  /// Values that are left out, which are counted at the variable's own rate, take no part in a mean.
   /// @throws Error as `read`, and if neither rate is a multiple of the other.
-  std::size_t read_at_rate(int rate, const std::string& name, RecordBlock block,
-                           const UnitConversion& conversion, double* out) const;
+  LeftOut read_at_rate(int rate, const std::string& name, RecordBlock block, const UnitConversion& conversion,
+                       double* out) const;
 
   /// The times of the records as the file has them, seconds since 1970 UTC: `block.count` values.
   void read_time_stamps(RecordBlock block, double* out) const;

@@ -1,0 +1,47 @@
+#include <sys/mman.h>
+#include <unistd.h>
+#include <pcor/flight/flight.hpp>
+
+#include <cmath>
+#include <cstdlib>
+#include <vector>
+
+#include "reading.hpp"
+
+namespace {
+
+constexpr std::size_t most_samples = 1 << 20;
+
+/// A file in memory that holds these bytes, in place of those before.
+std::filesystem::path file_of(const std::uint8_t* bytes, std::size_t size) {
+  static const int file = ::memfd_create("flight", 0);
+  const bool is_written =
+      ::ftruncate(file, 0) == 0 && ::pwrite(file, bytes, size, 0) == static_cast<ssize_t>(size);
+  if (!is_written) std::abort();
+  return "/proc/self/fd/" + std::to_string(file);
+}
+
+void read_values(const pcor::Flight& flight, const pcor::VariableInfo& variable, int rate) {
+  const std::size_t count = flight.records() * static_cast<std::size_t>(rate);
+  if (count > most_samples) return;
+  std::vector<double> values(count);
+  flight.read_at_rate(rate, variable.name, {0, flight.records()}, {}, values.data());
+  for (const double value : values)
+    if (std::isinf(value)) std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  const std::filesystem::path path = file_of(bytes, size);
+  fuzz::refusable([&] {
+    const pcor::Flight flight(path);
+    for (const std::string& name : flight.variables()) {
+      const pcor::VariableInfo& variable = flight.variable(name);
+      if (!variable.is_series) continue;
+      for (const int rate : {1, variable.rate, 2 * variable.rate})
+        fuzz::refusable([&] { read_values(flight, variable, rate); });
+    }
+  });
+  return 0;
+}

@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+"""Runs of pcor in which one call of the system fails, each call in turn.
+
+    failing_calls.py TOOL LIBRARY SOURCE_DIRECTORY [--every] [--kind KIND]
+
+LIBRARY is made of failing_calls.cpp: it has the n-th call of a kind fail, as where memory or the disk is full. A run then
+ends with status 0, where the call did not matter, or with 1 and one line that says what failed; each output is what was
+there before or what a run without a failure writes, and nothing unfinished is left. Without memory the standard library
+may end a run by a signal, with outputs no less whole. n is 1, 2, 3 and then grows by a
+part, until a run makes fewer calls; with --every it is each number. Exit status 1: something did not hold; what did not is
+printed.
+"""
+
+import argparse
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+KINDS = ("memory", "open", "read", "write", "sync", "rename", "close")
+EARLIER = b"an earlier output"
+# What a message names: a file, a stream, what is exhausted, or the data of a library. A library that fails may say
+# something of its own before.
+NAMED = re.compile(r"pcor: [^\n]*(\.nc|\.toml|\.html|\.json|standard output|memory|UDUNITS)[^\n]*\n\Z")
+
+
+class Failing:
+    """A command, whose outputs are put into a folder of their own."""
+
+    def __init__(self, given, words, outputs):
+        self.given = given
+        self.words = words
+        self.folder = tempfile.TemporaryDirectory()
+        self.path = Path(self.folder.name)
+        self.outputs = outputs
+        self.report = self.path.parent / (self.path.name + ".report")
+        self.run()
+        self.good = {name: (self.path / name).read_bytes() for name in outputs}
+
+    def run(self, **environment):
+        for path in self.path.iterdir():
+            path.unlink()
+        for name in self.outputs:
+            (self.path / name).write_bytes(EARLIER)
+        self.report.unlink(missing_ok=True)
+        return subprocess.run([self.given.tool, *self.words], capture_output=True, timeout=300, cwd=self.path,
+                              env={**os.environ, "LD_PRELOAD": str(self.given.library), **environment})
+
+    def without(self, kind, number):
+        """What is wrong where that call fails, "" if nothing; None where the run makes fewer calls."""
+        done = self.run(FAILING_CALL=kind, FAILING_NUMBER=str(number), FAILING_REPORT=str(self.report))
+        if not self.report.exists():
+            return None
+        call, message = self.report.read_text(), done.stderr.decode(errors="replace")
+        self.report.unlink()
+        wrong = []
+        stopped_by_library = kind == "memory" and done.returncode in (-signal.SIGABRT, -signal.SIGSEGV)
+        if done.returncode not in (0, 1) and not stopped_by_library:
+            wrong.append(f"exit status {done.returncode}")
+        if done.returncode == 1 and (message.count("pcor: ") != 1 or not NAMED.search(message)):
+            wrong.append(f"it says {message!r}")
+        if done.returncode == 0 and message:
+            wrong.append(f"it is done and says {message!r}")
+        for name, good in self.good.items():
+            wanted = (good,) if done.returncode == 0 else (EARLIER, good)
+            if not (self.path / name).exists() or (self.path / name).read_bytes() not in wanted:
+                wrong.append(f"{name} is another")
+        left = {path.name for path in self.path.iterdir()} - set(self.outputs)
+        if left:
+            wrong.append(f"it leaves {', '.join(sorted(left))}")
+        return f"({call}) {'; '.join(wrong)}" if wrong else ""
+
+
+def numbers(every):
+    number = 1
+    while True:
+        yield number
+        number = number + 1 if every or number < 3 else number * 2 + 1
+
+
+def main():
+    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options.add_argument("tool", type=Path)
+    options.add_argument("library", type=Path)
+    options.add_argument("source", type=Path)
+    options.add_argument("--every", action="store_true", help="every call, which takes hours, not a sample of them")
+    options.add_argument("--kind", choices=KINDS, action="append", help="calls of this kind alone")
+    given = options.parse_args()
+    given.tool, given.library = given.tool.resolve(), given.library.resolve()
+    data = given.source.resolve() / "data/scenarios"
+    scenario, model = data / "c130-short.toml", data / "models/c130-psfd-eq18.toml"
+    failures = runs = 0
+    with tempfile.TemporaryDirectory() as name:
+        flight = Path(name) / "flight.nc"
+        subprocess.run([given.tool, "simulate", scenario, "-o", flight, "--quiet"], check=True)
+        commands = (
+            (("simulate", scenario, "-o", "out.nc", "--quiet"), ("out.nc",)),
+            (("process", flight, "-m", model, "-o", "out.nc", "--report", "out.html", "--quiet"), ("out.nc", "out.html")),
+            (("refit", flight, "-m", model, "-o", "out.toml", "--json", "out.json", "--quiet"), ("out.toml", "out.json")),
+            (("check", flight, "-m", model, "--report", "out.html", "--quiet"), ("out.html",)),
+        )
+        for words, outputs in commands:
+            command = Failing(given, words, outputs)
+            for kind in given.kind or KINDS:
+                for number in numbers(given.every):
+                    wrong = command.without(kind, number)
+                    if wrong is None:
+                        break
+                    runs += 1
+                    if wrong:
+                        failures += 1
+                        print(f"{words[0]}, {kind} {number} {wrong}", flush=True)
+    print(f"{runs} runs, {failures} failures")
+    return 1 if failures or not runs else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
