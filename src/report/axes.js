@@ -5,18 +5,35 @@ const palettes = {
   light: {
     paper: '#ffffff', ink: '#1c2126', quiet: '#5c6670', grid: '#e8eaec', frame: '#9aa3ab',
     series: ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#b8860b', '#56b4e9'],
-    regimes: ['#56b4e9', '#8a9299', '#e69f00', '#009e73', '#cc79a7', '#0072b2'],
+    regimes: ['#56b4e9', '#e69f00', '#009e73', '#cc79a7', '#0072b2', '#8a9299'],
     diverging: ['#053f73', '#2f7ebc', '#d2d4d3', '#e08214', '#8c3a04'],
     sequential: ['#440154', '#3b528b', '#21918c', '#5ec962', '#d9c71e'],
   },
   dark: {
     paper: '#171b1f', ink: '#e6e9ec', quiet: '#9ba5ae', grid: '#282e34', frame: '#5b656e',
     series: ['#5cb3f0', '#f08a4b', '#35c498', '#e39cc4', '#e0b440', '#a8d8f5'],
-    regimes: ['#56b4e9', '#8a9299', '#e69f00', '#35c498', '#e39cc4', '#5cb3f0'],
+    regimes: ['#56b4e9', '#e6a520', '#35c498', '#e39cc4', '#4d8fe0', '#9ba5ae'],
     diverging: ['#9fd4ff', '#3f8fd0', '#4a5157', '#d98324', '#ffd29a'],
     sequential: ['#7a5bb8', '#4f7fc4', '#2fa8a0', '#6fce70', '#f3e45a'],
   },
 };
+
+// The regimes that pcor knows, so that one has the same mark in every report; others follow.
+const knownRegimes = ['climb', 'descent', 'level', 'turn', 'take-off', 'ground', 'circle', 'cloud', 'pitch manoeuvre',
+  'yaw manoeuvre', 'speed run', 'reverse heading'];
+
+// The colour of a regime, and the dashes that tell it from the one before with that colour: every colour twice,
+// whole and in dashes, then in dots.
+function regimeMark(name, names, theme) {
+  const known = knownRegimes.indexOf(name);
+  const others = names.filter((each) => !knownRegimes.includes(each));
+  const place = known >= 0 ? known : knownRegimes.length + others.indexOf(name);
+  const dashes = [null, [6, 4], [2, 3]];
+  return {
+    colour: theme.regimes[place % theme.regimes.length],
+    dash: dashes[Math.floor(place / theme.regimes.length) % dashes.length],
+  };
+}
 
 // The colour at `part`, from 0 to 1, of colours at equal distances.
 function mixed(colours, part) {
@@ -174,8 +191,9 @@ function shortened(words, width, size) {
   return `${words.slice(0, end)}…`;
 }
 
-// Marks and names in lines above the plot; returns the height they take.
+// Marks and names in lines above the plot; returns the height they take. Where buttons name the curves, none.
 function legend(pen, entries, left, right, theme) {
+  if (theme.named) return 10;
   let x = left, y = 13;
   for (const {label, colour, dash} of entries) {
     const width = 24 + textWidth(label, fontSize);

@@ -3,6 +3,11 @@
 
 const columnsOf = (samples, names) => names.map((name) => samples.columns.get(name));
 
+// The columns of an item that are not switched off, each with its colour.
+const curvesOf = (samples, item, theme) => columnsOf(samples, item.columns)
+  .map((column, i) => ({...column, colour: theme.series[i % theme.series.length]}))
+  .filter(({name}) => !item.hidden?.has(name));
+
 const listText = (labels) => labels.length > 1 ? `${labels.slice(0, -1).join(', ')} and ${labels.at(-1)}` : labels[0];
 
 // What an axis says of several columns: the words given or the titles, and the unit if they share it.
@@ -32,6 +37,10 @@ function places(indices, xs, ys, x, y) {
   return xy;
 }
 
+// All values of columns, selected or not: scales stay where they are when the reader selects.
+const valuesOf = (samples, columns) => columns.flatMap((column) =>
+  samples.indices([column], samples.every).map((i) => column.values[i]));
+
 const cover = (pen, width, height, theme) => pen.rect(0, 0, width, height, theme.paper);
 
 function shadeIntervals(pen, box, x, samples, theme) {
@@ -40,9 +49,11 @@ function shadeIntervals(pen, box, x, samples, theme) {
     const left = Math.floor(Math.max(x(begin), box.x)), right = Math.ceil(Math.min(x(end), box.x + box.width));
     if (right <= left) continue;
     const chosen = !samples.names.size || samples.names.has(name);
-    const colour = theme.regimes[names.indexOf(name) % theme.regimes.length];
+    const {colour, dash} = regimeMark(name, names, theme);
     pen.rect(left, box.y, right - left, box.height, colour, chosen ? 0.08 : 0.02);
-    pen.rect(left, box.y, right - left, 4, colour, chosen ? 0.8 : 0.2);
+    const [mark, gap] = dash ?? [right - left, 0];
+    for (let at = left; at < right; at += mark + gap)
+      pen.rect(at, box.y, Math.min(mark, right - at), 4, colour, chosen ? 0.8 : 0.2);
     const covered = samples.intervals.some((other) =>
       other.end - other.begin < end - begin && other.begin <= (begin + end) / 2 && other.end >= (begin + end) / 2);
     if (!covered && textWidth(name, 10) < right - left - 6)
@@ -80,9 +91,9 @@ function linePaths(samples, values, x, y) {
 }
 
 function drawTime(pen, width, height, item, samples, theme) {
-  const columns = columnsOf(samples, item.columns);
-  const entries = columns.map(({title}, i) => ({label: title, colour: theme.series[i % theme.series.length]}));
-  const key = columns.length > 1;
+  const columns = curvesOf(samples, item, theme);
+  const entries = columns.map(({title, colour}) => ({label: title, colour}));
+  const key = item.columns.length > 1;
   cover(pen, width, height, theme);
   const named = samples.flights.length > 1 ? 15 : 0;
   const top = (key ? legend(pen, entries, margin, width - 14, theme) : 10) + named;
@@ -90,9 +101,9 @@ function drawTime(pen, width, height, item, samples, theme) {
   const [from, to] = samples.view;
   const x = scale(from, to, box.x, box.x + box.width);
   const found = columns.map((column) => samples.indices([column]));
-  const shown = columns.flatMap(({values}, c) => found[c].map((i) => values[i]));
-  const range = limits(shown);
+  const range = limits(valuesOf(samples, columns));
   range.to += samples.intervals.length ? 0.09 * (range.to - range.from) : 0;
+  Object.assign(range, item.vertical);
   const y = scale(range.from, range.to, box.y + box.height, box.y);
 
   verticalAxis(pen, box, y, range, sharedLabel(columns, item.axis), theme);
@@ -100,20 +111,20 @@ function drawTime(pen, width, height, item, samples, theme) {
   const begin = samples.at(from).time, end = samples.at(to).time;
   horizontalTicks(pen, box, placed, `UTC, ${day(begin)}${day(end) === day(begin) ? '' : ` to ${day(end)}`}`, theme);
   shadeIntervals(pen, box, x, samples, theme);
-  frame(pen, box, theme, shown.some((value) => value < 0) ? y(0) : NaN);
+  frame(pen, box, theme, range.from < 0 ? y(0) : NaN);
   if (named)
     for (const flight of samples.flights) {
       const left = Math.max(x(flight.offset), box.x);
       const right = Math.min(x(flight.offset + flight.duration), box.x + box.width);
       if (textWidth(flight.name, fontSize) < right - left) pen.text(left + 2, box.y - 5, flight.name, small(theme));
     }
-  pen.clip(box, () => columns.forEach(({values}, c) => {
-    pen.lines(linePaths(samples, values, x, y), theme.series[c % theme.series.length], 1.25);
-  }));
+  pen.clip(box, () => columns.forEach(({values, colour}) => pen.lines(linePaths(samples, values, x, y), colour, 1.25)));
   tellBeyond(pen, box, range.beyond, theme);
   return {
     points: found.reduce((sum, indices) => sum + indices.length, 0),
     plot: box,
+    place: (i) => ({x: x(samples.position[i]), y: y(columns[0].values[i])}),
+    up: (pixel) => range.from + (box.y + box.height - pixel) / box.height * (range.to - range.from),
     alternative: `Lines over time, from ${clock(begin)} to ${clock(end)} UTC: ${listText(columns.map(({label}) => label))}`,
     table: statisticsTable(samples, columns),
   };
@@ -150,17 +161,18 @@ function neighbours(bins) {
 }
 
 function drawBinned(pen, width, height, item, samples, theme) {
-  const columns = columnsOf(samples, item.columns);
+  const columns = curvesOf(samples, item, theme);
   const abscissa = samples.columns.get(item.choice ?? item.choices[0]);
   const found = columns.map((column) => samples.indices([abscissa, column]));
-  const entries = columns.map(({title}, i) => ({label: title, colour: theme.series[i % theme.series.length]}));
+  const whole = columns.map((column) => samples.indices([abscissa, column], samples.every));
+  const entries = columns.map(({title, colour}) => ({label: title, colour}));
   cover(pen, width, height, theme);
   const box = plotBox(width, height, {top: legend(pen, entries, margin, width - 14, theme)});
-  const across = limits(found.flatMap((indices) => indices.map((i) => abscissa.values[i])));
+  const across = limits(whole.flatMap((indices) => indices.map((i) => abscissa.values[i])));
   const bins = columns.map(({values}, c) =>
     binned(abscissa.values, values, found[c], across, item.bins, item.samplesPerIndependent));
   const shown = bins.map((all) => all.filter(({count}) => count >= fewest));
-  const up = limits(columns.flatMap(({values}, c) => found[c].map((i) => values[i])),
+  const up = limits(columns.flatMap(({values}, c) => whole[c].map((i) => values[i])),
     shown.flat().flatMap(({mean, error}) => [mean - error, mean + error]));
   const x = scale(across.from, across.to, box.x, box.x + box.width);
   const y = scale(up.from, up.to, box.y + box.height, box.y);
@@ -189,6 +201,7 @@ function drawBinned(pen, width, height, item, samples, theme) {
   return {
     points: found.reduce((sum, indices) => sum + indices.length, 0),
     plot: box,
+    place: (i) => ({x: x(abscissa.values[i]), y: y(columns[0].values[i])}),
     alternative: `Mean and standard error of ${listText(columns.map(({label}) => label))} in bins of ${abscissa.label}`,
     table: {
       headers: [abscissa.label, ...columns.flatMap(({title}) => ['Samples', title])],
@@ -216,10 +229,11 @@ function colourBar(pen, box, colours, {from, to}, label, theme) {
 function drawPlane(pen, width, height, item, samples, theme) {
   const [across, up, shade] = columnsOf(samples, [item.x, item.y, item.colour]);
   const found = samples.indices([across, up, shade]);
+  const whole = samples.indices([across, up, shade], samples.every);
   cover(pen, width, height, theme);
   const box = plotBox(width, height, {right: 84});
-  const xs = limits(found.map((i) => across.values[i])), ys = limits(found.map((i) => up.values[i]));
-  const sorted = Float64Array.from(found, (i) => item.diverging ? Math.abs(shade.values[i]) : shade.values[i]).sort();
+  const xs = limits(whole.map((i) => across.values[i])), ys = limits(whole.map((i) => up.values[i]));
+  const sorted = Float64Array.from(whole, (i) => item.diverging ? Math.abs(shade.values[i]) : shade.values[i]).sort();
   const greatest = sorted[Math.floor(0.99 * (sorted.length - 1))] || 1;
   const range = item.diverging ? {from: -greatest, to: greatest} : limits(sorted);
   const colours = item.diverging ? theme.diverging : theme.sequential;
@@ -242,6 +256,7 @@ function drawPlane(pen, width, height, item, samples, theme) {
   return {
     points: found.length,
     plot: box,
+    place: (i) => ({x: x(across.values[i]), y: y(up.values[i])}),
     alternative: `${shade.label} by colour, in the plane of ${across.label} and ${up.label}`,
     table: statisticsTable(samples, [across, up, shade]),
   };
@@ -254,13 +269,14 @@ function drawPair(pen, width, height, item, samples, theme) {
   const entries = lines.map(({label}, i) =>
     ({label, colour: theme.series[(i + 1) % theme.series.length], dash: i ? [6, 4] : []}));
   cover(pen, width, height, theme);
-  const whole = plotBox(width, height, {top: legend(pen, entries, margin, width - 14, theme)});
-  const upper = {...whole, height: Math.round(0.6 * whole.height)};
-  const lower = {...whole, y: upper.y + upper.height + 16, height: whole.height - upper.height - 16};
-  const xs = limits(found.map((i) => across.values[i])), ys = limits(found.map((i) => up.values[i]));
+  const both = plotBox(width, height, {top: legend(pen, entries, margin, width - 14, {...theme, named: false})});
+  const upper = {...both, height: Math.round(0.6 * both.height)};
+  const lower = {...both, y: upper.y + upper.height + 16, height: both.height - upper.height - 16};
+  const whole = samples.indices([across, up], samples.every);
+  const xs = limits(whole.map((i) => across.values[i])), ys = limits(whole.map((i) => up.values[i]));
   const differences = up.values.map((value, i) => value - lines[0].offset - lines[0].slope * across.values[i]);
-  const ds = limits(found.map((i) => differences[i]));
-  const x = scale(xs.from, xs.to, whole.x, whole.x + whole.width);
+  const ds = limits(whole.map((i) => differences[i]));
+  const x = scale(xs.from, xs.to, both.x, both.x + both.width);
   const y = scale(ys.from, ys.to, upper.y + upper.height, upper.y);
   const d = scale(ds.from, ds.to, lower.y + lower.height, lower.y);
   const sameUnit = up.unit ? ` (${up.unit})` : '';
@@ -285,7 +301,8 @@ function drawPair(pen, width, height, item, samples, theme) {
   const residual = statistics(differences, found);
   return {
     points: found.length,
-    plot: whole,
+    plot: both,
+    place: (i) => ({x: x(across.values[i]), y: y(up.values[i])}),
     alternative: `${up.label} against ${across.label}, and below it the difference from ${lines[0].label}: ` +
         `bias ${brief(residual.mean)}, rms ${brief(residual.rms)}${up.unit ? ` ${up.unit}` : ''}`,
     table: {
@@ -344,7 +361,7 @@ function drawCurves(pen, width, height, item, samples, theme) {
   }));
   const shown = curves.flatMap(({points}) => points);
   cover(pen, width, height, theme);
-  const box = plotBox(width, height, {top: legend(pen, curves, margin, width - 14, theme)});
+  const box = plotBox(width, height, {top: legend(pen, curves, margin, width - 14, {...theme, named: false})});
   const across = {from: Math.min(...shown.map((point) => point.x)), to: Math.max(...shown.map((point) => point.x))};
   const up = limits(shown.flatMap(({y, error}) => [y - error, y + error]));
   const along = item.logX ? Math.log : (value) => value;

@@ -49,6 +49,7 @@ class Samples {
       offset += flight.duration + room;
     });
     this.length = Math.max(offset - room, 1e-3);
+    this.every = new Uint8Array(this.count).fill(1);
     this.setIntervals(data.intervals);
     this.clear();
   }
@@ -80,7 +81,7 @@ class Samples {
   choose(range, names = new Set()) {
     this.range = range;
     this.names = names;
-    this.selected = new Uint8Array(this.count).fill(1);
+    this.selected = this.every.slice();
     if (names.size) {
       this.selected.fill(0);
       for (const name of names) this.regimes.get(name).forEach((inside, i) => { this.selected[i] |= inside; });
@@ -91,6 +92,17 @@ class Samples {
   }
 
   clear() { this.choose(null); }
+
+  // The sample that is nearest to a place on the time axis.
+  nearest(position) {
+    let low = 0, high = this.count - 1;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.position[middle] < position) low = middle + 1;
+      else high = middle;
+    }
+    return low > 0 && position - this.position[low - 1] < this.position[low] - position ? low - 1 : low;
+  }
 
   // Selects the samples from t0 to t1, in seconds since 1970; all that lies between on the time axis.
   select(t0, t1) {

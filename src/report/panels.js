@@ -20,7 +20,13 @@ function fillTable(table, {headers, rows}) {
   table.replaceChildren(make('thead', {}, head), make('tbody', {}, ...body));
 }
 
-const exportSizes = {time: [760, 300], other: [560, 400]};
+// What pictures are saved for: how wide they are drawn, in the 96 dots of an inch that letters of 11.5 are 8.6
+// points in, and how wide they are shown.
+const uses = {
+  'a page, 180 mm': {drawn: 680, shown: 680},
+  'a column, 86 mm': {drawn: 325, shown: 325},
+  'a slide, 1280 wide': {drawn: 680, shown: 1280},
+};
 
 // Every bar has a row of its own, as long as the picture can hold them.
 const heightOfBars = ({bars}) => 70 + 30 * Math.min(Math.max(bars.length, 2), 40);
@@ -34,7 +40,15 @@ class Panel {
     const tools = make('div', {class: 'tools'},
       make('button', {type: 'button', title: 'Save this picture as SVG', onclick: () => this.save('svg')}, 'SVG'),
       make('button', {type: 'button', title: 'Save this picture as PNG', onclick: () => this.save('png')}, 'PNG'));
+    this.cross = make('div', {class: 'cross', hidden: ''});
+    this.spot = make('div', {class: 'spot', hidden: ''});
+    this.empty = make('p', {class: 'empty', hidden: ''});
+    this.readout = make('p', {class: 'readout', 'aria-hidden': 'true'});
+    this.picture.append(this.cross, this.spot, this.empty);
+    tools.prepend(this.readout);
     section.querySelector('h2').after(tools, this.picture, this.choice());
+    this.switches = this.makeSwitches();
+    if (this.switches.length) this.picture.before(make('div', {class: 'chips', role: 'group', 'aria-label': 'Curves'}, ...this.switches));
     section.append(make('details', {}, make('summary', {}, 'Numbers'), make('div', {class: 'scroll'}, this.numbers)));
   }
 
@@ -45,9 +59,25 @@ class Panel {
     const select = make('select', {}, ...options);
     select.addEventListener('change', () => {
       this.item.choice = select.value;
+      this.report.remember();
       this.draw();
     });
+    this.select = select;
     return make('label', {class: 'choice'}, 'Horizontal axis', select);
+  }
+
+  // Buttons that switch curves off and on, where there are several; one curve always stays.
+  makeSwitches() {
+    const {item, report} = this;
+    if (!['time', 'binned'].includes(item.kind) || item.columns.length < 2) return [];
+    item.hidden = new Set();
+    return columnsOf(report.samples, item.columns).map(({name, title}) => make('button', {
+      'type': 'button', 'class': 'chip', 'onclick': () => {
+        if (!item.hidden.delete(name) && item.hidden.size + 1 < item.columns.length) item.hidden.add(name);
+        report.remember();
+        this.draw();
+      },
+    }, make('span', {class: 'swatch'}), title));
   }
 
   get height() {
@@ -58,35 +88,84 @@ class Panel {
 
   draw() {
     const {samples, theme, sharpness} = this.report;
-    const width = Math.max(Math.round(this.picture.clientWidth), 280);
+    // A sheet of paper is as wide as 680 dots; what is drawn wider is made smaller, letters and all.
+    const width = this.report.printing ? 680 : Math.max(Math.round(this.picture.clientWidth), 280);
     this.canvas.width = width * sharpness;
     this.canvas.height = this.height * sharpness;
     this.canvas.style.aspectRatio = `${width} / ${this.height}`;
     const context = this.canvas.getContext('2d');
     context.scale(sharpness, sharpness);
     this.width = width;
-    this.drawn = pictures[this.item.kind](new CanvasPen(context), width, this.height, this.item, samples, theme);
+    const named = this.switches.length > 0 && !this.report.printing;
+    this.drawn = pictures[this.item.kind](new CanvasPen(context), width, this.height, this.item, samples, {...theme, named});
     const {alternative, points, table} = this.drawn;
+    this.switches.forEach((button, i) => {
+      button.setAttribute('aria-pressed', String(!this.item.hidden.has(this.item.columns[i])));
+      button.querySelector('.swatch').style.background = theme.series[i % theme.series.length];
+    });
+    this.empty.hidden = points > 0;
+    this.empty.textContent = samples.selectedCount ? 'No selected sample has a value here' : 'No sample is selected';
+    this.point(this.report.cursor);
     this.canvas.setAttribute('aria-label', `${this.item.title}. ${alternative}. ${plural(points, 'point')}.`);
     fillTable(this.numbers, table);
   }
 
+  // The columns that the readout tells.
+  get told() {
+    const {kind, columns, choice, choices, x, y, colour} = this.item;
+    if (kind === 'time') return columns;
+    if (kind === 'binned') return [choice ?? choices[0], ...columns];
+    return [x, y, colour].filter((name) => name);
+  }
+
+  // Shows where the sample `i` is in this picture, and its values; undefined for none.
+  point(i) {
+    const {samples} = this.report;
+    const {plot, place} = this.drawn;
+    const shown = i !== undefined && place;
+    this.readout.textContent = shown ? [`${clock(samples.time[i])} UTC`, ...columnsOf(samples, this.told)
+      .map(({title, unit, values}) => `${title} ${brief(values[i])}${unit && !Number.isNaN(values[i]) ? ` ${unit}` : ''}`)].join('  ·  ') : '';
+    const at = shown ? place(i) : {};
+    const across = at.x >= plot.x && at.x <= plot.x + plot.width;
+    const inside = across && at.y >= plot.y && at.y <= plot.y + plot.height;
+    this.cross.hidden = !(across && this.item.kind === 'time');
+    this.spot.hidden = !inside;
+    Object.assign(this.cross.style, {left: `${at.x}px`, top: `${plot.y}px`, height: `${plot.height}px`});
+    Object.assign(this.spot.style, {left: `${at.x}px`, top: `${at.y}px`});
+  }
+
+  // The selected sample that is drawn nearest to a place, no further than a finger is wide.
+  nearest(x, y) {
+    const {samples} = this.report;
+    let found, least = 18 ** 2;
+    for (let i = 0; i < samples.count; ++i) {
+      if (!samples.selected[i]) continue;
+      const at = this.drawn.place(i);
+      const distance = (at.x - x) ** 2 + (at.y - y) ** 2;
+      if (distance < least) [found, least] = [i, distance];
+    }
+    return found;
+  }
+
+  // How wide the picture is drawn for what it is saved for, how high, and how wide it is shown.
   get exportSize() {
-    const [width, height] = exportSizes[this.item.kind] ?? exportSizes.other;
-    return [width, this.item.kind === 'bars' ? heightOfBars(this.item) : height];
+    const {drawn, shown} = uses[this.report.use];
+    const half = this.item.kind === 'time' ? 0.4 : 0.6;
+    const height = this.item.kind === 'bars' ? heightOfBars(this.item) : Math.max(Math.round(half * drawn), 240);
+    return {width: drawn, height, shown};
   }
 
   // The picture on white, for a paper.
   svg() {
-    const [width, height] = this.exportSize;
-    const pen = new SvgPen(width, height, this.item.title);
+    const {width, height, shown} = this.exportSize;
+    const pen = new SvgPen(width, height, this.item.title, shown);
     pictures[this.item.kind](pen, width, height, this.item, this.report.samples, palettes.light);
     return pen.svg;
   }
 
   png() {
-    const [width, height] = this.exportSize, dotsPerPixel = 3;
-    const canvas = make('canvas', {width: width * dotsPerPixel, height: height * dotsPerPixel});
+    const {width, height, shown} = this.exportSize, dotsPerPixel = 3 * Math.max(1, shown / width / 1.5);
+    const canvas = make('canvas', {width: Math.round(width * dotsPerPixel), height: Math.round(height * dotsPerPixel)});
     const context = canvas.getContext('2d');
     context.scale(dotsPerPixel, dotsPerPixel);
     pictures[this.item.kind](new CanvasPen(context), width, height, this.item, this.report.samples, palettes.light);
@@ -104,107 +183,134 @@ class Panel {
   }
 }
 
-// A time panel also shows what is under the pointer and selects a range: by dragging, or by + - arrows and Escape.
+// Pointing at a sample in one picture shows it in all.
+class Pointing {
+  constructor(panel, report) {
+    const {picture, canvas} = panel;
+    const tell = (event) => {
+      const {left, top} = canvas.getBoundingClientRect();
+      report.point(panel.nearest(event.clientX - left, event.clientY - top));
+    };
+    picture.addEventListener('pointermove', tell);
+    picture.addEventListener('pointerdown', tell);
+    picture.addEventListener('pointerleave', () => report.point(undefined));
+  }
+}
+
+// In a time panel the reader selects a range by dragging along it, and enlarges the vertical axis by dragging up
+// or down; the wheel with Ctrl, or two keys, zoom where the pointer is.
 class TimeSelector {
   constructor(panel, report) {
     Object.assign(this, {panel, report});
     const {picture, canvas} = panel;
     this.mark = make('div', {class: 'mark', hidden: ''});
-    this.readout = make('p', {class: 'readout', 'aria-hidden': 'true'});
     picture.append(this.mark);
-    panel.section.querySelector('.tools').prepend(this.readout);
     canvas.tabIndex = 0;
-    canvas.setAttribute('aria-description', 'Plus and minus zoom, arrows move, Escape shows all');
+    canvas.setAttribute('aria-description', 'Plus and minus zoom, arrows move, with Shift the cursor from sample to ' +
+      'sample, Escape shows all');
     picture.addEventListener('pointerdown', (event) => this.begin(event));
     picture.addEventListener('pointermove', (event) => this.move(event));
     picture.addEventListener('pointerup', () => this.end());
     picture.addEventListener('pointercancel', () => this.leave());
     picture.addEventListener('pointerleave', () => this.leave());
-    picture.addEventListener('dblclick', () => report.clear());
+    picture.addEventListener('dblclick', () => this.all());
+    picture.addEventListener('wheel', (event) => this.wheel(event), {passive: false});
     canvas.addEventListener('keydown', (event) => this.key(event));
+    canvas.addEventListener('blur', () => report.point(undefined));
   }
 
-  position(event) {
-    const {plot} = this.panel.drawn;
-    const [from, to] = this.report.samples.view;
-    const x = event.clientX - this.panel.canvas.getBoundingClientRect().left;
-    return from + Math.min(Math.max((x - plot.x) / plot.width, 0), 1) * (to - from);
-  }
+  get samples() { return this.report.samples; }
 
-  show(from, to) {
+  // Where the pointer is: pixels in the plot, and the place on the time axis.
+  at(event) {
     const {plot} = this.panel.drawn;
-    const [begin, end] = this.report.samples.view;
-    const x = scale(begin, end, plot.x, plot.x + plot.width);
-    this.mark.hidden = false;
-    this.mark.style.left = `${x(Math.min(from, to))}px`;
-    this.mark.style.width = `${Math.max(Math.abs(x(to) - x(from)), 1)}px`;
-    this.mark.style.top = `${plot.y}px`;
-    this.mark.style.height = `${plot.height}px`;
+    const [from, to] = this.samples.view;
+    const {left, top} = this.panel.canvas.getBoundingClientRect();
+    const x = Math.min(Math.max(event.clientX - left, plot.x), plot.x + plot.width);
+    const y = Math.min(Math.max(event.clientY - top, plot.y), plot.y + plot.height);
+    return {x, y, position: from + (x - plot.x) / plot.width * (to - from)};
   }
 
   begin(event) {
     if (event.button !== 0) return;
-    this.from = this.to = this.position(event);
+    this.from = this.to = this.at(event);
     this.panel.picture.setPointerCapture(event.pointerId);
   }
 
+  // Whether the reader drags up or down rather than along.
+  get isVertical() {
+    return Math.abs(this.to.y - this.from.y) > Math.max(2 * Math.abs(this.to.x - this.from.x), 12);
+  }
+
   move(event) {
-    const at = this.position(event);
-    this.show(this.from ?? at, at);
-    if (this.from !== undefined) this.to = at;
-    this.tell(at);
+    const now = this.at(event);
+    this.report.point(this.samples.nearest(now.position));
+    if (!this.from) return;
+    this.to = now;
+    const {plot} = this.panel.drawn;
+    const {from, to} = this;
+    const box = this.isVertical
+      ? {left: plot.x, width: plot.width, top: Math.min(from.y, to.y), height: Math.abs(to.y - from.y)}
+      : {left: Math.min(from.x, to.x), width: Math.abs(to.x - from.x), top: plot.y, height: plot.height};
+    this.mark.hidden = false;
+    for (const [name, pixels] of Object.entries(box)) this.mark.style[name] = `${pixels}px`;
   }
 
   end() {
-    const {from, to} = this;
+    if (!this.from) return;
+    const {from, to, isVertical} = this;
     this.leave();
-    const [begin, end] = this.report.samples.view;
-    if (from !== undefined && Math.abs(to - from) > 0.004 * (end - begin))
-      this.report.choose([Math.min(from, to), Math.max(from, to)], this.report.samples.names);
+    const [begin, end] = this.samples.view;
+    if (isVertical) {
+      const [low, high] = [from.y, to.y].map(this.panel.drawn.up).sort((a, b) => a - b);
+      this.panel.item.vertical = {from: low, to: high, beyond: 0};
+      this.report.remember();
+      this.panel.draw();
+    } else if (Math.abs(to.position - from.position) > 0.004 * (end - begin)) {
+      this.report.choose([from.position, to.position].sort((a, b) => a - b), this.samples.names);
+    }
   }
 
   leave() {
     this.from = this.to = undefined;
     this.mark.hidden = true;
-    this.readout.textContent = '';
+    this.report.point(undefined);
   }
 
-  tell(at) {
-    const {samples} = this.report;
-    let low = 0, high = samples.count - 1;
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if (samples.position[middle] < at) low = middle + 1;
-      else high = middle;
-    }
-    const i = low > 0 && at - samples.position[low - 1] < samples.position[low] - at ? low - 1 : low;
-    const values = columnsOf(samples, this.panel.item.columns)
-      .map(({title, unit, values: all}) => `${title} ${brief(all[i])}${unit && !Number.isNaN(all[i]) ? ` ${unit}` : ''}`);
-    this.readout.textContent = `${clock(samples.time[i])} UTC  ${values.join('  ·  ')}`;
+  all() {
+    this.panel.item.vertical = undefined;
+    this.report.clear();
+  }
+
+  // Shows so much of the view, with the place where it is; all of it where nothing is left out.
+  zoom(factor, position) {
+    const [from, to] = this.samples.view;
+    this.show(position - factor * (position - from), factor * (to - from));
+  }
+
+  show(begin, length) {
+    const most = this.samples.length;
+    const start = Math.min(Math.max(begin, 0), most - length);
+    this.report.choose(length >= most ? null : [start, start + length], this.samples.names);
+  }
+
+  // A turn of the wheel alone moves the page.
+  wheel(event) {
+    if (!event.ctrlKey) return;
+    event.preventDefault();
+    this.zoom(event.deltaY < 0 ? 0.8 : 1.25, this.at(event).position);
   }
 
   key(event) {
-    const {samples} = this.report;
-    const [from, to] = samples.view, quarter = (to - from) / 4;
-    const ranges = {
-      '+': [from + quarter, to - quarter],
-      '-': [from - 2 * quarter, to + 2 * quarter],
-      'ArrowLeft': [from - quarter, to - quarter],
-      'ArrowRight': [from + quarter, to + quarter],
-    };
-    if (event.key === 'Escape') {
-      this.report.clear();
-    } else if (ranges[event.key]) {
-      const length = ranges[event.key][1] - ranges[event.key][0];
-      if (length >= samples.length) {
-        this.report.choose(null, samples.names);
-      } else {
-        const begin = Math.min(Math.max(ranges[event.key][0], 0), samples.length - length);
-        this.report.choose([begin, begin + length], samples.names);
-      }
-    } else {
-      return;
-    }
+    const {samples, report} = this;
+    const [from, to] = samples.view, length = to - from;
+    const step = event.key === 'ArrowLeft' ? -1 : event.key === 'ArrowRight' ? 1 : 0;
+    if (event.key === 'Escape') this.all();
+    else if (event.key === '+') this.zoom(0.5, (from + to) / 2);
+    else if (event.key === '-') this.zoom(2, (from + to) / 2);
+    else if (step && event.shiftKey) report.point(Math.min(Math.max((report.cursor ?? samples.nearest((from + to) / 2)) + step, 0), samples.count - 1));
+    else if (step) this.show(from + step * length / 4, length);
+    else return;
     event.preventDefault();
   }
 }
@@ -249,13 +355,14 @@ class SelectionBar {
   constructor(report) {
     this.report = report;
     this.words = make('span', {role: 'status', class: 'selected'});
-    this.hint = make('span', {class: 'hint'}, 'Drag over a picture with a time axis to select');
+    this.hint = make('span', {class: 'hint'}, 'Drag along a picture over time to select, up or down to enlarge it; Ctrl and the wheel zoom');
     this.clear = make('button', {type: 'button', class: 'clear', onclick: () => report.clear()}, 'Show all');
+    this.undo = make('button', {type: 'button', title: 'Back to what was shown before', onclick: () => history.back()}, 'Undo');
     this.chips = [...report.samples.regimes.keys()].map((name) => make('button', {
       'type': 'button', 'class': 'chip', 'aria-pressed': 'false', 'onclick': () => this.toggle(name),
     }, make('span', {class: 'swatch'}), name));
     this.element = make('div', {class: 'selection', role: 'region', 'aria-label': 'Selected samples'},
-      this.words, this.clear, this.hint, make('span', {class: 'chips'}, ...this.chips));
+      this.words, this.clear, this.undo, this.hint, make('span', {class: 'chips'}, ...this.chips));
   }
 
   toggle(name) {
@@ -274,12 +381,16 @@ class SelectionBar {
     this.words.textContent = samples.isFiltered
       ? `${where}${countText(samples.selectedCount)} of ${plural(samples.count, 'sample')}`
       : `All ${plural(samples.count, 'sample')}`;
+    if (!samples.selectedCount) this.words.textContent += `: ${[...samples.names].join(' or ')} is not in this time`;
     this.clear.hidden = !samples.isFiltered;
+    this.undo.hidden = this.report.steps === 0;
     this.hint.hidden = samples.isFiltered || !this.report.panels.some(({item}) => item.kind === 'time');
     this.chips.forEach((chip, i) => {
-      const name = [...samples.regimes.keys()][i];
-      chip.setAttribute('aria-pressed', String(samples.names.has(name)));
-      chip.querySelector('.swatch').style.background = theme.regimes[i % theme.regimes.length];
+      const names = [...samples.regimes.keys()];
+      chip.setAttribute('aria-pressed', String(samples.names.has(names[i])));
+      const {colour, dash} = regimeMark(names[i], names, theme);
+      chip.querySelector('.swatch').style.background =
+        dash ? `repeating-linear-gradient(90deg, ${colour} 0 ${dash[0] / 2}px, transparent 0 ${(dash[0] + dash[1]) / 2}px)` : colour;
     });
   }
 }

@@ -94,8 +94,9 @@ function escapeXml(words) {
 const short = (number) => String(Math.round(number * 100) / 100);
 
 class SvgPen {
-  constructor(width, height, title) {
-    this.head = `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" ` +
+  // Drawn in units of `width` x `height`, and shown `shown` pixels wide.
+  constructor(width, height, title, shown = width) {
+    this.head = `<svg xmlns="http://www.w3.org/2000/svg" width="${shown}" height="${short(height * shown / width)}" ` +
         `viewBox="0 0 ${width} ${height}" font-family="${escapeXml(fontFamily)}">\n<title>${escapeXml(title)}</title>\n`;
     this.parts = [];
     this.clips = 0;

@@ -10,6 +10,8 @@ class ReportPage {
     window.addEventListener('error', ({message}) => this.errors.push(message));
     window.addEventListener('unhandledrejection', ({reason}) => this.errors.push(String(reason)));
     this.printing = false;
+    this.use = Object.keys(uses)[0];  // of pictures that are saved
+    this.steps = 0;  // that can be undone
     this.darkMedia = window.matchMedia('(prefers-color-scheme: dark)');
     this.samples = new Samples(data);
     this.panels = [];
@@ -19,11 +21,15 @@ class ReportPage {
       if (item.kind === 'regimes') this.tables.push(new Regimes(item, section, this));
       else if (pictures[item.kind]) this.panels.push(new Panel(item, section, this));
     });
-    for (const panel of this.panels) if (panel.item.kind === 'time') new TimeSelector(panel, this);
+    for (const panel of this.panels) {
+      if (panel.item.kind === 'time') new TimeSelector(panel, this);
+      else if (['binned', 'plane', 'pair'].includes(panel.item.kind)) new Pointing(panel, this);
+    }
     this.bar = new SelectionBar(this);
     if (this.samples.count) document.querySelector('main').before(this.bar.element);
     this.addThemeButton();
-    this.draw();
+    this.addGuide();
+    this.recall();
     this.watch();
     this.firstFrame = performance.now();  // ms after the page began to load
     this.ready = true;
@@ -66,6 +72,10 @@ class ReportPage {
       this.printing = printing;
       this.draw();
     };
+    window.addEventListener('popstate', () => {
+      this.steps = Math.max(this.steps - 1, 0);
+      this.recall();
+    });
     window.addEventListener('beforeprint', () => print(true));
     window.addEventListener('afterprint', () => print(false));
   }
@@ -75,15 +85,86 @@ class ReportPage {
     if (this.samples.count) this.bar.draw();
   }
 
+  // Shows a sample in every picture; undefined for none.
+  point(i) {
+    this.cursor = i;
+    for (const panel of this.panels) panel.point(i);
+  }
+
   choose(range, names) {
     this.samples.choose(range, names);
+    this.remember();
     this.draw();
   }
 
   // Selects the samples from t0 to t1, both in seconds since 1970 UTC.
   select(t0, t1) {
     this.samples.select(t0, t1);
+    this.remember();
     this.draw();
+  }
+
+  // What is shown, in the address: it can be sent to a colleague, and the button of the browser goes back.
+  remember() {
+    const view = {};
+    const {range, names} = this.samples;
+    if (range) view.range = range.map((position) => Math.round(1000 * position) / 1000);
+    if (names.size) view.names = [...names];
+    this.panels.forEach(({item: {choice, hidden, vertical}}, i) => {
+      const own = {};
+      if (choice && choice !== this.panels[i].item.choices[0]) own.choice = choice;
+      if (hidden?.size) own.hidden = [...hidden];
+      if (vertical) own.vertical = [vertical.from, vertical.to];
+      if (Object.keys(own).length) (view.panels ??= {})[i] = own;
+    });
+    const words = Object.keys(view).length ? [`view=${encodeURIComponent(JSON.stringify(view))}`] : [];
+    const address = `#${[...wishes.filter((wish) => !wish.startsWith('view=')), ...words].join('+')}`;
+    if (address === (location.hash || '#')) return;
+    ++this.steps;
+    history.pushState(null, '', address);
+  }
+
+  // Shows what the address says; what it says of another report is passed over.
+  recall() {
+    const {samples} = this;
+    let view = {};
+    try {
+      const word = location.hash.slice(1).split('+').find((each) => each.startsWith('view=')) ?? '';
+      view = JSON.parse(decodeURIComponent(word.slice(5)) || '{}') ?? {};
+    } catch (error) {
+      if (!(error instanceof SyntaxError || error instanceof URIError)) throw error;
+    }
+    const isRange = (range) => Array.isArray(range) && range.length === 2 && range.every(Number.isFinite) && range[0] < range[1];
+    const names = (Array.isArray(view.names) ? view.names : []).filter((name) => samples.regimes.has(name));
+    samples.choose(isRange(view.range) ? view.range.map((at) => Math.min(Math.max(at, 0), samples.length)) : null, new Set(names));
+    this.panels.forEach((panel, i) => {
+      const {item, select} = panel;
+      const {choice, hidden, vertical} = view.panels?.[i] ?? {};
+      if (select) select.value = item.choice = item.choices.includes(choice) ? choice : item.choices[0];
+      if (item.hidden) {
+        const off = item.columns.filter((name) => Array.isArray(hidden) && hidden.includes(name));
+        item.hidden = new Set(off.length < item.columns.length ? off : []);
+      }
+      item.vertical = isRange(vertical) ? {from: vertical[0], to: vertical[1], beyond: 0} : undefined;
+    });
+    this.draw();
+  }
+
+  // The titles of a long page, to go to; and what pictures are saved for.
+  addGuide() {
+    const select = make('select', {onchange: () => { this.use = select.value; }},
+      ...Object.keys(uses).map((words) => make('option', {}, words)));
+    const guide = make('div', {class: 'guide'}, make('label', {class: 'use'}, 'Pictures are saved for ', select));
+    if (this.panels.length) document.querySelector('main').before(guide);
+    const titles = [...document.querySelectorAll('.item > h2')];
+    if (titles.length < 6) return;
+    const list = titles.map((title) => make('li', {}, make('a', {href: '#', onclick: (event) => {
+      event.preventDefault();
+      title.scrollIntoView({block: 'start'});
+    }}, title.textContent)));
+    guide.prepend(make('nav', {'aria-label': 'Contents'},
+      make('details', {}, make('summary', {}, `Contents: ${titles.length} parts`), make('ol', {}, ...list))));
+    document.querySelector('main').before(guide);
   }
 
   clear() { this.choose(null); }

@@ -20,6 +20,8 @@ import xml.etree.ElementTree
 import zlib
 from pathlib import Path
 
+from browser import Browser
+
 SAMPLE_REPORT = Path(sys.argv[1]).resolve()
 SOURCE = Path(sys.argv[2]).resolve()
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
@@ -164,6 +166,210 @@ class ReportInBrowser(unittest.TestCase):
             width, _, rows = decode_png(raster)
             self.assertGreaterEqual(width, 1600)
             self.assertGreater(coloured(rows), 200, raster.name)
+
+
+class ReportUnderTheHand(unittest.TestCase):
+    """What a reader does with mouse and keyboard, and what the page shows then, against the data of the page."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.directory = tempfile.TemporaryDirectory()
+        cls.report = Path(cls.directory.name) / "report.html"
+        run(SAMPLE_REPORT, cls.report, "6000", "2")
+        cls.browser = Browser(CHROMIUM, Path(cls.directory.name) / "profile")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+        cls.directory.cleanup()
+
+    def setUp(self):
+        self.browser.errors.clear()
+        self.browser.open(self.report.as_uri())
+        self.count = self.selection["count"]
+
+    def tearDown(self):
+        self.assertEqual(self.browser.errors, [])
+
+    def value(self, expression):
+        return self.browser.value(expression)
+
+    @property
+    def selection(self):
+        return self.value("pcorReport.selection")
+
+    def panels(self, *kinds):
+        return [i for i, kind in enumerate(self.value("pcorReport.panels.map((panel) => panel.item.kind)")) if kind in kinds]
+
+    def corner(self, element):
+        """The left and the top of an element of the page, in view."""
+        self.value(f"{element}.scrollIntoView({{block: 'center'}})")
+        self.browser.settle()
+        return self.value(f"(({{left, top}}) => [left, top])({element}.getBoundingClientRect())")
+
+    def middle(self, element):
+        left, top = self.corner(element)
+        width, height = self.value(f"(({{width, height}}) => [width, height])({element}.getBoundingClientRect())")
+        return left + width / 2, top + height / 2
+
+    def place(self, panel, across, up=0.5):
+        """Where a part of the plot of a panel is in the window, with the panel in view."""
+        left, top = self.corner(f"pcorReport.panels[{panel}].canvas")
+        plot = self.value(f"pcorReport.panels[{panel}].drawn.plot")
+        return left + plot["x"] + across * plot["width"], top + plot["y"] + up * plot["height"]
+
+    def readouts(self):
+        return self.value("pcorReport.panels.map((panel) => panel.readout.textContent)")
+
+    def button(self, words):
+        return self.middle(f"[...document.querySelectorAll('button')].find((each) => each.textContent.trim() === {json.dumps(words)})")
+
+    def test_pointing_reads_the_values_of_that_sample_in_every_picture(self):
+        time, other = self.panels("time"), self.panels("binned", "plane", "pair")
+        self.browser.point(*self.place(time[0], 0.3))
+        sample = self.value("pcorReport.cursor")
+        # Three tenths along the axis; a sample is 1 s of 6,000 or so, a pixel some 5 s.
+        self.assertAlmostEqual(self.value(f"pcorReport.samples.position[{sample}] / pcorReport.samples.length"), 0.3, delta=0.005)
+        told = self.readouts()
+        for panel in time + other:
+            for name in self.value(f"pcorReport.panels[{panel}].told"):
+                title, number = self.value(f"""(() => {{
+                  const {{title, values}} = pcorReport.samples.columns.get({json.dumps(name)});
+                  return [title, Number.isNaN(values[{sample}]) ? null : values[{sample}]];
+                }})()""")
+                found = re.search(re.escape(title) + r" ([−\d.]+|–)", told[panel])
+                self.assertIsNotNone(found, f"{title} in '{told[panel]}'")
+                if number is None:
+                    self.assertEqual(found.group(1), "–")
+                else:  # three digits are shown
+                    self.assertAlmostEqual(float(found.group(1).replace("−", "-")), number, delta=max(0.006 * abs(number), 1e-4))
+        self.browser.point(1, 1)
+        self.assertEqual(set(self.readouts()), {""})
+
+    def test_pointing_at_a_dot_shows_it_in_time(self):
+        plane = f"pcorReport.panels[{self.panels('plane')[0]}]"
+        left, top = self.corner(f"{plane}.canvas")
+        dot = self.value(f"{plane}.drawn.place(pcorReport.samples.indices(columnsOf(pcorReport.samples, {plane}.told))[1000])")
+        self.browser.point(left + dot["x"], top + dot["y"])
+        found = self.value(f"{plane}.drawn.place(pcorReport.cursor)")
+        self.assertLess(max(abs(found[axis] - dot[axis]) for axis in "xy"), 2)  # pixels; others may lie on it
+        self.assertFalse(self.value(f"pcorReport.panels[{self.panels('time')[0]}].cross.hidden"))
+
+    def test_dragging_selects_keys_move_and_undo_goes_back(self):
+        panel = self.panels("time")[0]
+        lasts = "(pcorReport.samples.view[1] - pcorReport.samples.view[0]) / pcorReport.samples.length"
+        self.browser.drag(*self.place(panel, 0.25), *self.place(panel, 0.75))
+        self.assertAlmostEqual(self.value(lasts), 0.5, delta=0.01)
+        self.browser.click(*self.place(panel, 0.5))
+        self.browser.key("+")
+        self.assertAlmostEqual(self.value(lasts), 0.25, delta=0.01)
+        before = self.value("pcorReport.samples.view[0]")
+        self.browser.key("ArrowRight")
+        self.assertGreater(self.value("pcorReport.samples.view[0]"), before)
+        self.browser.key("ArrowLeft", shift=True)
+        first = self.value("pcorReport.cursor")
+        self.browser.key("ArrowRight", shift=True)
+        self.assertEqual(self.value("pcorReport.cursor"), first + 1)
+        for expected in (0.25, 0.5):
+            self.browser.click(*self.button("Undo"))
+            self.wait(f"Math.abs({lasts} - {expected}) < 0.01 && {before} - pcorReport.samples.view[0] > -1e-3")
+        self.browser.click(*self.place(panel, 0.5))
+        self.browser.key("Escape")
+        self.assertEqual(self.selection["count"], self.count)
+
+    def wait(self, condition):
+        for _ in range(500):
+            if self.value(condition):
+                return
+        self.fail(condition)
+
+    def test_a_drag_upwards_enlarges_one_picture_alone(self):
+        panel, other = self.panels("time")
+        axis = "pcorReport.panels[{}].drawn.up(pcorReport.panels[{}].drawn.plot.y)"
+        rest = self.value(axis.format(other, other))
+        middle = self.value(f"(({{drawn}}) => [drawn.up(drawn.plot.y + 0.25 * drawn.plot.height), drawn.up(drawn.plot.y + 0.75 * drawn.plot.height)])(pcorReport.panels[{panel}])")
+        self.browser.drag(*self.place(panel, 0.5, 0.25), *self.place(panel, 0.5, 0.75))
+        shown = self.value(f"pcorReport.panels[{panel}].item.vertical")
+        for found, wanted in zip((shown["to"], shown["from"]), middle):
+            self.assertAlmostEqual(found, wanted, delta=0.02 * abs(middle[0] - middle[1]))  # a pixel
+        self.assertEqual(self.selection["count"], self.count)
+        self.assertEqual(self.value(axis.format(other, other)), rest)
+        self.browser.click(*self.place(panel, 0.5), count=2)
+        self.assertIsNone(self.value(f"pcorReport.panels[{panel}].item.vertical ?? null"))
+
+    def test_the_wheel_moves_the_page_and_with_control_zooms_where_it_points(self):
+        panel = self.panels("time")[0]
+        x, y = self.place(panel, 0.3)
+        at = "pcorReport.samples.view[0] + 0.3 * (pcorReport.samples.view[1] - pcorReport.samples.view[0])"
+        under = self.value(at)
+        self.browser.wheel(x, y, -120, control=True)
+        self.wait("pcorReport.samples.range !== null")
+        self.assertAlmostEqual(self.value(at), under, delta=0.005 * self.value("pcorReport.samples.length"))
+        self.browser.wheel(x, y, 120)
+        self.wait("true")
+        self.assertAlmostEqual(self.value("(pcorReport.samples.view[1] - pcorReport.samples.view[0]) / pcorReport.samples.length"), 0.8, delta=0.01)
+
+    def test_curves_are_switched_and_the_last_one_stays(self):
+        panel = self.panels("time")[0]
+        names = self.value(f"pcorReport.panels[{panel}].item.columns")
+        points = self.value("pcorReport.points")[panel]
+        switches = [f"pcorReport.panels[{panel}].switches[{i}]" for i in range(len(names))]
+
+        def press(switch):
+            self.browser.click(*self.middle(switch))
+
+        press(switches[0])
+        self.assertLess(self.value("pcorReport.points")[panel], points)
+        self.assertEqual(self.value(f"{switches[0]}.getAttribute('aria-pressed')"), "false")
+        for switch in switches[1:]:
+            press(switch)
+        self.assertGreater(self.value("pcorReport.points")[panel], 0)
+        press(switches[0])
+        self.assertEqual(self.value(f"{switches[0]}.getAttribute('aria-pressed')"), "true")
+
+    def test_an_empty_selection_says_so_and_scales_stay(self):
+        panel, plane = self.panels("time")[0], self.panels("plane")[0]
+        regime, begin, end = self.value("""(() => {
+          const {samples} = pcorReport;
+          for (const [name, inside] of samples.regimes) {
+            const first = inside.indexOf(1);
+            if (first > 0.1 * samples.count) return [name, 0, samples.position[first - 50] / samples.length];
+          }
+        })()""")
+        top = f"pcorReport.panels[{panel}].drawn.up(pcorReport.panels[{panel}].drawn.plot.y)"
+        before, corner = self.value(top), self.value(f"pcorReport.panels[{plane}].drawn.place(0)")
+        self.browser.drag(*self.place(panel, begin + 0.002), *self.place(panel, end))
+        self.browser.click(*self.button(regime))
+        self.assertEqual(self.selection["count"], 0)
+        self.assertIn(f"{regime} is not in this time", self.value("document.querySelector('.selected').textContent"))
+        self.assertEqual(self.value(f"pcorReport.panels[{panel}].empty.textContent"), "No sample is selected")
+        self.assertFalse(self.value(f"pcorReport.panels[{panel}].empty.hidden"))
+        self.assertEqual(self.value(top), before)
+        self.assertEqual(self.value(f"pcorReport.panels[{plane}].drawn.place(0)"), corner)
+        self.browser.click(*self.button("Show all"))
+        self.assertEqual(self.selection["count"], self.count)
+
+    def test_an_address_shows_a_colleague_the_same(self):
+        panel = self.panels("time")[0]
+        self.browser.drag(*self.place(panel, 0.2), *self.place(panel, 0.6))
+        self.browser.click(*self.button(self.value("[...pcorReport.samples.regimes.keys()][0]")))
+        seen, address = self.selection, self.value("location.href")
+        self.browser.open(address)
+        for bound in ("from", "to"):  # in milliseconds, in the address
+            self.assertAlmostEqual(self.selection.pop(bound), seen.pop(bound), delta=1e-3)
+        self.assertEqual({**self.selection, "from": 0, "to": 0}, {**seen, "from": 0, "to": 0})
+        for nonsense in ("view=%7B", "view=%E0%A4%A", "view=7", "view=null", "view=%7B%22range%22%3A%5B9%2C1%5D%2C%22panels%22%3A4%7D"):
+            self.browser.open(f"{self.report.as_uri()}#{nonsense}")
+            self.assertEqual(self.selection["count"], self.count, nonsense)
+
+    def test_a_regime_has_one_mark_everywhere_and_no_other_has_it(self):
+        marks = self.value("""['climb', 'descent', 'level', 'turn', 'take-off', 'ground', 'circle', 'cloud',
+          'pitch manoeuvre', 'yaw manoeuvre', 'speed run', 'reverse heading', 'one more', 'another'].map((name, i, all) =>
+            JSON.stringify([regimeMark(name, all, palettes.light), regimeMark(name, ['one more', 'another', name], palettes.light)]))""")
+        self.assertEqual(len(set(marks)), len(marks))
+        for mark in marks:
+            alone, among_others = json.loads(mark)
+            self.assertEqual(alone, among_others)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,105 @@
+"""A page in headless chromium, moved by the input of a mouse and a keyboard as a reader's hand moves it."""
+
+import json
+import os
+import subprocess
+
+
+class Browser:
+    """One tab, spoken to over the pipe of the DevTools protocol."""
+
+    def __init__(self, program, profile, width=1280, height=900):
+        from_us, to_browser = os.pipe()
+        from_browser, to_us = os.pipe()
+
+        # The browser reads at descriptor 3 and writes at 4; a shell puts the pipes there.
+        self.child = subprocess.Popen(
+            ["/bin/sh", "-c", f'exec "$@" 3<&{from_us} 4>&{to_us}', "sh", program, "--headless=new", "--no-sandbox",
+             "--disable-gpu", f"--user-data-dir={profile}", f"--window-size={width},{height}", "--remote-debugging-pipe"],
+            pass_fds=(from_us, to_us), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(from_us)
+        os.close(to_us)
+        self.out = os.fdopen(to_browser, "wb")
+        self.into = os.fdopen(from_browser, "rb")
+        self.number = 0
+        self.session = None
+        self.errors = []
+        target = self.ask("Target.createTarget", url="about:blank")["targetId"]
+        self.session = self.ask("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        self.ask("Runtime.enable")
+        self.ask("Page.enable")
+
+    def close(self):
+        self.child.kill()
+        self.child.wait()
+        self.out.close()
+        self.into.close()
+
+    def message(self):
+        text = b""
+        while not text.endswith(b"\0"):
+            letter = self.into.read1(1)
+            if not letter:
+                raise EOFError("the browser has ended")
+            text += letter
+        found = json.loads(text[:-1])
+        if found.get("method") == "Runtime.exceptionThrown":
+            self.errors.append(found["params"]["exceptionDetails"]["text"])
+        return found
+
+    def ask(self, method, **parameters):
+        self.number += 1
+        command = {"id": self.number, "method": method, "params": parameters}
+        if self.session:
+            command["sessionId"] = self.session
+        self.out.write(json.dumps(command).encode() + b"\0")
+        self.out.flush()
+        while True:
+            found = self.message()
+            if found.get("id") == self.number:
+                if "error" in found:
+                    raise RuntimeError(f"{method}: {found['error']['message']}")
+                return found["result"]
+
+    def open(self, address):
+        """A page of its own, also where only what stands behind # differs from the last."""
+        self.ask("Page.navigate", url="about:blank")
+        self.ask("Page.navigate", url=address)
+        while not self.value("Boolean(window.pcorReport && window.pcorReport.ready)"):
+            pass
+
+    def value(self, expression):
+        answer = self.ask("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        if "exceptionDetails" in answer:
+            raise RuntimeError(f"{expression}: {answer['exceptionDetails']['exception'].get('description')}")
+        return answer["result"].get("value")
+
+    def settle(self):
+        """Until what was scrolled is where the mouse will find it."""
+        self.value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))")
+
+    def mouse(self, kind, x, y, **more):
+        self.ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
+
+    def point(self, x, y):
+        self.mouse("mouseMoved", x, y)
+
+    def click(self, x, y, count=1):
+        for each in range(1, count + 1):
+            self.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=each)
+            self.mouse("mouseReleased", x, y, button="left", clickCount=each)
+
+    def drag(self, x, y, to_x, to_y):
+        self.point(x, y)
+        self.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
+        for part in (0.3, 0.7, 1.0):
+            self.mouse("mouseMoved", x + part * (to_x - x), y + part * (to_y - y), button="left", buttons=1)
+        self.mouse("mouseReleased", to_x, to_y, button="left", clickCount=1)
+
+    def wheel(self, x, y, turn, control=False):
+        self.mouse("mouseWheel", x, y, deltaX=0, deltaY=turn, modifiers=2 if control else 0)
+
+    def key(self, key, shift=False):
+        for kind in ("keyDown", "keyUp"):
+            more = {"text": key} if kind == "keyDown" and len(key) == 1 else {}
+            self.ask("Input.dispatchKeyEvent", type=kind, key=key, modifiers=8 if shift else 0, **more)
