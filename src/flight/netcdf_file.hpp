@@ -99,12 +99,12 @@ std::size_t elements(const std::vector<std::size_t>& shape);
 /// What a netCDF status means in words.
 std::string netcdf_reason(int status);
 
-/// How much of a classic file the library keeps in memory, bytes. Its records lie one after the other, each
-/// with all the variables, and the library moves whole buffers, so that a block of records is walked through
-/// variable after variable while it is in the buffer.
-constexpr std::size_t classic_buffer_bytes = std::size_t{4} << 20;
+/// How much of a classic file the library keeps in memory, bytes, but where records are large. They lie one
+/// after the other, each with all the variables, and the library moves whole buffers, so that a block of
+/// records is walked through variable after variable while it is in the buffer.
+constexpr std::size_t classic_buffer_bytes = std::size_t{1} << 20;
 
-/// Records of so many bytes that are in the buffer of a classic file together.
+/// Records of so many bytes that are in such a buffer together, or a few where they are larger.
 std::size_t records_in_buffer(std::size_t record_bytes);
 
 }  // namespace pcor::internal

@@ -91,7 +91,6 @@ TEST(Whitening, TurnsTheCovarianceOfSlowPartsIntoUnity) {
   }
 }
 
-// The error of a mean under drift: what generalised least squares states is what it does, over many flights.
 TEST(Whitening, OfAnAutoregressionAloneIsThatOfVanishingSlowParts) {
   std::vector<double> residual(60, 1.0);
   residual[2] = residual[5] = missing;  // a stretch that is shorter than the autoregression
@@ -113,6 +112,7 @@ TEST(Whitening, OfAnAutoregressionAloneIsThatOfVanishingSlowParts) {
   EXPECT_LT((alone.transposed(one) - vanishing.transposed(one)).cwiseAbs().maxCoeff(), 1e-9);
 }
 
+// The error of a mean under drift: what generalised least squares states is what it does, over many flights.
 TEST(SlowNoise, GivesTheMeanOfAFlightItsError) {
   constexpr std::size_t count = 1800;  // two hours
   const std::vector<Binning> bins{bins_of(std::vector<double>(count, 0.0))};

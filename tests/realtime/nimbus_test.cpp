@@ -444,6 +444,23 @@ TEST(NimbusSystem, GivesAResultToSeveralEntries) {
   }
 }
 
+TEST(NimbusSystem, AResultOfAnEarlierSampleIsGivenToNoneOfItsEntries) {
+  ASSERT_TRUE(install_both());
+  Table table(raw_names, {{"PCOR", fuselage_inputs, Fuselage::compute},
+                          {"PSXC", {"PCOR"}, Fuselage::fetch<Quantity::corrected_static_pressure>},
+                          {"PSX", {"PCOR"}, Fuselage::fetch<Quantity::corrected_static_pressure>}});
+  table.compute(0.0, raw_value);
+  ASSERT_FALSE(std::isnan(table.low("PSX")));
+  // Samples for which the leader does not run: no entry has a value, however often they are called.
+  for (int sample = 0; sample < 3; ++sample) {
+    for (const char* name : {"PSXC", "PSX"}) {
+      DERTBL& entry = table.entry(name);
+      entry.compute(&entry);
+      EXPECT_TRUE(std::isnan(table.high(name, 0))) << name << " in sample " << sample;
+    }
+  }
+}
+
 // A host that is not told the time.
 struct Timeless {
   using Entry = DERTBL;

@@ -34,8 +34,8 @@ struct HasTime<Host, std::void_t<decltype(Host::time())>> : std::true_type {};
 /// runs it later; its callback `fetch` puts one more result of that same run.
 ///
 ///     using Fuselage = pcor::NimbusSystem<Host, struct FuselageTag>;
-///     pcor::read_defaults(model, "PCOR", find);                        // optional overrides, by name
-///     pcor::check_defaults(model, "PCOR", names, pcor::Overrides::some, &error);
+///     pcor::check_defaults(model, "PCOR", names, pcor::Overrides::some, &error);  // optional overrides,
+///     pcor::read_defaults(model, "PCOR", find);                                   // by name
 ///     Fuselage::install(model, {"static_pressure", "dynamic_pressure", "recovery_temperature"}, 1, 25,
 ///     &error);
 ///     {"PCOR", {"PSFD", "QCF", "RTF1"}, Fuselage::compute},
@@ -53,9 +53,9 @@ struct HasTime<Host, std::void_t<decltype(Host::time())>> : std::true_type {};
 ///       static double time();                           // of this sample, s; it grows, midnight or not
 ///     };
 ///
-/// The leader alone asks for the time, once in a sample. A host without `time` is taken to call at every
-/// sample of a rate, without a gap; where there is one it calls `reset`. examples/realtime/nimbus is such a
-/// host.
+/// The leader alone asks for the time, once in a sample. A host without a public `time` of no arguments is
+/// taken to call at every sample of a rate, without a gap; where there is one it calls `reset`. examples/nimbus
+/// is such a host.
 ///
 /// Units are those of the library but for temperatures: whatever it has in K travels in degC, both ways.
 /// Variables of formulas travel as they are.
@@ -132,8 +132,9 @@ class NimbusSystem {
   }
 
   /// The callback of an entry that is another result of the leader's run. NaN where the leader has not run
-  /// since this entry was last put, and for good where the entry is called before the leader's first run, as
-  /// its values would be those of the sample before: its dependency line lacks the leader.
+  /// since this entry was last put, and for good where the entry, or another of the same result, is called
+  /// before the leader's first run, as its values would be those of the sample before: its dependency line
+  /// lacks the leader.
   template <Quantity quantity>
   static void fetch(Entry* entry) {
     Host::put(entry, has_turn(turns_[index(quantity)], entry) ? latest_->state()[quantity] - zero_of(quantity)
@@ -173,10 +174,11 @@ class NimbusSystem {
     std::size_t samples = 0;
   };
 
-  // The run of which a result was last put, and by which entry.
+  // The run of which a result was last put, and by which entry first.
   struct Turn {
     std::size_t run = 0;
-    const Entry* entry = nullptr;
+    const Entry* first = nullptr;
+    bool is_over = false;
   };
 
   static constexpr std::size_t never = std::numeric_limits<std::size_t>::max();
@@ -197,12 +199,17 @@ class NimbusSystem {
     }
   }
 
-  // True where the entry comes after a run of the leader that it has not put yet.
+  // True where the entry comes after a run of the leader that it has not put yet. Entries of one result are
+  // judged together: once the first of them comes again, the host is at another sample.
   static bool has_turn(Turn& turn, const Entry* entry) {
     if (run_ == 0) turn.run = never;
-    if (turn.run == never || (turn.run == run_ && turn.entry == entry)) return false;
-    turn = {run_, entry};
-    return true;
+    if (turn.run == never) return false;
+    if (turn.run != run_) {
+      turn = {run_, entry};
+      return true;
+    }
+    turn.is_over = turn.is_over || turn.first == entry;
+    return !turn.is_over;
   }
 
   static inline std::vector<Input> inputs_;
