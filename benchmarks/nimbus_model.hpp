@@ -6,9 +6,9 @@
 
 /// A plain model of how NCAR's nimbus derives variables: a table of functions, each of which fetches its
 /// inputs by index, computes all it needs from them anew, and puts its output by index. The gas constants are
-/// globals, set by one function and used by others. No code of nimbus is in it. It is quicker than nimbus,
-/// whose functions take 1.2 times as long in its own loop, as they are compiled apart: a ratio to it is no
-/// flattery.
+/// globals, set by one function and used by others. No code of nimbus is in it. Nimbus's own
+/// six functions, compiled apart in its own loop, took 1.2 times as long on one machine (213 ns to 176 ns a
+/// sample, g++ 12, -O2, law of the C-130 of 2016).
 namespace nimbus_model {
 
 enum Variable : std::size_t {

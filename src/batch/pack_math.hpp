@@ -100,7 +100,7 @@ template <class Arch>
 
 /// (1 + part/whole)^exponent - 1 within a few units in the last place.
 ///
-/// Where all lanes are as in flight, below Mach 0.85, it is two polynomials, as in `pcor::power_less_one`;
+/// Where all lanes are as in flight, below Mach 0.847, it is two polynomials, as in `pcor::power_less_one`;
 /// that of the exponential goes further here, so that the pressure of a given airspeed is in it.
 template <class Arch>
 [[gnu::always_inline]] inline xsimd::batch<double, Arch> power_less_one(

@@ -258,6 +258,7 @@ RefitResult fit(const Sources& sources, const ModelFile& model, const References
   const Reference& reference = first_of(references);
   require_sense(sources, reference, options);
   require_one_kind(sources, options);
+  const std::string fitted_flights = text_of(sources);  // while nothing is lost where one cannot be read
   RefitOptions shared = options;
   shared.memory /= references.size() * (1 + options.stages.size());  // each keeps samples of its own
   const FitTask task = task_of(model, references, shared);
@@ -298,7 +299,6 @@ RefitResult fit(const Sources& sources, const ModelFile& model, const References
   result.worse = why_worse(result, before.rms_of(before.bulk_squares));
   result.warnings = fit_warnings(flights, result, solution.values, sums.rms_of(squares.least()));
   result.notes = notes_of(result, task, fitted, covariance.matrix, compared);
-  const std::string fitted_flights = text_of(sources);
   result.model = fitted_model(model, 0, result, options.loss, fitted_flights);
   if (options.fit_reference) {
     const auto own = std::accumulate(

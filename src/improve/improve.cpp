@@ -604,8 +604,9 @@ Improvement improve(const std::vector<std::filesystem::path>& flights, const Mod
   loop.trace_variables = options.trace_variables;
   loop.most_steps = options.most_steps;
   loop.flights = fmt::format("{}", fmt::join(names, ", "));
+  const std::string improved_on = flights_text(flights);  // while nothing is lost where one cannot be read
   Improvement improvement = loop.run(model);
-  descend(improvement.model, model, "improved on", flights_text(flights));
+  descend(improvement.model, model, "improved on", improved_on);
   return improvement;
 }
 

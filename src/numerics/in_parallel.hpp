@@ -6,7 +6,7 @@
 namespace pcor::internal {
 
 /// Calls `work` with each of 0 ... count-1 once, in any order, `threads` at a time; with 0 threads as many as
-/// there are processors. Where a call throws, no further begins, and what the first threw is thrown when
+/// there are processors. Where a call throws, no further begins, and what one of them threw is thrown when
 /// those that had begun have ended.
 void in_parallel(std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& work);
 

@@ -76,7 +76,8 @@ function ticks(from, to, about) {
   const power = 10 ** Math.floor(Math.log10(raw));
   const step = power * [1, 2, 5, 10].find((factor) => factor * power >= raw * 0.999);
   const all = [];
-  for (let n = Math.ceil(from / step - 1e-9); n * step <= to + 1e-9 * step; ++n) all.push(n * step);
+  const first = Math.ceil(from / step - 1e-9), last = Math.floor(to / step + 1e-9);
+  for (let n = 0; n <= Math.min(last - first, 1000); ++n) all.push((first + n) * step);
   return {step, all};
 }
 

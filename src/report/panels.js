@@ -10,6 +10,10 @@ function make(tag, attributes = {}, ...children) {
   return element;
 }
 
+// Two numbers between which there is room, as far as numbers go.
+const isRange = (range) => Array.isArray(range) && range.length === 2 && range.every(Number.isFinite) &&
+  range[1] - range[0] > 1e-9 * Math.max(Math.abs(range[0]), Math.abs(range[1]));
+
 const isNumber = (words) => /^[−–\d]/.test(words);
 
 function fillTable(table, {headers, rows}) {
@@ -43,7 +47,7 @@ class Panel {
     this.cross = make('div', {class: 'cross', hidden: ''});
     this.spot = make('div', {class: 'spot', hidden: ''});
     this.empty = make('p', {class: 'empty', hidden: ''});
-    this.readout = make('p', {class: 'readout', 'aria-hidden': 'true'});
+    this.readout = make('p', {'class': 'readout', 'aria-hidden': 'true'});
     this.picture.append(this.cross, this.spot, this.empty);
     tools.prepend(this.readout);
     section.querySelector('h2').after(tools, this.picture, this.choice());
@@ -59,8 +63,7 @@ class Panel {
     const select = make('select', {}, ...options);
     select.addEventListener('change', () => {
       this.item.choice = select.value;
-      this.report.remember();
-      this.draw();
+      this.changed();
     });
     this.select = select;
     return make('label', {class: 'choice'}, 'Horizontal axis', select);
@@ -74,8 +77,7 @@ class Panel {
     return columnsOf(report.samples, item.columns).map(({name, title}) => make('button', {
       'type': 'button', 'class': 'chip', 'onclick': () => {
         if (!item.hidden.delete(name) && item.hidden.size + 1 < item.columns.length) item.hidden.add(name);
-        report.remember();
-        this.draw();
+        this.changed();
       },
     }, make('span', {class: 'swatch'}), title));
   }
@@ -108,6 +110,20 @@ class Panel {
     this.point(this.report.cursor);
     this.canvas.setAttribute('aria-label', `${this.item.title}. ${alternative}. ${plural(points, 'point')}.`);
     fillTable(this.numbers, table);
+  }
+
+  // To be called when the reader changed this picture alone.
+  changed() {
+    this.draw();
+    this.report.remember();
+  }
+
+  // Whether curves are switched off, or the vertical axis is not whole.
+  get isChanged() { return this.item.hidden?.size > 0 || this.item.vertical !== undefined; }
+
+  reset() {
+    this.item.hidden?.clear();
+    this.item.vertical = undefined;
   }
 
   // The columns that the readout tells.
@@ -206,8 +222,8 @@ class TimeSelector {
     this.mark = make('div', {class: 'mark', hidden: ''});
     picture.append(this.mark);
     canvas.tabIndex = 0;
-    canvas.setAttribute('aria-description', 'Plus and minus zoom, arrows move, with Shift the cursor from sample to ' +
-      'sample, Escape shows all');
+    canvas.setAttribute('aria-description', 'Plus and minus zoom, arrows to the sides move, with Shift the cursor from ' +
+      'sample to sample; Shift and arrows up and down enlarge and reduce; Escape shows all');
     picture.addEventListener('pointerdown', (event) => this.begin(event));
     picture.addEventListener('pointermove', (event) => this.move(event));
     picture.addEventListener('pointerup', () => this.end());
@@ -263,12 +279,17 @@ class TimeSelector {
     const [begin, end] = this.samples.view;
     if (isVertical) {
       const [low, high] = [from.y, to.y].map(this.panel.drawn.up).sort((a, b) => a - b);
-      this.panel.item.vertical = {from: low, to: high, beyond: 0};
-      this.report.remember();
-      this.panel.draw();
+      this.enlarge(low, high);
     } else if (Math.abs(to.position - from.position) > 0.004 * (end - begin)) {
       this.report.choose([from.position, to.position].sort((a, b) => a - b), this.samples.names);
     }
+  }
+
+  // Shows the vertical axis between two values.
+  enlarge(from, to) {
+    if (!isRange([from, to])) return;
+    this.panel.item.vertical = {from, to, beyond: 0};
+    this.panel.changed();
   }
 
   leave() {
@@ -277,39 +298,48 @@ class TimeSelector {
     this.report.point(undefined);
   }
 
-  all() {
-    this.panel.item.vertical = undefined;
-    this.report.clear();
-  }
+  all() { this.report.clear(); }
 
   // Shows so much of the view, with the place where it is; all of it where nothing is left out.
-  zoom(factor, position) {
+  zoom(factor, position, lasting = true) {
     const [from, to] = this.samples.view;
-    this.show(position - factor * (position - from), factor * (to - from));
+    this.show(position - factor * (position - from), factor * (to - from), lasting);
   }
 
-  show(begin, length) {
+  // No less than a few samples.
+  show(begin, wanted, lasting = true) {
     const most = this.samples.length;
+    const length = Math.max(wanted, Math.min(5 * most / this.samples.count, most));
     const start = Math.min(Math.max(begin, 0), most - length);
-    this.report.choose(length >= most ? null : [start, start + length], this.samples.names);
+    this.report.choose(length >= most ? null : [start, start + length], this.samples.names, lasting);
   }
 
-  // A turn of the wheel alone moves the page.
+  // A turn of the wheel alone moves the page. What a turn of many notches comes to is one step to be undone.
   wheel(event) {
     if (!event.ctrlKey) return;
     event.preventDefault();
-    this.zoom(event.deltaY < 0 ? 0.8 : 1.25, this.at(event).position);
+    this.zoom(event.deltaY < 0 ? 0.8 : 1.25, this.at(event).position, false);
+    clearTimeout(this.turning);
+    this.turning = setTimeout(() => this.report.remember(), 300);
   }
 
   key(event) {
     const {samples, report} = this;
     const [from, to] = samples.view, length = to - from;
+    const turn = {ArrowUp: 0.25, ArrowDown: 1}[event.key];  // of the vertical axis, to both sides of its middle
     const step = event.key === 'ArrowLeft' ? -1 : event.key === 'ArrowRight' ? 1 : 0;
     if (event.key === 'Escape') this.all();
     else if (event.key === '+') this.zoom(0.5, (from + to) / 2);
     else if (event.key === '-') this.zoom(2, (from + to) / 2);
-    else if (step && event.shiftKey) report.point(Math.min(Math.max((report.cursor ?? samples.nearest((from + to) / 2)) + step, 0), samples.count - 1));
-    else if (step) this.show(from + step * length / 4, length);
+    else if (turn && event.shiftKey) {
+      const {plot, up} = this.panel.drawn;
+      const low = up(plot.y + plot.height), high = up(plot.y), middle = (low + high) / 2;
+      this.enlarge(middle - turn * (high - low), middle + turn * (high - low));
+    } else if (step && event.shiftKey) {
+      const start = report.cursor ?? samples.nearest((from + to) / 2);
+      report.point(Math.min(Math.max(start + step, 0), samples.count - 1));
+      report.tell(`${this.panel.item.title}: ${this.panel.readout.textContent}`);
+    } else if (step) this.show(from + step * length / 4, length);
     else return;
     event.preventDefault();
   }
@@ -381,8 +411,9 @@ class SelectionBar {
     this.words.textContent = samples.isFiltered
       ? `${where}${countText(samples.selectedCount)} of ${plural(samples.count, 'sample')}`
       : `All ${plural(samples.count, 'sample')}`;
-    if (!samples.selectedCount) this.words.textContent += `: ${[...samples.names].join(' or ')} is not in this time`;
-    this.clear.hidden = !samples.isFiltered;
+    if (!samples.selectedCount && samples.names.size)
+      this.words.textContent += `: ${[...samples.names].join(' or ')} is not in this time`;
+    this.clear.hidden = !samples.isFiltered && !this.report.panels.some((panel) => panel.isChanged);
     this.undo.hidden = this.report.steps === 0;
     this.hint.hidden = samples.isFiltered || !this.report.panels.some(({item}) => item.kind === 'time');
     this.chips.forEach((chip, i) => {

@@ -28,6 +28,8 @@ class ReportPage {
     this.bar = new SelectionBar(this);
     if (this.samples.count) document.querySelector('main').before(this.bar.element);
     this.addThemeButton();
+    this.spoken = make('p', {'class': 'spoken', 'aria-live': 'polite'});
+    document.body.append(this.spoken);
     this.addGuide();
     this.recall();
     this.watch();
@@ -72,8 +74,8 @@ class ReportPage {
       this.printing = printing;
       this.draw();
     };
-    window.addEventListener('popstate', () => {
-      this.steps = Math.max(this.steps - 1, 0);
+    window.addEventListener('popstate', ({state}) => {
+      this.steps = state?.steps ?? 0;
       this.recall();
     });
     window.addEventListener('beforeprint', () => print(true));
@@ -91,17 +93,20 @@ class ReportPage {
     for (const panel of this.panels) panel.point(i);
   }
 
-  choose(range, names) {
+  // Says what only pictures show to those who hear the page.
+  tell(words) { this.spoken.textContent = words; }
+
+  choose(range, names, lasting = true) {
     this.samples.choose(range, names);
-    this.remember();
     this.draw();
+    if (lasting) this.remember();
   }
 
   // Selects the samples from t0 to t1, both in seconds since 1970 UTC.
   select(t0, t1) {
     this.samples.select(t0, t1);
-    this.remember();
     this.draw();
+    this.remember();
   }
 
   // What is shown, in the address: it can be sent to a colleague, and the button of the browser goes back.
@@ -120,8 +125,14 @@ class ReportPage {
     const words = Object.keys(view).length ? [`view=${encodeURIComponent(JSON.stringify(view))}`] : [];
     const address = `#${[...wishes.filter((wish) => !wish.startsWith('view=')), ...words].join('+')}`;
     if (address === (location.hash || '#')) return;
-    ++this.steps;
-    history.pushState(null, '', address);
+    try {
+      history.pushState({steps: this.steps + 1}, '', address);
+      if ((location.hash || '#') === address) ++this.steps;
+    } catch (error) {
+      // A browser takes so many steps in a time; what is shown is shown all the same.
+      if (error.name !== 'SecurityError') throw error;
+    }
+    if (this.samples.count) this.bar.draw();
   }
 
   // Shows what the address says; what it says of another report is passed over.
@@ -134,9 +145,9 @@ class ReportPage {
     } catch (error) {
       if (!(error instanceof SyntaxError || error instanceof URIError)) throw error;
     }
-    const isRange = (range) => Array.isArray(range) && range.length === 2 && range.every(Number.isFinite) && range[0] < range[1];
+    const range = Array.isArray(view.range) ? view.range.map((at) => Math.min(Math.max(at, 0), samples.length)) : null;
     const names = (Array.isArray(view.names) ? view.names : []).filter((name) => samples.regimes.has(name));
-    samples.choose(isRange(view.range) ? view.range.map((at) => Math.min(Math.max(at, 0), samples.length)) : null, new Set(names));
+    samples.choose(isRange(range) ? range : null, new Set(names));
     this.panels.forEach((panel, i) => {
       const {item, select} = panel;
       const {choice, hidden, vertical} = view.panels?.[i] ?? {};
@@ -160,6 +171,8 @@ class ReportPage {
     if (titles.length < 6) return;
     const list = titles.map((title) => make('li', {}, make('a', {href: '#', onclick: (event) => {
       event.preventDefault();
+      title.tabIndex = -1;
+      title.focus({preventScroll: true});
       title.scrollIntoView({block: 'start'});
     }}, title.textContent)));
     guide.prepend(make('nav', {'aria-label': 'Contents'},
@@ -167,7 +180,10 @@ class ReportPage {
     document.querySelector('main').before(guide);
   }
 
-  clear() { this.choose(null); }
+  clear() {
+    for (const panel of this.panels) panel.reset();
+    this.choose(null);
+  }
 
   get points() { return this.panels.map((panel) => panel.drawn.points); }
 

@@ -6,8 +6,8 @@
 LIBRARY is made of failing_calls.cpp: it has the n-th call of a kind fail, as where memory or the disk is full. A run then
 ends with status 0, where the call did not matter, or with 1 and one line that says what failed; each output is what was
 there before or what a run without a failure writes, and nothing unfinished is left. Without memory the standard library
-may end a run by a signal, with outputs no less whole. n is 1, 2, 3 and then grows by a
-part, until a run makes fewer calls; with --every it is each number. Exit status 1: something did not hold; what did not is
+may end a run by a signal, with outputs no less whole. n is 1, 2, 3, 7, 15 and so
+on, until a run makes fewer calls; with --every it is each number. Exit status 1: something did not hold; what did not is
 printed.
 """
 

@@ -3,6 +3,7 @@
 import json
 import os
 import subprocess
+import time
 
 
 class Browser:
@@ -65,8 +66,19 @@ class Browser:
         """A page of its own, also where only what stands behind # differs from the last."""
         self.ask("Page.navigate", url="about:blank")
         self.ask("Page.navigate", url=address)
-        while not self.value("Boolean(window.pcorReport && window.pcorReport.ready)"):
-            pass
+        self.wait("Boolean(window.pcorReport && window.pcorReport.ready)")
+
+    def wait(self, condition, seconds=60):
+        """Until a condition holds; what the page does by itself takes its time on a busy machine."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            try:
+                if self.value(condition):
+                    return
+            except RuntimeError:
+                pass  # the page is not there yet
+            time.sleep(0.02)
+        raise TimeoutError(condition)
 
     def value(self, expression):
         answer = self.ask("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)

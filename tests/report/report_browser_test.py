@@ -16,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import urllib.parse
 import xml.etree.ElementTree
 import zlib
 from pathlib import Path
@@ -272,16 +273,10 @@ class ReportUnderTheHand(unittest.TestCase):
         self.assertEqual(self.value("pcorReport.cursor"), first + 1)
         for expected in (0.25, 0.5):
             self.browser.click(*self.button("Undo"))
-            self.wait(f"Math.abs({lasts} - {expected}) < 0.01 && {before} - pcorReport.samples.view[0] > -1e-3")
+            self.browser.wait(f"Math.abs({lasts} - {expected}) < 0.01 && {before} - pcorReport.samples.view[0] > -1e-3")
         self.browser.click(*self.place(panel, 0.5))
         self.browser.key("Escape")
         self.assertEqual(self.selection["count"], self.count)
-
-    def wait(self, condition):
-        for _ in range(500):
-            if self.value(condition):
-                return
-        self.fail(condition)
 
     def test_a_drag_upwards_enlarges_one_picture_alone(self):
         panel, other = self.panels("time")
@@ -294,8 +289,22 @@ class ReportUnderTheHand(unittest.TestCase):
             self.assertAlmostEqual(found, wanted, delta=0.02 * abs(middle[0] - middle[1]))  # a pixel
         self.assertEqual(self.selection["count"], self.count)
         self.assertEqual(self.value(axis.format(other, other)), rest)
-        self.browser.click(*self.place(panel, 0.5), count=2)
-        self.assertIsNone(self.value(f"pcorReport.panels[{panel}].item.vertical ?? null"))
+        vertical = f"pcorReport.panels[{panel}].item.vertical ?? null"
+        self.browser.click(*self.button("Undo"))
+        self.browser.wait(f"({vertical}) === null")
+        self.assertTrue(self.value("pcorReport.bar.undo.hidden"))
+        self.value("history.forward()")
+        self.browser.wait(f"({vertical}) !== null")
+        self.assertFalse(self.value("pcorReport.bar.undo.hidden"))
+        self.browser.click(*self.button("Show all"))
+        self.assertIsNone(self.value(vertical))
+        height = f"(({{drawn: {{up, plot}}}}) => up(plot.y) - up(plot.y + plot.height))(pcorReport.panels[{panel}])"
+        whole = self.value(height)
+        self.browser.click(*self.place(panel, 0.5))
+        self.browser.key("ArrowUp", shift=True)
+        self.assertAlmostEqual(self.value(height), whole / 2)
+        self.browser.key("ArrowDown", shift=True)
+        self.assertAlmostEqual(self.value(height), whole)
 
     def test_the_wheel_moves_the_page_and_with_control_zooms_where_it_points(self):
         panel = self.panels("time")[0]
@@ -303,10 +312,11 @@ class ReportUnderTheHand(unittest.TestCase):
         at = "pcorReport.samples.view[0] + 0.3 * (pcorReport.samples.view[1] - pcorReport.samples.view[0])"
         under = self.value(at)
         self.browser.wheel(x, y, -120, control=True)
-        self.wait("pcorReport.samples.range !== null")
+        self.browser.wait("pcorReport.samples.range !== null")
         self.assertAlmostEqual(self.value(at), under, delta=0.005 * self.value("pcorReport.samples.length"))
+        before = self.value("scrollY")
         self.browser.wheel(x, y, 120)
-        self.wait("true")
+        self.browser.wait(f"scrollY !== {before}")
         self.assertAlmostEqual(self.value("(pcorReport.samples.view[1] - pcorReport.samples.view[0]) / pcorReport.samples.length"), 0.8, delta=0.01)
 
     def test_curves_are_switched_and_the_last_one_stays(self):
@@ -346,6 +356,9 @@ class ReportUnderTheHand(unittest.TestCase):
         self.assertFalse(self.value(f"pcorReport.panels[{panel}].empty.hidden"))
         self.assertEqual(self.value(top), before)
         self.assertEqual(self.value(f"pcorReport.panels[{plane}].drawn.place(0)"), corner)
+        self.browser.click(*self.button(regime))
+        self.value("pcorReport.select(0, 1)")  # a time before all flights: nothing changes
+        self.assertNotIn("is not in this time", self.value("document.querySelector('.selected').textContent"))
         self.browser.click(*self.button("Show all"))
         self.assertEqual(self.selection["count"], self.count)
 
@@ -358,7 +371,8 @@ class ReportUnderTheHand(unittest.TestCase):
         for bound in ("from", "to"):  # in milliseconds, in the address
             self.assertAlmostEqual(self.selection.pop(bound), seen.pop(bound), delta=1e-3)
         self.assertEqual({**self.selection, "from": 0, "to": 0}, {**seen, "from": 0, "to": 0})
-        for nonsense in ("view=%7B", "view=%E0%A4%A", "view=7", "view=null", "view=%7B%22range%22%3A%5B9%2C1%5D%2C%22panels%22%3A4%7D"):
+        between_numbers = "view=" + urllib.parse.quote('{"panels":{"%d":{"vertical":[700,700.0000000000001]}}}' % panel)
+        for nonsense in (between_numbers, "view=" + urllib.parse.quote('{"range":[9e9,9.1e9]}'), "view=%7B", "view=%E0%A4%A", "view=7", "view=null", "view=%7B%22range%22%3A%5B9%2C1%5D%2C%22panels%22%3A4%7D"):
             self.browser.open(f"{self.report.as_uri()}#{nonsense}")
             self.assertEqual(self.selection["count"], self.count, nonsense)
 

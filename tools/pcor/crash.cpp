@@ -29,22 +29,23 @@ void print(const char* text) {
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text));
 }
 
-[[noreturn]] void give_up() {
+/// @param file that is damaged; null where none is
+[[noreturn]] void give_up(const char* file) {
   remove_unfinished_files();
   print("pcor: ");
-  if (const char* const file = file_in_hand()) {
+  if (file != nullptr) {
     print(file);
     print(" is damaged: the HDF5 library could not read it; fetch it again from its source\n");
   } else {
     print(
         "a library that reads and writes files failed, as where the memory or the disk is full; make room, "
-        "or "
-        "give fewer flights at a time\n");
+        "or give fewer flights at a time\n");
   }
   _exit(work_not_done);
 }
 
-/// Whether one of the libraries that read files is in the middle of something.
+/// Whether one of the libraries that read files is in the middle of something: of those that are shared, as
+/// only these can be told by name.
 bool is_in_library() {
   constexpr int most_frames = 64;
   void* frames[most_frames];
@@ -59,20 +60,20 @@ bool is_in_library() {
 }
 
 extern "C" void explain(int signal) {
-  if (is_in_library()) give_up();
-  remove_unfinished_files();
+  remove_unfinished_files();  // before a look at a stack that may be damaged, too
+  if (is_in_library()) give_up(file_in_hand());
   for (std::size_t i = 0; i < crashes.size(); ++i)
     if (crashes[i] == signal) sigaction(signal, &earlier[i], nullptr);
   std::raise(signal);
 }
 
 extern "C" void watch(int /*signal*/) {
-  if (file_in_hand() != nullptr && seconds_in_hand() >= most_seconds) give_up();
+  if (file_in_hand() != nullptr && seconds_in_hand() >= most_seconds) give_up(file_in_hand());
 }
 
 /// Libraries end a program where they get no memory.
 extern "C" void explain_exit() {
-  if (is_running != 0) give_up();
+  if (is_running != 0) give_up(nullptr);
 }
 
 void handle(int signal, void (*handler)(int), int flags, struct sigaction* before) {

@@ -260,7 +260,7 @@ void judge_held_out(Diagnosis& diagnosis);
 /// what it would add explain residuals that the model's own free coefficients cannot? Columns are derivatives
 /// through the whole chain where the model says that the air is; the noise is an autoregression with a level
 /// of its own every five minutes and a slow drift; the threshold is that of the best of all candidates on
-/// flights without any effect.
+/// flights without any effect. The noise of several flights is found on all processors.
 ///
 /// @throws Error if a flight cannot be read, a variable of the model is absent, or too few samples are left.
 Diagnosis diagnose(const std::vector<std::filesystem::path>& flights, const ModelFile& model,

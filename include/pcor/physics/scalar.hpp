@@ -87,7 +87,7 @@ S power(const S& base, double exponent) {
 namespace detail {
 
 // 2 artanh(s)/s as a polynomial in s^2, and (e^y - 1)/y as one in y, interpolated at the zeros of Chebyshev
-// polynomials: within 2e-16 up to these limits, which air below Mach 0.85 does not pass.
+// polynomials: within 2e-16 up to these limits, which air below Mach 0.847 does not pass.
 inline constexpr double greatest_square = 0.0533;
 inline constexpr std::array<double, 8> twice_artanh{
     1.9999999999999998, 0.6666666666673486, 0.39999999973182804, 0.2857143258165603,
@@ -122,7 +122,7 @@ constexpr double polynomial(double x, const std::array<double, 8>& c) {
 
 /// (1 + part/whole)^exponent - 1, for part/whole above -1.
 ///
-/// With `double` within 1e-15 of the result where that is as in flight, below Mach 0.85: two polynomials, by
+/// With `double` within 1e-15 of the result where that is as in flight, below Mach 0.847: two polynomials, by
 /// ln(1 + x) = 2 artanh(x/(2 + x)), which are there before two calls of the library are.
 template <class S>
 S power_less_one(const S& part, const S& whole, const S& exponent) {
