@@ -268,7 +268,7 @@ TEST(Refit, FitsSlopesToManoeuvresFirst) {
   EXPECT_NEAR(slope.value, truth_18.at("static-alpha.a1"), 4.0 * slope.standard_error);
   EXPECT_EQ(slope.stage, 1);
   EXPECT_EQ(found.at("static-constant.a0").stage, 2);
-  const pcor::FittedParameter& at_once = by_name(fit({shared}, model)).at("static-alpha.a1");
+  const pcor::FittedParameter at_once = by_name(fit({shared}, model)).at("static-alpha.a1");
   EXPECT_GT(std::abs(at_once.value - truth_18.at("static-alpha.a1")), 10.0 * at_once.standard_error);
 }
 
