@@ -54,8 +54,8 @@ struct HasTime<Host, std::void_t<decltype(Host::time())>> : std::true_type {};
 ///     };
 ///
 /// The leader alone asks for the time, once in a sample. A host without a public `time` of no arguments is
-/// taken to call at every sample of a rate, without a gap; where there is one it calls `reset`. examples/nimbus
-/// is such a host.
+/// taken to call at every sample of a rate, without a gap; where there is one it calls `reset`.
+/// examples/nimbus is such a host.
 ///
 /// Units are those of the library but for temperatures: whatever it has in K travels in degC, both ways.
 /// Variables of formulas travel as they are.
