@@ -47,7 +47,7 @@ class Panel {
     this.cross = make('div', {class: 'cross', hidden: ''});
     this.spot = make('div', {class: 'spot', hidden: ''});
     this.empty = make('p', {class: 'empty', hidden: ''});
-    this.readout = make('p', {'class': 'readout', 'aria-hidden': 'true'});
+    this.readout = make('p', {class: 'readout', 'aria-hidden': 'true'});
     this.picture.append(this.cross, this.spot, this.empty);
     tools.prepend(this.readout);
     section.querySelector('h2').after(tools, this.picture, this.choice());
@@ -229,7 +229,7 @@ class TimeSelector {
     picture.addEventListener('pointerup', () => this.end());
     picture.addEventListener('pointercancel', () => this.leave());
     picture.addEventListener('pointerleave', () => this.leave());
-    picture.addEventListener('dblclick', () => this.all());
+    picture.addEventListener('dblclick', () => report.clear());
     picture.addEventListener('wheel', (event) => this.wheel(event), {passive: false});
     canvas.addEventListener('keydown', (event) => this.key(event));
     canvas.addEventListener('blur', () => report.point(undefined));
@@ -298,8 +298,6 @@ class TimeSelector {
     this.report.point(undefined);
   }
 
-  all() { this.report.clear(); }
-
   // Shows so much of the view, with the place where it is; all of it where nothing is left out.
   zoom(factor, position, lasting = true) {
     const [from, to] = this.samples.view;
@@ -328,7 +326,7 @@ class TimeSelector {
     const [from, to] = samples.view, length = to - from;
     const turn = {ArrowUp: 0.25, ArrowDown: 1}[event.key];  // of the vertical axis, to both sides of its middle
     const step = event.key === 'ArrowLeft' ? -1 : event.key === 'ArrowRight' ? 1 : 0;
-    if (event.key === 'Escape') this.all();
+    if (event.key === 'Escape') report.clear();
     else if (event.key === '+') this.zoom(0.5, (from + to) / 2);
     else if (event.key === '-') this.zoom(2, (from + to) / 2);
     else if (turn && event.shiftKey) {

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Runs of pcor in which one call of the system fails, each call in turn.
 
-    failing_calls.py TOOL LIBRARY SOURCE_DIRECTORY [--every] [--kind KIND]
+    failing_calls.py TOOL SHIM SOURCE_DIRECTORY [--every] [--kind KIND]
 
-LIBRARY is made of failing_calls.cpp: it has the n-th call of a kind fail, as where memory or the disk is full. A run then
+SHIM is made of failing_calls.cpp: it has the n-th call of a kind fail, as where memory or the disk is full. A run then
 ends with status 0, where the call did not matter, or with 1 and one line that says what failed; each output is what was
 there before or what a run without a failure writes, and nothing unfinished is left. Without memory the standard library
 may end a run by a signal, with outputs no less whole. n is 1, 2, 3, 7, 15 and so
@@ -47,7 +47,7 @@ class Failing:
             (self.path / name).write_bytes(EARLIER)
         self.report.unlink(missing_ok=True)
         return subprocess.run([self.given.tool, *self.words], capture_output=True, timeout=300, cwd=self.path,
-                              env={**os.environ, "LD_PRELOAD": str(self.given.library), **environment})
+                              env={**os.environ, "LD_PRELOAD": str(self.given.shim), **environment})
 
     def without(self, kind, number):
         """What is wrong where that call fails, "" if nothing; None where the run makes fewer calls."""
@@ -84,12 +84,12 @@ def numbers(every):
 def main():
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("tool", type=Path)
-    options.add_argument("library", type=Path)
+    options.add_argument("shim", type=Path)
     options.add_argument("source", type=Path)
     options.add_argument("--every", action="store_true", help="every call, which takes hours, not a sample of them")
     options.add_argument("--kind", choices=KINDS, action="append", help="calls of this kind alone")
     given = options.parse_args()
-    given.tool, given.library = given.tool.resolve(), given.library.resolve()
+    given.tool, given.shim = given.tool.resolve(), given.shim.resolve()
     data = given.source.resolve() / "data/scenarios"
     scenario, model = data / "c130-short.toml", data / "models/c130-psfd-eq18.toml"
     failures = runs = 0
