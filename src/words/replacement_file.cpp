@@ -16,6 +16,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 namespace pcor {
 
@@ -137,6 +138,44 @@ void put_in_place(const fs::path& shown, const fs::path& target, const fs::path&
   take_from_list(path.string());
 }
 
+// While one lives, no signal ends the program in this thread.
+class SignalsWait {
+ public:
+  SignalsWait() {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before_);
+  }
+  ~SignalsWait() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+  SignalsWait(const SignalsWait&) = delete;
+  SignalsWait& operator=(const SignalsWait&) = delete;
+
+ private:
+  sigset_t before_{};
+};
+
+// Keeps what was at some paths on the disk, though its names go: to give back the space of a large file takes
+// the time of many renames.
+class SpaceKept {
+ public:
+  ~SpaceKept() {
+    for (const int file : files_) ::close(file);
+  }
+
+  SpaceKept() = default;
+  SpaceKept(const SpaceKept&) = delete;
+  SpaceKept& operator=(const SpaceKept&) = delete;
+
+  void keep(const fs::path& path) {
+    const int file = ::open(path.c_str(), O_PATH | O_CLOEXEC);
+    if (file >= 0) files_.push_back(file);
+  }
+
+ private:
+  std::vector<int> files_;
+};
+
 OutputsTogether* outputs_together = nullptr;
 
 }  // namespace
@@ -219,6 +258,9 @@ fs::path readable_output(const fs::path& target) {
 }
 
 void OutputsTogether::appear() {
+  SpaceKept replaced;
+  for (const Waiting& file : waiting_) replaced.keep(file.target);
+  const SignalsWait signals_wait;
   while (!waiting_.empty()) {
     const Waiting& file = waiting_.front();
     put_in_place(file.shown, file.target, file.path);

@@ -2,7 +2,8 @@
 ///
 ///     LD_PRELOAD=libfailing_calls.so FAILING_CALL=write FAILING_NUMBER=3 FAILING_REPORT=report PROGRAM ...
 ///
-/// The third call of that kind since `main` began fails as it would on a full disk; the kinds stand below.
+/// The third call of that kind since `main` began fails as it would on a full disk; the kinds stand below. Of
+/// the kind "stop" none fails: the program gets SIGTERM just before its third rename.
 /// All other calls are done. What failed is written into the report, which is not there where the program
 /// made fewer calls.
 #include <dlfcn.h>
@@ -13,6 +14,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdarg>
 #include <cstddef>
 #include <cstdio>
@@ -44,6 +46,7 @@ constexpr Kind writing{"write", ENOSPC};
 constexpr Kind syncing{"sync", EIO};
 constexpr Kind renaming{"rename", EACCES};
 constexpr Kind closing{"close", EIO};
+constexpr Kind stopping{"stop", 0};
 
 const char* failing_kind = nullptr;  // none before main begins
 std::atomic<long> calls_left{0};
@@ -141,6 +144,7 @@ int fflush(std::FILE* file) { return fails(writing, "fflush") ? EOF : real(fflus
 
 int fsync(int file) { return fails(syncing, "fsync") ? -1 : real(fsync, "fsync")(file); }
 int rename(const char* from, const char* to) noexcept {
+  if (fails(stopping, to)) ::kill(::getpid(), SIGTERM);
   return fails(renaming, to) ? -1 : real(rename, "rename")(from, to);
 }
 

@@ -6,9 +6,9 @@
 SHIM is made of failing_calls.cpp: it has the n-th call of a kind fail, as where memory or the disk is full. A run then
 ends with status 0, where the call did not matter, or with 1 and one line that says what failed; each output is what was
 there before or what a run without a failure writes, and nothing unfinished is left. Without memory the standard library
-may end a run by a signal, with outputs no less whole. n is 1, 2, 3, 7, 15 and so
-on, until a run makes fewer calls; with --every it is each number. Exit status 1: something did not hold; what did not is
-printed.
+may end a run by a signal, with outputs no less whole. A run that is stopped just before its n-th output appears leaves all
+outputs new or all as they were. n is 1, 2, 3, 7, 15 and so on, until a run makes fewer calls; with --every it is each
+number. Exit status 1: something did not hold; what did not is printed.
 """
 
 import argparse
@@ -20,7 +20,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-KINDS = ("memory", "open", "read", "write", "sync", "rename", "close")
+KINDS = ("memory", "open", "read", "write", "sync", "rename", "close", "stop")
 EARLIER = b"an earlier output"
 # What a message names: a file, a stream, what is exhausted, or the data of a library. A library that fails may say
 # something of its own before.
@@ -58,7 +58,8 @@ class Failing:
         self.report.unlink()
         wrong = []
         stopped_by_library = kind == "memory" and done.returncode in (-signal.SIGABRT, -signal.SIGSEGV)
-        if done.returncode not in (0, 1) and not stopped_by_library:
+        stopped = kind == "stop" and done.returncode == -signal.SIGTERM
+        if done.returncode not in (0, 1) and not stopped_by_library and not stopped:
             wrong.append(f"exit status {done.returncode}")
         if done.returncode == 1 and (message.count("pcor: ") != 1 or not NAMED.search(message)):
             wrong.append(f"it says {message!r}")
@@ -68,6 +69,8 @@ class Failing:
             wanted = (good,) if done.returncode == 0 else (EARLIER, good)
             if not (self.path / name).exists() or (self.path / name).read_bytes() not in wanted:
                 wrong.append(f"{name} is another")
+        if stopped and len({(self.path / name).read_bytes() == EARLIER for name in self.outputs}) == 2:
+            wrong.append("some outputs are new and some are not")
         left = {path.name for path in self.path.iterdir()} - set(self.outputs)
         if left:
             wrong.append(f"it leaves {', '.join(sorted(left))}")

@@ -32,8 +32,9 @@ class ReplacementFile {
 };
 
 /// While one lives, files that are committed wait beside their targets, whole and on the disk. They appear
-/// together, one right after the other; none does if it goes before. There is one at a time, and it is for
-/// the files of one thread.
+/// together: one right after the other, while signals wait; none does if it goes before. So only a SIGKILL or
+/// a failure of the machine within the microseconds between can part them. There is one at a time, and it is
+/// for the files of one thread.
 class OutputsTogether {
  public:
   OutputsTogether();
