@@ -174,11 +174,10 @@ class NimbusSystem {
     std::size_t samples = 0;
   };
 
-  // The run of which a result was last put, and by which entry first.
+  // The run of which a result was last put, and by which entry first; by none once that entry came again.
   struct Turn {
     std::size_t run = 0;
     const Entry* first = nullptr;
-    bool is_over = false;
   };
 
   static constexpr std::size_t never = std::numeric_limits<std::size_t>::max();
@@ -202,14 +201,13 @@ class NimbusSystem {
   // True where the entry comes after a run of the leader that it has not put yet. Entries of one result are
   // judged together: once the first of them comes again, the host is at another sample.
   static bool has_turn(Turn& turn, const Entry* entry) {
-    if (run_ == 0) turn.run = never;
-    if (turn.run == never) return false;
-    if (turn.run != run_) {
+    if (turn.run < run_) {
       turn = {run_, entry};
       return true;
     }
-    turn.is_over = turn.is_over || turn.first == entry;
-    return !turn.is_over;
+    if (run_ == 0) turn = {never, nullptr};
+    if (turn.first == entry) turn.first = nullptr;
+    return turn.first != nullptr;
   }
 
   static inline std::vector<Input> inputs_;
