@@ -48,9 +48,6 @@ endforeach()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
         DESTINATION ${CMAKE_INSTALL_DOCDIR})
-if(TARGET pcor_tool)
-  install(PROGRAMS ${PROJECT_SOURCE_DIR}/tools/report_pictures DESTINATION ${CMAKE_INSTALL_DATADIR}/pcor/tools)
-endif()
 
 # For programs that are not built by CMake.
 set(pcor_pkg_config pcor-realtime)

@@ -46,10 +46,16 @@ class Shows {
  public:
   explicit Shows(const std::vector<ReportColumn>& columns) : columns_(columns) {}
 
-  bool operator()(const TimePanel& panel) const {
+  // Of what has columns, one is enough.
+  template <class Panel>
+  bool operator()(const Panel& panel) const {
     return std::any_of(panel.columns.begin(), panel.columns.end(),
                        [this](const std::string& name) { return meet({name}); });
   }
+  bool operator()(const TrackPanel& panel) const {
+    return meet({panel.latitude, panel.longitude, panel.colour});
+  }
+  bool operator()(const DotPanel& panel) const { return !panel.rows.empty(); }
   bool operator()(const BinnedPanel& panel) const {
     return std::all_of(panel.x_choices.begin(), panel.x_choices.end(), [&](const std::string& x) {
       return std::any_of(panel.y.begin(), panel.y.end(), [&](const std::string& y) { return meet({x, y}); });
@@ -57,10 +63,6 @@ class Shows {
   }
   bool operator()(const PlanePanel& panel) const { return meet({panel.x, panel.y, panel.colour}); }
   bool operator()(const PairPanel& panel) const { return meet({panel.x, panel.y}); }
-  bool operator()(const RegimeTable& table) const {
-    return std::any_of(table.columns.begin(), table.columns.end(),
-                       [this](const std::string& name) { return meet({name}); });
-  }
   bool operator()(const CurvePanel& panel) const { return !panel.curves.empty(); }
   bool operator()(const BarPanel& panel) const {
     return std::any_of(panel.bars.begin(), panel.bars.end(),
@@ -94,6 +96,32 @@ ReportTable verdicts(const Checks& checks) {
          fmt::format("{:g} {}", key.matters, key.unit), typeset(sentence(result.finding))});
   }
   return table;
+}
+
+/// The number that decided each check, in units of what matters, with its verdict.
+DotPanel forest(const Checks& checks) {
+  DotPanel panel;
+  panel.title = "Checks at a glance";
+  panel.caption =
+      "The number that decides each check over the smallest that matters, with its standard error. A square "
+      "in the "
+      "band is consistent, a cross inconsistent, an open square cannot tell.";
+  panel.series = {""};
+  panel.axis = "number / what matters";
+  panel.band = "too small to matter";
+  for (const CheckResult& result : checks.results) {
+    const KeyNumber& key = result.key;
+    if (!result.ran || !(key.matters > 0.0) || !std::isfinite(key.value)) continue;
+    const double error = std::isfinite(key.standard_error) ? key.standard_error : 0.0;
+    const ReportTone tone = result.verdict == CheckVerdict::consistent     ? ReportTone::good
+                            : result.verdict == CheckVerdict::inconsistent ? ReportTone::bad
+                                                                           : ReportTone::open;
+    panel.rows.push_back({heading(result.name),
+                          {{key.value / key.matters, error / key.matters}},
+                          fmt::format("{:+.3f} ± {:.3f} {}", key.value, key.standard_error, key.unit),
+                          tone});
+  }
+  return panel;
 }
 
 ReportTable numbers_of(const CheckResult& result) {
@@ -151,6 +179,7 @@ Report check_report(const Checks& checks) {
   }
   report.facts.emplace_back("Program", "pcor " PCOR_VERSION);
   for (const std::string& note : checks.notes) report.facts.emplace_back("Note", note);
+  if (DotPanel picture = forest(checks); !picture.rows.empty()) report.items.emplace_back(std::move(picture));
   report.items.emplace_back(verdicts(checks));
   for (const CheckResult& result : checks.results) {
     if (!result.ran) continue;

@@ -297,7 +297,7 @@ CheckResult check_lams_temperature(const CheckedFlights& flights) {
 
   const std::vector<PeriodNoise> by_period = noise_by_period(all);
   ReportTable periods;
-  periods.title = "Noise of the difference by period";
+  periods.title = "Noise of the difference by period: numbers";
   periods.caption =
       "K, of means over half the period: out of cloud, in the lowest kilometre above the field, and above "
       "it.";

@@ -223,7 +223,7 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
                     {"slope_stderr", fall.error},
                     {"segments", static_cast<double>(spectrum.periodograms.size())}};
   ReportTable table;
-  table.title = "Power by period";
+  table.title = "Power by period: numbers";
   table.caption = fmt::format("Of {}, over {} segments of {} samples.", source->name,
                               spectrum.periodograms.size(), segment_length);
   table.headers = {"periods, s", "rms, hPa", "std. error"};

@@ -4,9 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <pcor/words/utc.hpp>
 #include "numerics/missing.hpp"
+#include "report/present_columns.hpp"
+#include "report/residual_pictures.hpp"
+#include "residuals/wind.hpp"
 #include "words/phrasing.hpp"
 
 namespace pcor::internal {
@@ -101,6 +105,11 @@ ComparisonPanels::ComparisonPanels(const Comparison& comparison) : comparison_(c
              [m](const F& f) -> const V& { return f.model_defects[m]; });
     if (!variables_.empty() && variables_.back() == name) defects_.push_back(name);
   }
+  const auto on_map = [&](const char* name, const char* title, const char* unit, const auto& series) {
+    add_if_present(report_, ReportColumn{name, title, unit, joined(comparison_, series)});
+  };
+  on_map("latitude", "latitude", "deg", [](const F& f) -> const V& { return f.samples->latitude; });
+  on_map("longitude", "longitude", "deg", [](const F& f) -> const V& { return f.samples->longitude; });
 }
 
 void ComparisonPanels::add_panels() {
@@ -113,11 +122,13 @@ void ComparisonPanels::add_panels() {
   time.columns = residuals_;
   time.axis = "residual";
   report_.items.emplace_back(std::move(time));
+  add_strip(report_);
   RegimeTable regimes;
   regimes.title = "By regime";
   regimes.caption = "Bias and rms of the residual in each regime of the selected samples.";
   regimes.columns = residuals_;
   report_.items.emplace_back(std::move(regimes));
+  add_regimes(report_, residuals_);
   BinnedPanel binned;
   binned.title = "Residual against a variable";
   binned.caption =
@@ -138,6 +149,18 @@ void ComparisonPanels::add_panels() {
   plane.colour = residuals_.back();
   plane.reverse_y = true;
   report_.items.emplace_back(std::move(plane));
+  add_distributions(report_, residuals_);
+  std::vector<ReportBarb> wind;
+  for (const FlightResiduals& flight : comparison_.flights) {
+    const std::vector<ReportBarb> part = wind_of(*flight.samples);
+    wind.insert(wind.end(), part.begin(), part.end());
+  }
+  add_track(
+      report_,
+      comparison_.models.size() == 1 ? "Residual on the map"
+                                     : "Residual on the map, " + comparison_.models.back().name,
+      "The track over the ground: one colour over a leg, or with a heading, tells of a place or a direction.",
+      residuals_.back(), std::move(wind));
   if (!comparison_.is_static_pressure) return;
   TimePanel defect;
   defect.title = comparison_.models.size() == 1 ? "Delta-p of the reference and of the model"

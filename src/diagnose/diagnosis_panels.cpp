@@ -10,6 +10,8 @@
 
 #include "diagnose/finding_page.hpp"
 #include "numerics/cross_spectrum.hpp"
+#include "report/residual_pictures.hpp"
+#include "residuals/wind.hpp"
 
 namespace pcor::internal::report {
 namespace {
@@ -216,6 +218,15 @@ void DiagnosisPanels::add_responses(const std::vector<std::string>& residuals, b
   }
 }
 
+std::vector<ReportBarb> DiagnosisPanels::wind() const {
+  std::vector<ReportBarb> all;
+  for (const Used& used : used_) {
+    const std::vector<ReportBarb> part = wind_of(*used.samples);
+    all.insert(all.end(), part.begin(), part.end());
+  }
+  return all;
+}
+
 void DiagnosisPanels::add_plane(std::string title, std::string caption, const std::string& colour) {
   if (meet({mach, pressure, colour}))
     add(PlanePanel{std::move(title), std::move(caption), mach, pressure, colour, true});
@@ -245,6 +256,9 @@ void DiagnosisPanels::add_variables(const Flights& flights) {
   motion("vertical_speed", "vertical speed", "m/s", &FlightMotion::vertical_speed);
   motion("true_airspeed", "true airspeed", "m/s", &FlightMotion::airspeed);
   motion("roll", "roll", "deg", &FlightMotion::roll);
+  motion("altitude", "altitude", "m", &FlightMotion::altitude);
+  add_column("latitude", "latitude", "deg", flights, [](const F& f) { return f.samples->latitude; });
+  add_column("longitude", "longitude", "deg", flights, [](const F& f) { return f.samples->longitude; });
   add_variable("time", "time since the first record", "h", flights, [](const F& f) {
     Series hours;
     for (const double time : f.samples->time) hours.push_back((time - f.samples->time.front()) / 3600.0);
@@ -338,8 +352,19 @@ void add_residual_panels(DiagnosisPanels& panels, const std::vector<std::string>
                   "Static pressure of the reference less that of the model; regimes are shaded. Drag over a "
                   "time range, or choose a regime, and every picture shows its samples alone.",
                   residuals, "residual");
+  add_strip(panels.report());
   panels.add(RegimeTable{"By regime", "Bias and rms of the residual in each regime of the selected samples.",
                          residuals});
+  add_regimes(panels.report(), residuals);
+}
+
+void add_distribution_panels(DiagnosisPanels& panels, const std::vector<std::string>& residuals) {
+  if (panels.report().time.empty()) return;
+  add_distributions(panels.report(), residuals);
+  add_track(
+      panels.report(), "What is left, on the map",
+      "The track over the ground: one colour over a leg, or with a heading, tells of a place or a direction.",
+      residuals.back(), panels.wind());
 }
 
 }  // namespace pcor::internal::report

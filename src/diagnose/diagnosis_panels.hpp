@@ -119,6 +119,9 @@ class DiagnosisPanels {
 
   void add_flight_facts();
 
+  /// Of all flights.
+  std::vector<ReportBarb> wind() const;
+
  private:
   /// A flight and the samples of it that the report shows.
   struct Used {
@@ -150,5 +153,8 @@ void add_unexplained(DiagnosisPanels& panels, const Diagnosis& diagnosis, const 
 void add_traced(DiagnosisPanels& panels, const Diagnosis& diagnosis);
 
 void add_residual_panels(DiagnosisPanels& panels, const std::vector<std::string>& residuals);
+
+/// At which periods and places the residuals are, and how they are distributed.
+void add_distribution_panels(DiagnosisPanels& panels, const std::vector<std::string>& residuals);
 
 }  // namespace pcor::internal::report

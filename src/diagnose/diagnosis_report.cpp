@@ -247,6 +247,7 @@ Report diagnosis_report(const Diagnosis& diagnosis, const ModelFile& model) {
     panels.add_plane("Residual over Mach number and pressure", "One colour over a region is a bias there.",
                      "before");
   }
+  add_distribution_panels(panels, residuals);
   panels.add_responses(residuals, reads_laser(diagnosis));
   add_unexplained(panels, diagnosis, residuals.back());
   add_tables(panels, diagnosis);

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "compare/comparison_panels.hpp"
+#include "fit/coefficient_picture.hpp"
 #include "fit/lineage.hpp"
 #include "words/phrasing.hpp"
 
@@ -93,6 +95,8 @@ Report refit_report(const RefitResult& fit, const Comparison& comparison) {
     if (!told) report.summary.push_back(sentence(note));
   }
   panels.summarise();
+  if (auto picture = coefficient_picture(fit.parameters, "before the fit", "after the fit"))
+    report.items.emplace_back(std::move(*picture));
   report.items.emplace_back(coefficient_table(fit));
   panels.add_panels();
   panels.add_pairs();

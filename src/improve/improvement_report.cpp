@@ -15,6 +15,7 @@
 
 #include "diagnose/diagnosis_panels.hpp"
 #include "diagnose/finding_page.hpp"
+#include "improve/improvement_pictures.hpp"
 
 namespace pcor {
 
@@ -23,13 +24,6 @@ using namespace internal;
 namespace {
 
 using namespace internal::report;
-
-std::string rung_name(const ImproveStep& step) { return step.added.empty() ? "refitted" : "+ " + step.added; }
-
-bool is_averaged(const Improvement& improvement) {
-  return std::any_of(improvement.steps.begin(), improvement.steps.end(),
-                     [](const ImproveStep& step) { return !step.rivals.empty(); });
-}
 
 /// The flights with one of their residuals, as the panels take it.
 Flights with_residual(const Improvement& improvement, std::vector<double> ImprovedFlight::*residual) {
@@ -73,25 +67,6 @@ void add_ladder_in_time(DiagnosisPanels& panels, const Improvement& improvement)
                            list_text(names));
   }
   panels.add_time("The ladder in time", held_out, columns, "residual");
-}
-
-BarPanel ladder_bars(const Improvement& improvement) {
-  BarPanel bars;
-  bars.title = "The ladder";
-  bars.caption =
-      improvement.holdout_is_flights
-          ? "Rms residual on what was held out, after each effect that was added."
-          : "Rms residual on stretches that took no part in the fit, five parts in turn, after each "
-            "effect that was added.";
-  bars.axis = "rms";
-  bars.unit = "hPa";
-  if (std::isfinite(improvement.given_rms_holdout))
-    bars.bars.push_back({"as it came", improvement.given_rms_holdout});
-  for (const ImproveStep& step : improvement.steps) bars.bars.push_back({rung_name(step), step.rms_holdout});
-  if (is_averaged(improvement) && std::isfinite(improvement.rms_holdout))
-    bars.bars.push_back({"averaged over rivals", improvement.rms_holdout});
-  bars.bars.push_back({"noise", improvement.steps.back().noise_rms});
-  return bars;
 }
 
 ReportTable ladder_table(const Improvement& improvement) {
@@ -212,7 +187,9 @@ Report improvement_report(const Improvement& improvement, const ModelFile& start
       rungs.push_back(std::move(name));
   }
   panels.measure_memory(top.flights, [](const FlightDiagnosis& f) -> const Series& { return f.before; });
-  panels.add(ladder_bars(improvement));
+  name_held_out(report, improvement);
+  panels.add(ladder_picture(improvement));
+  if (auto coefficients = coefficients_picture(improvement, start)) panels.add(std::move(*coefficients));
   if (!rungs.empty())
     panels.add_plane("What is left, over Mach number and pressure",
                      "Residual at the top of the ladder: one colour over a region is a bias there.",
@@ -221,7 +198,9 @@ Report improvement_report(const Improvement& improvement, const ModelFile& start
   add_ladder_in_time(panels, improvement);
   add_residual_panels(panels, rungs.size() < 2 ? rungs : std::vector{rungs.front(), rungs.back()});
   for (std::size_t i = 1; i < steps.size(); ++i) add_rung(panels, improvement, i);
-  panels.add_responses(rungs.size() < 2 ? rungs : std::vector{rungs.front(), rungs.back()}, reads_laser(top));
+  const std::vector<std::string> ends = rungs.size() < 2 ? rungs : std::vector{rungs.front(), rungs.back()};
+  add_distribution_panels(panels, ends);
+  panels.add_responses(ends, reads_laser(top));
   if (!rungs.empty()) add_unexplained(panels, top, rungs.back());
   add_tables(panels, top);
   return std::move(report);

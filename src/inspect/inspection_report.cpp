@@ -6,9 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 #include <pcor/words/utc.hpp>
 #include "report/present_columns.hpp"
+#include "report/residual_pictures.hpp"
+#include "residuals/wind.hpp"
 #include "roles/recorded_series.hpp"
 
 namespace pcor {
@@ -107,6 +110,7 @@ Report inspection_report(const std::vector<Inspection>& flights) {
     columns.add("roll", "roll", "deg", [](const Inspection& f) { return f.samples->motion.roll; });
     columns.add("latitude", "latitude", "deg", recorded("latitude"));
     columns.add("longitude", "longitude", "deg", recorded("longitude"));
+    add_strip(report);
     add_if_present(
         report,
         TimePanel{"Height",
@@ -116,9 +120,14 @@ Report inspection_report(const std::vector<Inspection>& flights) {
     add_if_present(
         report, TimePanel{"Speed", "True airspeed and speed over the ground.", {"airspeed", "ground_speed"}});
     add_if_present(report, TimePanel{"Attitude", "Pitch and roll.", {"pitch", "roll"}});
-    if (has_column(report, "latitude") && has_column(report, "longitude") && has_column(report, "altitude"))
-      report.items.emplace_back(PlanePanel{"Track", "The track over the ground, by its height.", "longitude",
-                                           "latitude", "altitude", false, false});
+    std::vector<ReportBarb> wind;
+    for (const Inspection& flight : flights) {
+      if (!flight.samples) continue;
+      const std::vector<ReportBarb> part = wind_of(*flight.samples);
+      wind.insert(wind.end(), part.begin(), part.end());
+    }
+    add_track(report, "Track", "The track over the ground, by its height.", "altitude", std::move(wind),
+              false);
   }
   for (const Inspection& flight : flights) {
     if (!flight.roles.empty()) report.items.emplace_back(roles_of(flight));

@@ -131,6 +131,8 @@ function timeTicks(samples, [from, to], about) {
 
 const fontSize = 11.5;
 
+const smallSize = 10.7;  // 8 points in print, and no letters are smaller
+
 const margin = 68;  // at the left, for the numbers and what the axis says
 
 const small = (theme, align = 'start') => ({fill: theme.quiet, size: fontSize, align});
@@ -212,5 +214,5 @@ function legend(pen, entries, left, right, theme) {
 function tellBeyond(pen, box, beyond, theme) {
   if (beyond > 0)
     pen.text(box.x + box.width - 4, box.y + box.height - 6, `${countText(beyond)} beyond the axis`,
-      {...small(theme, 'end'), size: 10.5});
+      {...small(theme, 'end'), size: smallSize});
 }

@@ -56,8 +56,8 @@ function shadeIntervals(pen, box, x, samples, theme) {
       pen.rect(at, box.y, Math.min(mark, right - at), 4, colour, chosen ? 0.8 : 0.2);
     const covered = samples.intervals.some((other) =>
       other.end - other.begin < end - begin && other.begin <= (begin + end) / 2 && other.end >= (begin + end) / 2);
-    if (!covered && textWidth(name, 10) < right - left - 6)
-      pen.text((left + right) / 2, box.y + 15, name, {fill: theme.quiet, size: 10, align: 'middle'});
+    if (!covered && textWidth(name, smallSize) < right - left - 6)
+      pen.text((left + right) / 2, box.y + 15, name, {fill: theme.quiet, size: smallSize, align: 'middle'});
   }
 }
 
@@ -390,5 +390,11 @@ function drawCurves(pen, width, height, item, samples, theme) {
     },
   };
 }
+
+// Every bar has a row of its own, as long as the picture can hold them.
+const heightOfBars = ({bars}) => 70 + 30 * Math.min(Math.max(bars.length, 2), 40);
+
+// How high the pictures are that have a height of their own.
+const heights = {bars: heightOfBars};
 
 const pictures = {time: drawTime, binned: drawBinned, plane: drawPlane, pair: drawPair, bars: drawBars, curves: drawCurves};

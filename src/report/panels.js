@@ -17,7 +17,7 @@ const isRange = (range) => Array.isArray(range) && range.length === 2 && range.e
 const isNumber = (words) => /^[−–\d]/.test(words);
 
 function fillTable(table, {headers, rows}) {
-  const head = make('tr', {}, ...headers.map((words, i) =>
+  const head = make('tr', {}, ...headers.map((words, i) => words === '' ? make('td') :
     make('th', {scope: 'col', class: i && rows.some((row) => isNumber(row[i])) ? 'number' : null}, words)));
   const body = rows.map((row) => make('tr', {}, ...row.map((words, i) =>
     i ? make('td', {class: isNumber(words) ? 'number' : null}, words) : make('th', {scope: 'row'}, words))));
@@ -27,13 +27,25 @@ function fillTable(table, {headers, rows}) {
 // What pictures are saved for: how wide they are drawn, in the 96 dots of an inch that letters of 11.5 are 8.6
 // points in, and how wide they are shown.
 const uses = {
-  'a page, 180 mm': {drawn: 680, shown: 680},
-  'a column, 86 mm': {drawn: 325, shown: 325},
-  'a slide, 1280 wide': {drawn: 680, shown: 1280},
+  page: {words: 'a page, 180 mm', drawn: 680, shown: 680},
+  column: {words: 'a column, 86 mm', drawn: 325, shown: 325},
+  slide: {words: 'a slide, 1280 wide', drawn: 680, shown: 1280},
 };
 
-// Every bar has a row of its own, as long as the picture can hold them.
-const heightOfBars = ({bars}) => 70 + 30 * Math.min(Math.max(bars.length, 2), 40);
+const overTime = ({kind}) => kind === 'time' || kind === 'strip';
+
+const titleSize = 13;
+
+// A title in lines that fit, and how high they are together.
+function titleLines(title, width) {
+  const lines = [''];
+  for (const word of title.split(' ')) {
+    const longer = `${lines.at(-1)} ${word}`.trim();
+    if (lines.at(-1) && textWidth(longer, titleSize, 600) > width) lines.push(word);
+    else lines[lines.length - 1] = longer;
+  }
+  return {lines, height: 17 * lines.length + 7};
+}
 
 class Panel {
   constructor(item, section, report) {
@@ -52,8 +64,9 @@ class Panel {
     tools.prepend(this.readout);
     section.querySelector('h2').after(tools, this.picture, this.choice());
     this.switches = this.makeSwitches();
+    if (item.wind?.length) this.addBarbs(tools);
     if (this.switches.length) this.picture.before(make('div', {class: 'chips', role: 'group', 'aria-label': 'Curves'}, ...this.switches));
-    section.append(make('details', {}, make('summary', {}, 'Numbers'), make('div', {class: 'scroll'}, this.numbers)));
+    section.append(make('details', {}, make('summary', {}, 'Numbers'), make('div', {'class': 'scroll', 'tabindex': '0', 'role': 'group', 'aria-label': `Numbers of ${item.title}`}, this.numbers)));
   }
 
   choice() {
@@ -72,7 +85,7 @@ class Panel {
   // Buttons that switch curves off and on, where there are several; one curve always stays.
   makeSwitches() {
     const {item, report} = this;
-    if (!['time', 'binned'].includes(item.kind) || item.columns.length < 2) return [];
+    if (!['time', 'binned', 'quantiles'].includes(item.kind) || item.columns.length < 2) return [];
     item.hidden = new Set();
     return columnsOf(report.samples, item.columns).map(({name, title}) => make('button', {
       'type': 'button', 'class': 'chip', 'onclick': () => {
@@ -82,8 +95,18 @@ class Panel {
     }, make('span', {class: 'swatch'}), title));
   }
 
+  addBarbs(tools) {
+    const button = make('button', {type: 'button', 'aria-pressed': 'false', onclick: () => {
+      this.item.barbs = !this.item.barbs;
+      button.setAttribute('aria-pressed', String(this.item.barbs));
+      this.draw();
+    }}, 'Wind barbs');
+    tools.prepend(button);
+  }
+
   get height() {
-    if (this.item.kind === 'bars') return heightOfBars(this.item);
+    const own = heights[this.item.kind];
+    if (own) return own(this.item, this.report.samples);
     const {screen, print} = this.item.kind === 'time' ? {screen: 280, print: 200} : {screen: 380, print: 300};
     return this.report.printing ? print : screen;
   }
@@ -128,10 +151,10 @@ class Panel {
 
   // The columns that the readout tells.
   get told() {
-    const {kind, columns, choice, choices, x, y, colour} = this.item;
-    if (kind === 'time') return columns;
+    const {kind, columns, choice, choices, x, y, latitude, longitude, colour} = this.item;
+    if (kind === 'time' || kind === 'strip') return columns;
     if (kind === 'binned') return [choice ?? choices[0], ...columns];
-    return [x, y, colour].filter((name) => name);
+    return [x, y, latitude, longitude, colour].filter((name) => name);
   }
 
   // Shows where the sample `i` is in this picture, and its values; undefined for none.
@@ -144,8 +167,8 @@ class Panel {
     const at = shown ? place(i) : {};
     const across = at.x >= plot.x && at.x <= plot.x + plot.width;
     const inside = across && at.y >= plot.y && at.y <= plot.y + plot.height;
-    this.cross.hidden = !(across && this.item.kind === 'time');
-    this.spot.hidden = !inside;
+    this.cross.hidden = !(across && overTime(this.item));
+    this.spot.hidden = !inside || this.item.kind === 'strip';
     Object.assign(this.cross.style, {left: `${at.x}px`, top: `${plot.y}px`, height: `${plot.height}px`});
     Object.assign(this.spot.style, {left: `${at.x}px`, top: `${at.y}px`});
   }
@@ -167,25 +190,45 @@ class Panel {
   get exportSize() {
     const {drawn, shown} = uses[this.report.use];
     const half = this.item.kind === 'time' ? 0.4 : 0.6;
-    const height = this.item.kind === 'bars' ? heightOfBars(this.item) : Math.max(Math.round(half * drawn), 240);
+    const own = heights[this.item.kind];
+    const height = own ? own(this.item, this.report.samples) : Math.max(Math.round(half * drawn), 240);
     return {width: drawn, height, shown};
   }
 
-  // The picture on white, for a paper.
+  // The picture on white, below its title.
+  drawForPaper(pen, width, height, title) {
+    cover(pen, width, height + title.height, palettes.light);
+    title.lines.forEach((words, i) =>
+      pen.text(8, 17 + 17 * i, words, {fill: palettes.light.ink, size: titleSize, weight: 600}));
+    pen.below(title.height, () =>
+      pictures[this.item.kind](pen, width, height, this.item, this.report.samples, palettes.light));
+  }
+
   svg() {
-    const {width, height, shown} = this.exportSize;
-    const pen = new SvgPen(width, height, this.item.title, shown);
-    pictures[this.item.kind](pen, width, height, this.item, this.report.samples, palettes.light);
+    const {width, height, shown} = this.exportSize, title = titleLines(this.item.title, width - 16);
+    const pen = new SvgPen(width, height + title.height, this.item.title, shown, this.description);
+    this.drawForPaper(pen, width, height, title);
     return pen.svg;
   }
 
   png() {
-    const {width, height, shown} = this.exportSize, dotsPerPixel = 3 * Math.max(1, shown / width / 1.5);
-    const canvas = make('canvas', {width: Math.round(width * dotsPerPixel), height: Math.round(height * dotsPerPixel)});
+    const {width, height, shown} = this.exportSize, title = titleLines(this.item.title, width - 16);
+    const dotsPerPixel = 3 * Math.max(1, shown / width / 1.5);
+    const canvas = make('canvas', {width: Math.round(width * dotsPerPixel),
+      height: Math.round((height + title.height) * dotsPerPixel)});
     const context = canvas.getContext('2d');
     context.scale(dotsPerPixel, dotsPerPixel);
-    pictures[this.item.kind](new CanvasPen(context), width, height, this.item, this.report.samples, palettes.light);
+    this.drawForPaper(new CanvasPen(context), width, height, title);
     return canvas.toDataURL('image/png');
+  }
+
+  get caption() { return this.section.querySelector('.caption')?.textContent ?? ''; }
+
+  // What the picture shows and how it came to be, for those who do not see it or find it alone.
+  get description() {
+    const origin = [...document.querySelectorAll('footer div')].map((fact) =>
+      `${fact.querySelector('dt').textContent}: ${fact.querySelector('dd').textContent}.`);
+    return [this.caption, `${this.drawn.alternative}.`, ...origin].filter((words) => words).join(' ');
   }
 
   get fileName() {
@@ -250,12 +293,13 @@ class TimeSelector {
   begin(event) {
     if (event.button !== 0) return;
     this.from = this.to = this.at(event);
-    this.panel.picture.setPointerCapture(event.pointerId);
+    if (event.isTrusted) this.panel.picture.setPointerCapture(event.pointerId);  // else there is no pointer
   }
 
   // Whether the reader drags up or down rather than along.
   get isVertical() {
-    return Math.abs(this.to.y - this.from.y) > Math.max(2 * Math.abs(this.to.x - this.from.x), 12);
+    return this.panel.drawn.up &&
+      Math.abs(this.to.y - this.from.y) > Math.max(2 * Math.abs(this.to.x - this.from.x), 12);
   }
 
   move(event) {
@@ -329,7 +373,7 @@ class TimeSelector {
     if (event.key === 'Escape') report.clear();
     else if (event.key === '+') this.zoom(0.5, (from + to) / 2);
     else if (event.key === '-') this.zoom(2, (from + to) / 2);
-    else if (turn && event.shiftKey) {
+    else if (turn && event.shiftKey && this.panel.drawn.up) {
       const {plot, up} = this.panel.drawn;
       const low = up(plot.y + plot.height), high = up(plot.y), middle = (low + high) / 2;
       this.enlarge(middle - turn * (high - low), middle + turn * (high - low));
@@ -348,7 +392,7 @@ class Regimes {
   constructor(item, section, report) {
     Object.assign(this, {item, report});
     this.table = make('table', {class: 'regime-table'});
-    const scroll = {class: 'scroll', tabindex: '0', role: 'region', 'aria-label': item.title};
+    const scroll = {class: 'scroll', tabindex: '0', role: 'group', 'aria-label': item.title};
     section.querySelector('h2').after(make('div', scroll, this.table));
   }
 

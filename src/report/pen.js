@@ -5,6 +5,7 @@
 //   dots(xy, size, fill, opacity)          squares around x, y, x, y, ...; one per pixel is enough
 //   text(x, y, words, {fill, size, align: start | middle | end, weight, turn: degrees})
 //   clip(box, draw)                        draws inside the box {x, y, width, height} only
+//   below(height, draw)                    draws so much further down
 
 const fontFamily = 'system-ui, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
 
@@ -84,6 +85,13 @@ class CanvasPen {
     draw();
     context.restore();
   }
+
+  below(height, draw) {
+    this.context.save();
+    this.context.translate(0, height);
+    draw();
+    this.context.restore();
+  }
 }
 
 function escapeXml(words) {
@@ -95,9 +103,10 @@ const short = (number) => String(Math.round(number * 100) / 100);
 
 class SvgPen {
   // Drawn in units of `width` x `height`, and shown `shown` pixels wide.
-  constructor(width, height, title, shown = width) {
+  constructor(width, height, title, shown = width, description = '') {
     this.head = `<svg xmlns="http://www.w3.org/2000/svg" width="${shown}" height="${short(height * shown / width)}" ` +
-        `viewBox="0 0 ${width} ${height}" font-family="${escapeXml(fontFamily)}">\n<title>${escapeXml(title)}</title>\n`;
+        `viewBox="0 0 ${width} ${height}" font-family="${escapeXml(fontFamily)}" role="img">\n` +
+        `<title>${escapeXml(title)}</title>\n<desc>${escapeXml(description)}</desc>\n`;
     this.parts = [];
     this.clips = 0;
   }
@@ -137,6 +146,12 @@ class SvgPen {
     const id = `inside-${++this.clips}`;
     this.parts.push(`<clipPath id="${id}"><rect x="${short(x)}" y="${short(y)}" width="${short(width)}" ` +
         `height="${short(height)}"/></clipPath>`, `<g clip-path="url(#${id})">`);
+    draw();
+    this.parts.push('</g>');
+  }
+
+  below(height, draw) {
+    this.parts.push(`<g transform="translate(0 ${short(height)})">`);
     draw();
     this.parts.push('</g>');
   }

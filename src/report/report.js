@@ -1,7 +1,9 @@
 // Starts the page. `window.pcorReport` is the report for other scripts and for the tests.
 //
 // Words after # in the address: "light" and "dark" choose the colours, "selftest" has the page test itself,
-// "export" leaves only the pictures, for tools/report_pictures.
+// "export" leaves only the pictures, for figures.cpp, and "for=slide" says what they are for (see `uses`).
+
+const wishes = location.hash.slice(1).split('+');
 
 class ReportPage {
   constructor(data) {
@@ -10,7 +12,8 @@ class ReportPage {
     window.addEventListener('error', ({message}) => this.errors.push(message));
     window.addEventListener('unhandledrejection', ({reason}) => this.errors.push(String(reason)));
     this.printing = false;
-    this.use = Object.keys(uses)[0];  // of pictures that are saved
+    // Of pictures that are saved.
+    this.use = Object.keys(uses).find((use) => wishes.includes(`for=${use}`)) ?? 'page';
     this.steps = 0;  // that can be undone
     this.darkMedia = window.matchMedia('(prefers-color-scheme: dark)');
     this.samples = new Samples(data);
@@ -22,8 +25,8 @@ class ReportPage {
       else if (pictures[item.kind]) this.panels.push(new Panel(item, section, this));
     });
     for (const panel of this.panels) {
-      if (panel.item.kind === 'time') new TimeSelector(panel, this);
-      else if (['binned', 'plane', 'pair'].includes(panel.item.kind)) new Pointing(panel, this);
+      if (overTime(panel.item)) new TimeSelector(panel, this);
+      else if (['binned', 'plane', 'pair', 'track'].includes(panel.item.kind)) new Pointing(panel, this);
     }
     this.bar = new SelectionBar(this);
     if (this.samples.count) document.querySelector('main').before(this.bar.element);
@@ -164,8 +167,9 @@ class ReportPage {
   // The titles of a long page, to go to; and what pictures are saved for.
   addGuide() {
     const select = make('select', {onchange: () => { this.use = select.value; }},
-      ...Object.keys(uses).map((words) => make('option', {}, words)));
-    const guide = make('div', {class: 'guide'}, make('label', {class: 'use'}, 'Pictures are saved for ', select));
+      ...Object.entries(uses).map(([value, {words}]) => make('option', {value}, words)));
+    select.value = this.use;
+    const guide = make('section', {'class': 'guide', 'aria-label': 'The pictures'}, make('label', {class: 'use'}, 'Pictures are saved for ', select));
     if (this.panels.length) document.querySelector('main').before(guide);
     const titles = [...document.querySelectorAll('.item > h2')];
     if (titles.length < 6) return;
@@ -196,18 +200,19 @@ class ReportPage {
   // The picture of a panel, counted from 0, as the text of an SVG file.
   svg(panel) { return this.panels[panel].svg(); }
 
-  // Every picture as a line "NAME BASE64".
+  // Every picture, and what each shows, as lines "NAME BASE64".
   exportText() {
     const letters = (bytes) => bytes.reduce((text, byte) => text + String.fromCharCode(byte), '');
     const base64 = (text) => btoa(letters(new TextEncoder().encode(text)));
-    return this.panels.flatMap((panel) => [
+    const pictures = this.panels.flatMap((panel) => [
       `${panel.fileName}.svg ${base64(panel.svg())}`,
       `${panel.fileName}.png ${panel.png().split(',')[1]}`,
-    ]).join('\n');
+    ]);
+    const captions = this.panels.map((panel) => `${panel.fileName}: ${panel.item.title}. ${panel.description}\n`);
+    return [...pictures, `captions.txt ${base64(captions.join('\n'))}`].join('\n');
   }
 }
 
-const wishes = location.hash.slice(1).split('+');
 for (const theme of ['light', 'dark']) if (wishes.includes(theme)) document.documentElement.dataset.theme = theme;
 window.pcorReport = new ReportPage(JSON.parse(document.getElementById('data').textContent));
 const leave = (id, text) => make('pre', {id}, text);

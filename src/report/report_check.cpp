@@ -59,9 +59,12 @@ class Columns {
 struct CheckItem {
   const Columns& columns;
 
-  void operator()(const TimePanel& panel) const {
+  template <class Panel>
+  void any_of(const Panel& panel) const {
     if (!columns.any(panel.title, panel.columns)) fail_empty(panel.title);
   }
+
+  void operator()(const TimePanel& panel) const { any_of(panel); }
 
   void operator()(const BinnedPanel& panel) const {
     if (panel.bins == 0) fail("panel '" + panel.title + "' has no bins; give at least one");
@@ -109,6 +112,25 @@ struct CheckItem {
       }
     }
     if (shown == 0) fail_empty(panel.title);
+  }
+
+  void operator()(const TrackPanel& panel) const {
+    if (!columns.meet(panel.title, {panel.latitude, panel.longitude, panel.colour})) fail_empty(panel.title);
+  }
+
+  void operator()(const StripPanel& panel) const { any_of(panel); }
+  void operator()(const RegimePanel& panel) const { any_of(panel); }
+  void operator()(const QuantilePanel& panel) const { any_of(panel); }
+
+  void operator()(const DotPanel& panel) const {
+    bool shown = false;
+    for (const ReportDotRow& row : panel.rows) {
+      if (row.dots.size() != panel.series.size())
+        fail("row '" + row.label + "' of panel '" + panel.title + "' has " + std::to_string(row.dots.size()) +
+             " dots for " + std::to_string(panel.series.size()) + " series; give as many");
+      for (const ReportDot& dot : row.dots) shown = shown || std::isfinite(dot.value);
+    }
+    if (!shown) fail_empty(panel.title);
   }
 
   void operator()(const ReportTable& table) const {

@@ -86,6 +86,14 @@ json flights(const Report& report) {
   return all;
 }
 
+// To what a barb shows.
+double rounded(double speed) { return std::round(10.0 * speed) / 10.0; }
+
+const char* name_of(ReportTone tone) {
+  constexpr const char* names[] = {"", "good", "bad", "open"};
+  return names[static_cast<std::size_t>(tone)];
+}
+
 struct ItemJson {
   json operator()(const TimePanel& panel) const {
     return {{"title", panel.title}, {"columns", panel.columns}, {"axis", panel.axis}};
@@ -128,6 +136,36 @@ struct ItemJson {
     return {{"title", panel.title},  {"curves", curves},   {"xAxis", panel.x_axis}, {"axis", panel.axis},
             {"xUnit", panel.x_unit}, {"unit", panel.unit}, {"logX", panel.log_x}};
   }
+  json operator()(const TrackPanel& panel) const {
+    json wind = json::array();
+    for (const ReportBarb& barb : panel.wind)
+      wind.push_back({{"time", barb.time}, {"east", rounded(barb.east)}, {"north", rounded(barb.north)}});
+    return {{"title", panel.title},   {"latitude", panel.latitude},   {"longitude", panel.longitude},
+            {"colour", panel.colour}, {"diverging", panel.diverging}, {"wind", wind}};
+  }
+  json operator()(const StripPanel& panel) const {
+    return {{"title", panel.title}, {"columns", panel.columns}};
+  }
+  json operator()(const RegimePanel& panel) const {
+    return {{"title", panel.title}, {"columns", panel.columns}, {"axis", panel.axis}};
+  }
+  json operator()(const QuantilePanel& panel) const {
+    return {{"title", panel.title}, {"columns", panel.columns}, {"axis", panel.axis}};
+  }
+  json operator()(const DotPanel& panel) const {
+    json rows = json::array();
+    for (const ReportDotRow& row : panel.rows) {
+      json dots = json::array();
+      for (const ReportDot& dot : row.dots) dots.push_back({{"value", dot.value}, {"error", dot.error}});
+      rows.push_back({{"label", row.label}, {"dots", dots}, {"text", row.text}, {"tone", name_of(row.tone)}});
+    }
+    json lines = json::array();
+    for (const auto& [label, value] : panel.lines) lines.push_back({{"label", label}, {"value", value}});
+    json all{{"title", panel.title}, {"series", panel.series}, {"rows", rows},
+             {"lines", lines},       {"axis", panel.axis},     {"unit", panel.unit}};
+    if (!panel.band.empty()) all["band"] = {{"label", panel.band}, {"from", -1.0}, {"to", 1.0}};
+    return all;
+  }
   json operator()(const ReportTable&) const { return json::object(); }
   json operator()(const ReportText&) const { return json::object(); }
 };
@@ -135,8 +173,8 @@ struct ItemJson {
 }  // namespace
 
 const char* kind_of(const ReportItem& item) {
-  constexpr const char* kinds[] = {"time", "binned", "plane", "pair", "regimes",
-                                   "bars", "curves", "table", "text"};
+  constexpr const char* kinds[] = {"time",  "binned", "plane",    "pair",      "regimes", "bars",  "curves",
+                                   "track", "strip",  "byregime", "quantiles", "dots",    "table", "text"};
   static_assert(std::size(kinds) == std::variant_size_v<ReportItem>);
   return kinds[item.index()];
 }

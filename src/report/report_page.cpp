@@ -73,14 +73,15 @@ std::string table(const ReportTable& table) {
   };
   std::string head, body;
   for (std::size_t i = 0; i < table.headers.size(); ++i)
-    head +=
-        fmt::format(R"(<th scope="col"{}>{}</th>)", kind(table.rows.front()[i]), escaped(table.headers[i]));
+    head += table.headers[i].empty() ? "<td></td>"
+                                     : fmt::format(R"(<th scope="col"{}>{}</th>)",
+                                                   kind(table.rows.front()[i]), escaped(table.headers[i]));
   for (const auto& row : table.rows) {
     body += "<tr>";
     for (const std::string& cell : row) body += fmt::format("<td{}>{}</td>", kind(cell), escaped(cell));
     body += "</tr>\n";
   }
-  return fmt::format(R"(<div class="scroll" tabindex="0" role="region" aria-label="{}"><table>
+  return fmt::format(R"(<div class="scroll" tabindex="0" role="group" aria-label="{}"><table>
 <thead><tr>{}</tr></thead>
 <tbody>
 {}</tbody>
@@ -108,7 +109,7 @@ struct ItemBody {
 bool takes_half(const ReportItem& item) {
   return std::holds_alternative<BinnedPanel>(item) || std::holds_alternative<PlanePanel>(item) ||
          std::holds_alternative<PairPanel>(item) || std::holds_alternative<BarPanel>(item) ||
-         std::holds_alternative<CurvePanel>(item);
+         std::holds_alternative<CurvePanel>(item) || std::holds_alternative<QuantilePanel>(item);
 }
 
 // Pictures that are not over time stand in pairs; one that is left over takes the whole width.
@@ -147,7 +148,8 @@ std::string head(const Report& report) {
     for (const std::string& sentence : report.summary) html += element("li", sentence);
     html += "</ul></section>\n";
   }
-  return html + facts(report.facts);
+  if (!report.facts.empty()) html += R"(<section aria-label="Facts">)" + facts(report.facts) + "</section>\n";
+  return html;
 }
 
 std::string foot(const Report& report) {

@@ -244,6 +244,8 @@ FlightSamples read_samples(const Flight& flight, const ModelFile& model, const R
   samples.notes = notes_on_law(flight, model);
   samples.model = read_model_columns(flight, model, reference.reads_laser(), samples.time, samples.notes);
   samples.reference = reference.read(flight, samples.time, samples.notes);
+  samples.latitude = read_usual(flight, family_of(model, flight), "latitude").values;
+  samples.longitude = read_usual(flight, family_of(model, flight), "longitude").values;
   samples.motion = read_motion(flight, model, samples);
   for (std::string& note : contradicting_signs(samples, options.least_airspeed))
     samples.notes.push_back(std::move(note));

@@ -42,7 +42,7 @@ struct Unfinished {
 };
 static_assert(std::atomic<int>::is_always_lock_free);
 
-std::array<Unfinished, 16> unfinished_files;
+std::array<Unfinished, 128> unfinished_files;  // those of a report's figures appear together
 
 // One that finds no room is not listed; only a signal would leave it behind.
 void list_as_unfinished(const std::string& path) {

@@ -97,7 +97,7 @@ TEST(LamsTemperatureCheck, KeepsCloudsApart) {
 TEST(LamsTemperatureCheck, IsNoisierInTheBoundaryLayer) {
   const CheckResult result = check_lams_temperature(fly(""));
   for (const ReportTable& table : result.tables) {
-    if (table.title != "Noise of the difference by period") continue;
+    if (table.title != "Noise of the difference by period: numbers") continue;
     ASSERT_FALSE(table.rows.empty());
     EXPECT_GT(std::stod(table.rows[0][1]), 1.2 * std::stod(table.rows[0][2]));
     // Beyond the memory of the air between laser and pitot, 2 s, means over longer have less of it.

@@ -434,12 +434,13 @@ TEST(ImprovementReport, ShowsTheLadder) {
               Contains("On what was held out the rms residual goes from 0.203 to 0.120 hPa; the "
                        "noise is 0.081 hPa."));
   EXPECT_THAT(report.summary, Contains("No further effect exceeds the threshold."));
-  const auto* bars = item<BarPanel>(report, "The ladder");
-  ASSERT_NE(bars, nullptr);
-  ASSERT_EQ(bars->bars.size(), 4U);
-  EXPECT_EQ(bars->bars[1].label, "+ static-beta-odd");
-  EXPECT_EQ(bars->bars[1].value, 0.161);
-  EXPECT_EQ(bars->bars[3].label, "noise");
+  const auto* ladder = item<DotPanel>(report, "The ladder");
+  ASSERT_NE(ladder, nullptr);
+  ASSERT_EQ(ladder->rows.size(), 3U);
+  EXPECT_EQ(ladder->rows[1].label, "+ static-beta-odd");
+  EXPECT_EQ(ladder->rows[1].dots[0].value, 0.196);
+  EXPECT_EQ(ladder->rows[1].dots[1].value, 0.161);
+  EXPECT_THAT(ladder->lines, ElementsAre(testing::Pair("noise, 0.081 hPa", 0.081)));
   const auto* table = item<ReportTable>(report, "Rung by rung");
   ASSERT_NE(table, nullptr);
   EXPECT_THAT(table->rows[1], ElementsAre("+ static-beta-odd", "4", "0.196", "0.161", "0.081", "lams-azimuth",
@@ -463,12 +464,15 @@ TEST(ImprovementReport, BeginsWithTheModelAsItCameAndShowsHeldOutFlights) {
   made.flights.push_back(
       {later, true, made.flights.front().given, made.flights.front().given, made.flights.front().given});
   const Report report = improvement_report(made, model());
-  const auto* bars = item<BarPanel>(report, "The ladder");
-  ASSERT_NE(bars, nullptr);
-  EXPECT_EQ(bars->bars.front().label, "as it came");
-  EXPECT_EQ(bars->bars[4].label, "averaged over rivals");
+  const auto* ladder = item<DotPanel>(report, "The ladder");
+  ASSERT_NE(ladder, nullptr);
+  EXPECT_EQ(ladder->series.back(), "held out: later.nc");
+  EXPECT_EQ(ladder->rows.front().label, "as it came");
+  EXPECT_EQ(ladder->rows.front().dots[1].value, 0.5);
+  EXPECT_GT(ladder->rows.front().dots[1].error, 0.0);
+  EXPECT_EQ(ladder->rows[4].label, "averaged over rivals");
   EXPECT_THAT(report.summary, Contains(HasSubstr("40 % of their average is applied")));
-  EXPECT_THAT(report.flight_names, Contains("later.nc"));
+  EXPECT_THAT(report.flight_names, Contains("later.nc, held out"));
   const auto* time = item<TimePanel>(report, "The ladder in time");
   ASSERT_NE(time, nullptr);
   EXPECT_EQ(time->caption, "Held out: later.nc.");

@@ -9,15 +9,15 @@ import time
 class Browser:
     """One tab, spoken to over the pipe of the DevTools protocol."""
 
-    def __init__(self, program, profile, width=1280, height=900):
+    def __init__(self, program, profile, width=1280, height=900, words=(), environment=None):
         from_us, to_browser = os.pipe()
         from_browser, to_us = os.pipe()
 
         # The browser reads at descriptor 3 and writes at 4; a shell puts the pipes there.
         self.child = subprocess.Popen(
             ["/bin/sh", "-c", f'exec "$@" 3<&{from_us} 4>&{to_us}', "sh", program, "--headless=new", "--no-sandbox",
-             "--disable-gpu", f"--user-data-dir={profile}", f"--window-size={width},{height}", "--remote-debugging-pipe"],
-            pass_fds=(from_us, to_us), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+             "--disable-gpu", f"--user-data-dir={profile}", f"--window-size={width},{height}", *words, "--remote-debugging-pipe"],
+            env=environment, pass_fds=(from_us, to_us), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         os.close(from_us)
         os.close(to_us)
         self.out = os.fdopen(to_browser, "wb")

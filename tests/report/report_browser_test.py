@@ -11,22 +11,22 @@ import json
 import os
 import re
 import shutil
-import struct
 import subprocess
 import sys
 import tempfile
 import unittest
 import urllib.parse
 import xml.etree.ElementTree
-import zlib
 from pathlib import Path
 
 from browser import Browser
+from pictures import decode_png
 
 SAMPLE_REPORT = Path(sys.argv[1]).resolve()
 SOURCE = Path(sys.argv[2]).resolve()
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-PANELS = 7
+PANELS = 13
+SVG = "{http://www.w3.org/2000/svg}"
 
 
 def run(*command):
@@ -36,48 +36,6 @@ def run(*command):
 def chromium(profile, *words):
     return run(CHROMIUM, "--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--enable-logging=stderr",
                f"--user-data-dir={profile}", *words)
-
-
-def decode_png(path):
-    """Width, height and the rows of an 8-bit RGB or RGBA picture, each row as bytes of RGB."""
-    data = path.read_bytes()
-    assert data[:8] == b"\x89PNG\r\n\x1a\n", path
-    width, height, depth, kind = struct.unpack(">IIBB", data[16:26])
-    assert depth == 8 and kind in (2, 6), (depth, kind)
-    channels = 3 if kind == 2 else 4
-    packed, at = b"", 8
-    while at < len(data):
-        length, name = struct.unpack(">I4s", data[at:at + 8])
-        if name == b"IDAT":
-            packed += data[at + 8:at + 8 + length]
-        at += 12 + length
-    raw, stride = zlib.decompress(packed), width * channels
-    rows, above = [], bytes(stride)
-    for y in range(height):
-        begin = y * (stride + 1)
-        method, line = raw[begin], bytearray(raw[begin + 1:begin + 1 + stride])
-        unfilter(method, line, above, channels)
-        above = bytes(line)
-        rows.append(above if channels == 3 else bytes(byte for i, byte in enumerate(above) if i % 4 != 3))
-    return width, height, rows
-
-
-def unfilter(method, line, above, channels):
-    if method == 2:
-        line[:] = bytes((a + b) & 255 for a, b in zip(line, above))
-    elif method:
-        for i, byte in enumerate(line):
-            left = line[i - channels] if i >= channels else 0
-            corner = above[i - channels] if i >= channels else 0
-            up = above[i]
-            if method == 1:
-                line[i] = (byte + left) & 255
-            elif method == 3:
-                line[i] = (byte + (left + up) // 2) & 255
-            else:
-                nearest = min((abs(up - corner), 0, left), (abs(left - corner), 1, up),
-                              (abs(left + up - 2 * corner), 2, corner))
-                line[i] = (byte + nearest[2]) & 255
 
 
 def coloured(rows):
@@ -153,20 +111,60 @@ class ReportInBrowser(unittest.TestCase):
         self.browse(self.report, "dark", f"--print-to-pdf={pages}")
         self.assertGreater(pages.stat().st_size, 50_000)
 
+    def figures(self, folder, use):
+        run(SAMPLE_REPORT, "--figures", folder, use)
+        return sorted(folder.glob("*.svg")), sorted(folder.glob("*.png"))
+
     def test_pictures_for_a_paper(self):
         folder = self.folder / "pictures"
-        run(SOURCE / "tools/report_pictures", self.report, folder)
-        vectors, rasters = sorted(folder.glob("*.svg")), sorted(folder.glob("*.png"))
+        vectors, rasters = self.figures(folder, "page")
         self.assertEqual((len(vectors), len(rasters)), (PANELS, PANELS))
         self.assertEqual(vectors[0].name, "01-residual-over-the-flight.svg")
-        for vector in vectors:
+        titles = [line.split(": ", 1)[1] for line in (folder / "captions.txt").read_text().splitlines() if line]
+        self.assertEqual(len(titles), PANELS)
+        for vector, caption in zip(vectors, titles):
             svg = xml.etree.ElementTree.parse(vector).getroot()
-            self.assertEqual(svg.tag, "{http://www.w3.org/2000/svg}svg")
-            self.assertGreater(sum(1 for _ in svg.iter("{http://www.w3.org/2000/svg}text")), 3)
+            self.assertEqual(svg.tag, SVG + "svg")
+            self.assertTrue(caption.startswith(svg.find(SVG + "title").text))
+            self.assertIn(svg.find(SVG + "desc").text, caption)
+            words = list(svg.iter(SVG + "text"))
+            self.assertGreater(len(words), 4)
+            # In print 8 points at least; the width is in the 96 dots of an inch.
+            for each in words:
+                points = float(each.get("font-size")) * float(svg.get("width")) / float(svg.get("viewBox").split()[2]) * 0.75
+                self.assertGreaterEqual(points, 8, each.text)
         for raster in rasters:
             width, _, rows = decode_png(raster)
             self.assertGreaterEqual(width, 1600)
             self.assertGreater(coloured(rows), 200, raster.name)
+
+    def test_pictures_for_a_column_and_a_slide(self):
+        for use, width in (("column", 325), ("slide", 1280)):
+            vectors, _ = self.figures(self.folder / use, use)
+            for vector in vectors:
+                self.assertEqual(float(xml.etree.ElementTree.parse(vector).getroot().get("width")), width, vector.name)
+
+    def test_pictures_of_before_go_and_other_files_stay(self):
+        folder = self.folder / "again"
+        folder.mkdir()
+        (folder / "captions.txt").write_text("07-of-another-run: A title. What it shows.\n../08-outside: A title.\n")
+        for name in ("07-of-another-run.svg", "07-of-another-run.png", "09-mine.png", "notes.txt"):
+            (folder / name).write_text("")
+        (self.folder / "08-outside.svg").write_text("")
+        self.figures(folder, "page")
+        self.assertTrue((self.folder / "08-outside.svg").exists())
+        self.assertFalse(list(folder.glob("07-of-another-run.*")))
+        self.assertTrue((folder / "09-mine.png").exists() and (folder / "notes.txt").exists())
+        self.assertEqual(len(list(folder.iterdir())), 2 * PANELS + 3)
+
+    def test_without_a_browser_nothing_is_there(self):
+        folder = self.folder / "none"
+        for browser, words in (("/nowhere/chromium", "is no program"), (shutil.which("false"), "failed"), (shutil.which("true"), "no pictures")):
+            found = subprocess.run([SAMPLE_REPORT, "--figures", folder], env={**os.environ, "CHROMIUM": browser}, capture_output=True, text=True)
+            self.assertEqual(found.returncode, 1)
+            self.assertIn(words, found.stderr)
+            self.assertEqual(found.stderr.count("\n"), 1)
+            self.assertFalse(folder.exists())
 
 
 class ReportUnderTheHand(unittest.TestCase):

@@ -188,13 +188,24 @@ TEST(Report, RefusesAnEmptyPanel) {
                                       PairPanel{"Empty", "", "c0", "c1"},
                                       RegimeTable{"Empty", "", {}},
                                       BarPanel{"Empty", "", {{"bar", nan}}},
-                                      CurvePanel{"Empty", "", {{"curve", {1}, {nan}}}, "x", "y"}};
+                                      CurvePanel{"Empty", "", {{"curve", {1}, {nan}}}, "x", "y"},
+                                      TrackPanel{"Empty", "", "c0", "c0", "c1"},
+                                      StripPanel{"Empty", "", {}},
+                                      RegimePanel{"Empty", "", {}},
+                                      QuantilePanel{"Empty", "", {}},
+                                      DotPanel{"Empty", "", {"one"}, {{"row", {{nan, 1.0}}}}, "x"}};
   for (const ReportItem& item : empty) {
     report.items = {item};
     EXPECT_THAT(reason(report), HasSubstr("panel 'Empty' would be empty")) << item.index();
   }
   report.items = {ReportTable{"Empty", "", {"a"}, {}}};
   EXPECT_THAT(reason(report), HasSubstr("has no rows"));
+}
+
+TEST(Report, RefusesARowWithDotsMissing) {
+  Report report = report_of(3, 1);
+  report.items = {DotPanel{"Dots", "", {"one", "two"}, {{"a", {{1.0, 0.1}}}}, "x"}};
+  EXPECT_THAT(reason(report), HasSubstr("row 'a' of panel 'Dots' has 1 dots for 2 series"));
 }
 
 TEST(Report, RefusesATableWithCellsMissing) {

@@ -1,7 +1,9 @@
 // Writes a report with every kind of item on a flight that never was, for report_browser_test.py.
 //
 //   sample_report FILE [SAMPLES [FLIGHTS]]
+//   sample_report --figures FOLDER [page|column|slide]
 
+#include <pcor/report/figures.hpp>
 #include <pcor/report/report.hpp>
 
 #include <algorithm>
@@ -31,9 +33,11 @@ const std::vector<Leg> legs{{"climb", 17, 4200, 118},   {"level", 14, 4200, 118}
                             {"climb", 10, 6600, 112},   {"level", 20, 6600, 112}, {"manoeuvre", 8, 6600, 112},
                             {"descent", 11, 2100, 125}, {"level", 15, 2100, 125}, {"descent", 14, 300, 95}};
 
+constexpr double start = 1054468800 + 600;  // of the first flight, s since 1970
+
 struct Columns {
-  std::vector<double> altitude, pressure, mach, attack, sideslip, dynamic, old_model, refit, total_lams,
-      total_pitot;
+  std::vector<double> latitude, longitude, altitude, pressure, mach, attack, sideslip, dynamic, old_model,
+      refit, total_lams, total_pitot;
 };
 
 // One sample, `part` of the way through a leg that began at `from`.
@@ -55,6 +59,10 @@ void add_sample(Columns& columns, const Leg& from, const Leg& leg, double part, 
   static double red = 0;
   red = 0.93 * red + 0.3 * std::sqrt(1 - 0.93 * 0.93) * normal(random);
   const double structure = 4.2 * (mach - 0.42) + 0.22 * (attack - 3) + 0.035 * sideslip * sideslip;
+  // Around in an ellipse across the date line, once in three quarters of an hour.
+  const double around = 2 * pi * seconds / 2700;
+  columns.latitude.push_back(52.0 + 0.9 * std::sin(around) + seconds / 9000);
+  columns.longitude.push_back(std::remainder(179.6 + 1.6 * std::cos(around), 360.0));
   columns.altitude.push_back(altitude);
   columns.pressure.push_back(pressure);
   columns.mach.push_back(mach);
@@ -68,7 +76,9 @@ void add_sample(Columns& columns, const Leg& from, const Leg& leg, double part, 
 }
 
 std::vector<pcor::ReportColumn> titled(const Columns& columns) {
-  return {{"altitude", "Altitude", "m", columns.altitude},
+  return {{"latitude", "Latitude", "deg", columns.latitude},
+          {"longitude", "Longitude", "deg", columns.longitude},
+          {"altitude", "Altitude", "m", columns.altitude},
           {"pressure", "Static pressure", "hPa", columns.pressure},
           {"mach", "Mach number", "", columns.mach},
           {"attack", "Angle of attack", "°", columns.attack},
@@ -133,6 +143,35 @@ std::vector<pcor::ReportItem> items() {
           "s",
           "s",
           true},
+      StripPanel{"Height, pressure and regimes", "What was flown.", {"altitude", "dynamic"}},
+      RegimePanel{"Residual by regime", "Mean, and scatter about it.", {"old", "new"}, "Residual"},
+      QuantilePanel{"Quantiles", "Noise lies on the line.", {"old", "new"}, "Residual"},
+      TrackPanel{"Residual on the map",
+                 "The track over the ground.",
+                 "latitude",
+                 "longitude",
+                 "old",
+                 true,
+                 {{start + 300, 9.0, -4.0}, {start + 1800, 30.0, 2.0}, {start + 4200, 0.4, 0.3}}},
+      DotPanel{"Checks",
+               "A square in the band is consistent, a cross inconsistent, an open square cannot tell.",
+               {""},
+               {{"total pressure", {{0.3, 0.1}}, "+0.030 ± 0.010 hPa", ReportTone::good},
+                {"layers", {{-2.4, 0.4}}, "-0.72 ± 0.12 K", ReportTone::bad},
+                {"circles", {{0.9, 1.1}}, "+0.9 ± 1.1 m/s", ReportTone::open}},
+               "number / what matters",
+               "",
+               {},
+               "too small to matter"},
+      DotPanel{"The ladder",
+               "With the noise as a line.",
+               {"in the fit", "held out: rf03"},
+               {{"as it came", {{0.91, 0.02}, {0.94, 0.03}}, "0.910 and 0.940"},
+                {"refitted", {{0.52, 0.01}, {0.55, 0.02}}, "0.520 and 0.550"},
+                {"+ static-lag", {{0.27, 0.01}, {nan, 0.0}}, "0.270 and –"}},
+               "rms residual",
+               "hPa",
+               {{"noise, 0.25 hPa", 0.25}}},
       ReportTable{"Coefficients",
                   "With the standard errors of the fit; the change is in units of the error.",
                   {"Effect", "Coefficient", "Published", "Refit", "Standard error", "Change"},
@@ -164,18 +203,18 @@ pcor::Report sample_report(std::size_t samples, std::size_t flights) {
   const std::size_t each = samples / flights;
   const double step = std::max(1.0, std::floor(minutes * 60 / static_cast<double>(each)));
   for (std::size_t flight = 0; flight < flights; ++flight) {
-    const double start = 1054468800 + 600 + 86400 * 3 * static_cast<double>(flight);
+    const double begins = start + 86400 * 3 * static_cast<double>(flight);
     report.flight_starts.push_back(report.time.size());
     report.flight_names.push_back("rf0" + std::to_string(flight + 1));
     Leg from{"ground", 0, 150, 70};
-    double begin = start;
+    double begin = begins;
     std::size_t made = 0;
     for (const Leg& leg : legs) {
       const double length = leg.minutes * static_cast<double>(each) / minutes * step;
-      for (; made < each && static_cast<double>(made) * step < begin + length - start; ++made) {
+      for (; made < each && static_cast<double>(made) * step < begin + length - begins; ++made) {
         const double seconds = static_cast<double>(made) * step;
-        add_sample(columns, from, leg, (start + seconds - begin) / length, seconds, random);
-        report.time.push_back(start + seconds);
+        add_sample(columns, from, leg, (begins + seconds - begin) / length, seconds, random);
+        report.time.push_back(begins + seconds);
       }
       report.intervals.push_back({leg.regime, begin, begin + length - step});
       begin += length;
@@ -183,7 +222,7 @@ pcor::Report sample_report(std::size_t samples, std::size_t flights) {
     }
     for (; made < each; ++made) {
       add_sample(columns, from, from, 1, static_cast<double>(made), random);
-      report.time.push_back(start + static_cast<double>(made) * step);
+      report.time.push_back(begins + static_cast<double>(made) * step);
     }
   }
   for (std::size_t i = report.time.size() / 3; i < report.time.size() / 3 + 90; ++i)
@@ -210,10 +249,19 @@ pcor::Report sample_report(std::size_t samples, std::size_t flights) {
 
 int main(int count, char** words) {
   if (count < 2) {
-    std::cerr << "usage: sample_report FILE [SAMPLES [FLIGHTS]]\n";
+    std::cerr << "usage: sample_report FILE [SAMPLES [FLIGHTS]]\n       sample_report --figures FOLDER "
+                 "[page|column|slide]\n";
     return 2;
   }
   try {
+    if (words[1] == std::string("--figures")) {
+      const std::string use = count > 3 ? words[3] : "page";
+      pcor::write_figures(sample_report(7080, 1), words[2],
+                          use == "slide"    ? pcor::FigureUse::slide
+                          : use == "column" ? pcor::FigureUse::column
+                                            : pcor::FigureUse::page);
+      return 0;
+    }
     pcor::write_report(
         sample_report(count > 2 ? std::stoul(words[2]) : 7080, count > 3 ? std::stoul(words[3]) : 1),
         words[1]);

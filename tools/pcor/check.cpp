@@ -189,7 +189,7 @@ void print(const Checks& checks, const Options& options, bool has_laser) {
   }
   for (const std::string& note : checks.notes) say("\nNote: {}.\n", note);
   say("\n");
-  say_written({options.common.report, options.table, options.common.json});
+  say_written({options.common.report, options.common.figures, options.table, options.common.json});
   say("{}\n", next_step(checks, options, has_laser));
 }
 
@@ -222,8 +222,10 @@ std::vector<std::string> models_of(const Options& options) {
 void run(const Options& options) {
   std::vector<std::filesystem::path> inputs = input_files(options.flights);
   inputs.insert(inputs.end(), {options.model, second_model(options)});
-  refuse_overwriting({options.common.json, options.common.report, options.table}, inputs);
+  refuse_overwriting({options.common.json, options.common.report, options.common.figures, options.table},
+                     inputs);
   for (const std::string& output : {options.common.report, options.table}) require_writable(output);
+  require_figures(options.common);
   JsonResult json(options.common);
   std::optional<ModelFile> model;
   if (!options.model.empty())
@@ -239,9 +241,9 @@ void run(const Options& options) {
     checks = check(flight_paths(options.flights), model, check_options);
   }
   OutputsTogether together;
-  if (!options.common.report.empty())
+  if (wants_report(options.common))
     write_report_of_run(check_report(checks), {models_of(options), options.flights.flights, {}},
-                        options.common.report);
+                        options.common);
   if (!options.table.empty()) {
     check_options.progress = {};
     write_flight_table(options, model, check_options);

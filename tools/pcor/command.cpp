@@ -63,6 +63,20 @@ void add_common_options(CLI::App& command, CommonOptions& options, bool has_repo
         .add_option("--report", options.report, "write a self-contained report with pictures to FILE.html")
         ->check(is_file_name())
         ->type_name("FILE.html");
+    CLI::Option* const figures =
+        command
+            .add_option(
+                "--figures", options.figures,
+                "write each picture of the report into FOLDER, as SVG and PNG, with captions; Chromium "
+                "draws them")
+            ->check(is_file_name())
+            ->type_name("FOLDER");
+    command
+        .add_option("--figures-for", options.figures_for,
+                    "what the figures are for: a page 180 mm wide, a column of 86 mm, or a slide")
+        ->check(CLI::IsMember({"page", "column", "slide"}))
+        ->needs(figures)
+        ->capture_default_str();
   }
   command.add_flag("--quiet", options.quiet, "print no text");
   command.set_version_flag("--version", "pcor " PCOR_VERSION, "print the version of the program");

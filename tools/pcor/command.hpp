@@ -20,8 +20,10 @@ inline constexpr const char* iso_time = "%Y-%m-%dT%H:%M:%SZ";
 /// The options that every sub-command has.
 struct CommonOptions {
   std::string json{};  ///< where the machine-readable result goes, `-` for standard output; empty for nowhere
-  std::string report{};  ///< where the self-contained HTML report goes; empty for nowhere
-  bool quiet = false;    ///< no text for people
+  std::string report{};   ///< where the self-contained HTML report goes; empty for nowhere
+  std::string figures{};  ///< the folder for the pictures of the report; empty for none
+  std::string figures_for = "page";
+  bool quiet = false;  ///< no text for people
 };
 
 /// Adds an option that takes one value and may be given several times. It never takes a second word, so that

@@ -175,7 +175,8 @@ void print(const Comparison& comparison, const ChosenReferences& references, con
   std::vector<std::string> written;
   for (std::size_t i = 0; !options.residuals.empty() && i < options.comparison.flights.size(); ++i)
     written.push_back(residual_file(options, i).string());
-  written.insert(written.end(), {options.common.report, options.table, options.common.json});
+  written.insert(written.end(),
+                 {options.common.report, options.common.figures, options.table, options.common.json});
   say_written(written);
   const auto best = std::min_element(
       comparison.models.begin(), comparison.models.end(),
@@ -252,8 +253,11 @@ void run(const Options& options) {
     for (std::size_t i = 0; i < options.comparison.flights.size(); ++i)
       outputs.push_back(residual_file(options, i));
   }
+  outputs.emplace_back(options.common.figures);
   refuse_overwriting(outputs, inputs);
+  outputs.pop_back();
   for (const std::filesystem::path& output : outputs) require_writable(output);
+  require_figures(options.common);
   JsonResult json(options.common);
   std::vector<Contender> contenders;
   ChosenReferences references;  // of all models, as the text tells them
@@ -281,9 +285,9 @@ void run(const Options& options) {
                       history_of(options));
     }
   }
-  if (!options.common.report.empty())
+  if (wants_report(options.common))
     write_report_of_run(comparison_report(comparison), {options.models, options.comparison.flights, {}},
-                        options.common.report);
+                        options.common);
   if (!options.table.empty()) write_flight_table(comparison, options.table);
   json.write(as_json(comparison));
   together.appear();

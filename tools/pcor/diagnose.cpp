@@ -176,7 +176,7 @@ void print(const Diagnosis& diagnosis, const ChosenReferences& references, const
   print_others(diagnosis, options.full);
   for (const std::string& note : diagnosis.notes) say("\nNote: {}.\n", note);
   say("\n");
-  say_written({options.common.report, options.common.json});
+  say_written({options.common.report, options.common.figures, options.common.json});
   say("{}\n", next_command(diagnosis, options));
 }
 
@@ -184,8 +184,9 @@ void run(const Options& options) {
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.emplace_back(options.model);
   inputs.emplace_back(options.candidates.file);
-  refuse_overwriting({options.common.json, options.common.report}, inputs);
+  refuse_overwriting({options.common.json, options.common.report, options.common.figures}, inputs);
   require_writable(options.common.report);
+  require_figures(options.common);
   JsonResult json(options.common);
   const ModelFile model = read_model_for(options.model, flight_paths(options.comparison), options.common);
   const ChosenReferences references = references_to_fit(options.comparison, model);
@@ -203,9 +204,9 @@ void run(const Options& options) {
     diagnosis = diagnose(flight_paths(options.comparison), model, references.used, diagnose_with);
   }
   OutputsTogether together;
-  if (!options.common.report.empty())
+  if (wants_report(options.common))
     write_report_of_run(diagnosis_report(diagnosis, model), {{options.model}, options.comparison.flights, {}},
-                        options.common.report);
+                        options.common);
   json.write(as_json(diagnosis));
   together.appear();
   if (wants_text(options.common)) print(diagnosis, references, options);

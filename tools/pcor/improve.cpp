@@ -116,7 +116,7 @@ void print(const Improvement& improvement, const ChosenReferences& references, c
   print_unexplained(improvement.steps.back().diagnosis.unexplained);
   for (const std::string& note : improvement.fit.notes) say("\nNote: {}.\n", note);
   say("\n");
-  say_written({options.output, options.common.report, options.common.json});
+  say_written({options.output, options.common.report, options.common.figures, options.common.json});
   say("To apply it: {} process {} -m {} -o corrected.nc\n", program(),
       quoted(options.comparison.flights.front()), quoted(options.output));
 }
@@ -138,8 +138,10 @@ void run(const Options& options) {
   inputs.emplace_back(options.model);
   inputs.emplace_back(options.candidates.file);
   inputs.insert(inputs.end(), options.holdout.begin(), options.holdout.end());
-  refuse_overwriting({options.output, options.common.json, options.common.report}, inputs);
+  refuse_overwriting({options.output, options.common.json, options.common.report, options.common.figures},
+                     inputs);
   for (const std::string& output : {options.output, options.common.report}) require_writable(output);
+  require_figures(options.common);
   JsonResult json(options.common);
   const ModelFile model = read_model_for(options.model, flight_paths(options.comparison), options.common);
   const ChosenReferences references = references_to_fit(options.comparison, model, options.holdout);
@@ -154,10 +156,10 @@ void run(const Options& options) {
   refuse_worse(improvement.worse, options.force, improvement.model);
   OutputsTogether together;
   deliver(improvement.model, options.output, inputs);
-  if (!options.common.report.empty())
+  if (wants_report(options.common))
     write_report_of_run(improvement_report(improvement, model),
                         {{options.model, options.output}, options.comparison.flights, options.holdout},
-                        options.common.report);
+                        options.common);
   json.write(as_json(improvement, options));
   together.appear();
   if (wants_text(options.common, {options.output})) print(improvement, references, options);

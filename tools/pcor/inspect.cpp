@@ -225,8 +225,10 @@ std::vector<Inspection> look(const Options& options, bool text, nlohmann::ordere
 
 void run(const Options& options) {
   std::vector<std::filesystem::path> inputs(options.flights.begin(), options.flights.end());
-  refuse_overwriting({options.model, options.common.json, options.common.report}, inputs);
+  refuse_overwriting({options.model, options.common.json, options.common.report, options.common.figures},
+                     inputs);
   for (const std::string& output : {options.model, options.common.report}) require_writable(output);
+  require_figures(options.common);
   JsonResult json(options.common);
   const bool text = wants_text(options.common, {options.model});
   nlohmann::ordered_json result;
@@ -242,14 +244,14 @@ void run(const Options& options) {
       throw Error(fmt::format("{}: no model can be written: {}", first.path, first.notes.front()));
     deliver(*first.model, options.model, inputs);
   }
-  if (!options.common.report.empty()) {
-    write_report_of_run(inspection_report(all), {{}, options.flights, {}}, options.common.report);
+  if (wants_report(options.common)) {
+    write_report_of_run(inspection_report(all), {{}, options.flights, {}}, options.common);
   }
   json.write(result);
   together.appear();
   if (!text) return;
   say("\n");
-  say_written({options.model, options.common.report, options.common.json});
+  say_written({options.model, options.common.report, options.common.figures, options.common.json});
   say("{}\n", next_step(options, first));
 }
 

@@ -234,12 +234,13 @@ std::vector<ProcessTask> tasks_of(const Options& options, bool folder) {
                                           : std::vector<ProcessTask>{{flights.front(), options.output, {}}};
   std::vector<fs::path> models{options.model};
   if (!options.models.empty()) models = models_in(options.models);
-  refuse_overwriting({options.common.json, options.common.report}, flights);
+  refuse_overwriting({options.common.json, options.common.report, options.common.figures}, flights);
   for (ProcessTask& task : tasks) {
     task.history = command_line(task, options);
     std::vector<fs::path> inputs = models;
     inputs.push_back(task.input);
-    refuse_overwriting({task.output, options.common.json, options.common.report}, inputs);
+    refuse_overwriting({task.output, options.common.json, options.common.report, options.common.figures},
+                       inputs);
   }
   return tasks;
 }
@@ -307,6 +308,7 @@ void run(const Options& options) {
   const std::vector<ProcessTask> tasks = tasks_of(options, folder);
   const bool many = tasks.size() > 1;
   require_writable(options.common.report);
+  require_figures(options.common);
   JsonResult json(options.common);
   const ModelOfFlight model_of = models_of(options);
   std::optional<OutputFolder> output_folder;
@@ -332,9 +334,9 @@ void run(const Options& options) {
   if (!many) together.emplace();  // of many each is there as soon as it is done
   const std::vector<ProcessedFlight> flights = process_all(tasks, model_of, process);
   const bool none = count_of(flights, FlightState::unreadable) == flights.size();
-  if (!options.common.report.empty() && !none) {
+  if (wants_report(options.common) && !none) {
     write_report_of_run(process_report(flights, options.suffix),
-                        {{options.model + options.models}, options.inputs, {}}, options.common.report);
+                        {{options.model + options.models}, options.inputs, {}}, options.common);
   }
   json.write(many ? as_json(flights, options) : as_json(flights.front(), options));
   if (together) together->appear();
@@ -351,7 +353,7 @@ void run(const Options& options) {
     say("{} is up to date: this version made it of this flight with this model and these options\n",
         first.output.string());
   }
-  say_written({options.common.report, options.common.json});
+  say_written({options.common.report, options.common.figures, options.common.json});
   const auto done = std::find_if(flights.begin(), flights.end(), [](const ProcessedFlight& each) {
     return each.state == FlightState::processed;
   });

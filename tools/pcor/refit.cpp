@@ -265,7 +265,7 @@ void write_fit_report(const RefitResult& result, const ModelFile& model, const R
       compare_options);
   write_report_of_run(refit_report(result, comparison),
                       {{options.model, options.output}, options.comparison.flights, options.holdout},
-                      options.common.report);
+                      options.common);
 }
 
 /// The coefficients as each flight alone finds them. Those of a flight that cannot tell them are missing.
@@ -339,12 +339,13 @@ void run(const Options& options) {
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.emplace_back(options.model);
   inputs.insert(inputs.end(), options.holdout.begin(), options.holdout.end());
-  refuse_overwriting(
-      {options.output, options.reference_output, options.common.json, options.common.report, options.table},
-      inputs);
+  refuse_overwriting({options.output, options.reference_output, options.common.json, options.common.report,
+                      options.common.figures, options.table},
+                     inputs);
   for (const std::string& output :
        {options.output, options.reference_output, options.common.report, options.table})
     require_writable(output);
+  require_figures(options.common);
   JsonResult json(options.common);
   const ModelFile model = read_model_for(options.model, flight_paths(options.comparison), options.common);
   const ChosenReferences references = references_to_fit(options.comparison, model, options.holdout);
@@ -357,7 +358,7 @@ void run(const Options& options) {
   }
   const bool is_refused = !result.worse.empty() && !options.force;
   OutputsTogether together;
-  if (!options.common.report.empty()) write_fit_report(result, model, references.used, options);
+  if (wants_report(options.common)) write_fit_report(result, model, references.used, options);
   if (!options.table.empty()) write_flight_table(result, model, references.used, refit_with, options);
   json.write(as_json(result));
   if (!is_refused) deliver_models(result, inputs, options);
@@ -366,7 +367,7 @@ void run(const Options& options) {
   if (with_text) {
     print_result(result, references);
     say("\n");
-    say_written({options.common.report, options.table, options.common.json});
+    say_written({options.common.report, options.common.figures, options.table, options.common.json});
   }
   if (is_refused) refuse_worse(result.worse, options.force, result.model);
   if (with_text) print_next_step(options);

@@ -6,14 +6,18 @@
 #include <ctime>
 #include <utility>
 
+#include <pcor/report/figures.hpp>
 #include <pcor/words/utc.hpp>
 #include "choices.hpp"
-#include "command.hpp"
 
 namespace pcor::tool {
 namespace {
 
 std::string command_of_this_run;
+
+FigureUse use_named(const std::string& name) {
+  return name == "column" ? FigureUse::column : name == "slide" ? FigureUse::slide : FigureUse::page;
+}
 
 }  // namespace
 
@@ -22,7 +26,15 @@ void remember_command(int count, const char* const* words) {
   for (int i = 1; i < count; ++i) command_of_this_run += " " + quoted(words[i]);
 }
 
-void write_report_of_run(Report report, const ReportFiles& files, const std::filesystem::path& path) {
+bool wants_report(const CommonOptions& options) {
+  return !options.report.empty() || !options.figures.empty();
+}
+
+void require_figures(const CommonOptions& options) {
+  if (!options.figures.empty()) pcor::require_figures(options.figures);
+}
+
+void write_report_of_run(Report report, const ReportFiles& files, const CommonOptions& options) {
   report.origin.emplace_back("Command", command_of_this_run);
   report.origin.emplace_back(
       "Made", utc_text(static_cast<double>(std::time(nullptr)), "%Y-%m-%d %H:%M UTC by pcor " PCOR_VERSION));
@@ -33,7 +45,8 @@ void write_report_of_run(Report report, const ReportFiles& files, const std::fil
   add(files.held_out.empty() ? "Flights" : "Fitted flights", files.flights);
   add("Held-out flights", files.held_out);
   add("Choices", choices_of_this_run());
-  write_report(report, path);
+  if (!options.report.empty()) write_report(report, options.report);
+  if (!options.figures.empty()) write_figures(report, options.figures, use_named(options.figures_for));
 }
 
 }  // namespace pcor::tool

@@ -227,12 +227,14 @@ const std::string& first_used(const TemperatureResult& result, const Options& op
 void run(const Options& options) {
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.emplace_back(options.model);
-  refuse_overwriting({options.output, options.common.json, options.common.report}, inputs);
+  refuse_overwriting({options.output, options.common.json, options.common.report, options.common.figures},
+                     inputs);
   for (const std::string& output : {options.output, options.common.report}) require_writable(output);
   if (options.iterate && options.archived)
     throw Error("--iterate fits pressures again and needs flights as recorded; leave out --archived");
   if (!options.iterate && !options.comparison.references.empty())
     throw Error("--reference is what --iterate fits the pressures to; give both or none");
+  require_figures(options.common);
   JsonResult json(options.common);
   const ModelFile model = read_model_for(options.model, flight_paths(options.comparison), options.common);
   TemperatureOptions with = temperature_options(options);
@@ -255,10 +257,9 @@ void run(const Options& options) {
   }
   const bool is_refused = !result.worse.empty() && !options.force;
   OutputsTogether together;
-  if (!options.common.report.empty())
+  if (wants_report(options.common))
     write_report_of_run(temperature_report(result),
-                        {{options.model, options.output}, options.comparison.flights, {}},
-                        options.common.report);
+                        {{options.model, options.output}, options.comparison.flights, {}}, options.common);
   nlohmann::ordered_json all = as_json(result);
   if (options.iterate) {
     all["rounds"] = as_json(in_turn);
@@ -278,7 +279,7 @@ void run(const Options& options) {
       say("\nIt is no better than none yet: add flights that climb and descend by 3 km and more, there and "
           "back along the same way\n");
     say("\n");
-    say_written({options.common.report, options.common.json});
+    say_written({options.common.report, options.common.figures, options.common.json});
   }
   if (is_refused) refuse_worse(result.worse, options.force, result.model);
   if (!with_text) return;

@@ -64,6 +64,47 @@ struct ReportLine {
   std::string label;
 };
 
+/// Where the air goes at a time.
+struct ReportBarb {
+  double time = 0.0;  ///< s since 1970 UTC
+  double east = 0.0;  ///< m/s
+  double north = 0.0;
+};
+
+/// The track over the ground, in distances from its middle, with one column by colour.
+struct TrackPanel {
+  std::string title;
+  std::string caption;
+  std::string latitude;   ///< a column, deg
+  std::string longitude;  ///< a column, deg
+  std::string colour;
+  bool diverging = true;           ///< as for PlanePanel
+  std::vector<ReportBarb> wind{};  ///< shown as barbs where the reader asks
+};
+
+/// Columns over time, each on an axis of its own, and below them a lane for the intervals of each name.
+struct StripPanel {
+  std::string title;
+  std::string caption;
+  std::vector<std::string> columns;
+};
+
+/// Of each name of the intervals, and of all: the mean of columns, and the scatter about it.
+struct RegimePanel {
+  std::string title;
+  std::string caption;
+  std::vector<std::string> columns;
+  std::string axis{};  ///< as for TimePanel
+};
+
+/// Quantiles of columns against those of a normal distribution.
+struct QuantilePanel {
+  std::string title;
+  std::string caption;
+  std::vector<std::string> columns;
+  std::string axis{};  ///< as for TimePanel
+};
+
 /// Two columns against each other, with lines; below it, what each sample differs from the first line (from
 /// y = x if there is none).
 struct PairPanel {
@@ -94,6 +135,34 @@ struct BarPanel {
   std::vector<ReportBar> bars;
   std::string axis{};  ///< what the axis says, e.g. "rms"
   std::string unit{};
+};
+
+/// What a row of dots says of itself by its colour and its mark.
+enum class ReportTone { none, good, bad, open };
+
+/// A number with its standard error.
+struct ReportDot {
+  double value = 0.0;  ///< NaN for none
+  double error = 0.0;  ///< half the length of the error bar; 0 for none
+};
+
+struct ReportDotRow {
+  std::string label;
+  std::vector<ReportDot> dots;  ///< one of each series
+  std::string text{};           ///< at the right, the numbers in words
+  ReportTone tone = ReportTone::none;
+};
+
+/// Numbers that do not belong to samples, as rows of dots with error bars: of one series or of several.
+struct DotPanel {
+  std::string title;
+  std::string caption;
+  std::vector<std::string> series;  ///< what they are called; the name of one alone is not shown
+  std::vector<ReportDotRow> rows;
+  std::string axis;
+  std::string unit{};
+  std::vector<std::pair<std::string, double>> lines{};  ///< across all rows, with what they are
+  std::string band{};                                   ///< what lies between -1 and 1; none if empty
 };
 
 /// A curve of numbers that do not belong to samples, with their standard errors.
@@ -129,8 +198,9 @@ struct ReportText {
   std::vector<std::string> paragraphs;
 };
 
-using ReportItem = std::variant<TimePanel, BinnedPanel, PlanePanel, PairPanel, RegimeTable, BarPanel,
-                                CurvePanel, ReportTable, ReportText>;
+using ReportItem =
+    std::variant<TimePanel, BinnedPanel, PlanePanel, PairPanel, RegimeTable, BarPanel, CurvePanel, TrackPanel,
+                 StripPanel, RegimePanel, QuantilePanel, DotPanel, ReportTable, ReportText>;
 
 /// What a report says, in the order in which the reader meets it: the title, the summary, the facts, the
 /// items, its origin. All texts are plain text in UTF-8.

@@ -45,10 +45,12 @@ struct ModelSamples {
 
 /// A flight as comparisons and fits see it: what was recorded, how it was flown, at one sample per record.
 struct FlightSamples {
-  std::string name{};          ///< for tables: the file's name, or what the flight is called
-  std::string aircraft{};      ///< as the file says; may be empty
-  double step = 1.0;           ///< s
-  std::vector<double> time{};  ///< middles of the samples, s since 1970 UTC
+  std::string name{};               ///< for tables: the file's name, or what the flight is called
+  std::string aircraft{};           ///< as the file says; may be empty
+  double step = 1.0;                ///< s
+  std::vector<double> time{};       ///< middles of the samples, s since 1970 UTC
+  std::vector<double> latitude{};   ///< deg, for pictures; empty: not recorded
+  std::vector<double> longitude{};  ///< deg, for pictures; empty: not recorded
   FlightMotion motion{};
   std::vector<double> flaps{};        ///< percent; empty: not recorded
   std::string flaps_variable{};       ///< of the file

@@ -1,0 +1,46 @@
+#include "fit/coefficient_picture.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "numerics/missing.hpp"
+
+namespace pcor::internal {
+
+std::optional<DotPanel> coefficient_picture(const std::vector<FittedParameter>& parameters,
+                                            const std::string& before_is, const std::string& after_is) {
+  DotPanel panel;
+  panel.title = "Coefficients before and after";
+  panel.caption = fmt::format(
+      "By how much each coefficient {} differs from what it was {}, with its standard error. One that moves "
+      "by many of its errors was wrong for these flights, or takes up what the model lacks.",
+      after_is, before_is);
+  panel.series = {""};
+  panel.axis = "change";
+  panel.unit = "%";
+  panel.lines = {{before_is, 0.0}};
+  for (const FittedParameter& p : parameters) {
+    if (!p.fitted || !std::isfinite(p.value)) continue;
+    const double percent = 100.0 / std::abs(p.start);
+    const bool compares = std::isfinite(percent);  // with a value that was there and not zero
+    const std::string unit = p.unit.empty() || p.unit == "1" ? "" : " " + p.unit;
+    panel.rows.push_back(
+        {p.name,
+         {compares ? ReportDot{percent * (p.value - p.start),
+                               std::isfinite(p.standard_error) ? percent * p.standard_error : 0.0}
+                   : ReportDot{nan, 0.0}},
+         fmt::format("{} → {:.4g} ± {:.2g}{}",
+                     std::isfinite(p.start) ? fmt::format("{:.4g}", p.start) : "new", p.value,
+                     p.standard_error, unit)});
+  }
+  if (std::none_of(panel.rows.begin(), panel.rows.end(),
+                   [](const ReportDotRow& row) { return std::isfinite(row.dots.front().value); }))
+    return std::nullopt;
+  return panel;
+}
+
+}  // namespace pcor::internal

@@ -1,0 +1,112 @@
+#include "improve/improvement_pictures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <pcor/numerics/noise.hpp>
+#include "fit/coefficient_picture.hpp"
+#include "numerics/missing.hpp"
+#include "words/phrasing.hpp"
+
+namespace pcor::internal::report {
+namespace {
+
+/// For how many independent samples the residuals of what is held out, or of the rest, stand.
+double independent_samples(const Improvement& improvement, bool held_out) {
+  double independent = 0.0;
+  for (const ImprovedFlight& flight : improvement.flights) {
+    if (flight.held_out != held_out || flight.samples == nullptr) continue;
+    const double step = flight.samples->step;
+    const NoiseFloor noise =
+        noise_floor(flight.best, stretches_of(flight.best, flight.samples->time, step), step);
+    const auto count =
+        std::count_if(flight.best.begin(), flight.best.end(), [](double x) { return std::isfinite(x); });
+    independent += static_cast<double>(count) / noise.samples_per_independent;
+  }
+  return independent;
+}
+
+std::string held_out_series(const Improvement& improvement) {
+  if (!improvement.holdout_is_flights) return "not in the fit, five parts in turn";
+  std::vector<std::string> names;
+  for (const ImprovedFlight& flight : improvement.flights) {
+    if (flight.held_out) names.push_back(flight.samples->name);
+  }
+  return "held out: " + list_text(names);
+}
+
+/// The coefficient that is called so, like "static-qp.a2"; NaN where the model does not have it.
+double value_in(const ModelFile& model, const std::string& name) {
+  for (const ModelEffect& effect : model.model.effects) {
+    const std::vector<std::string> names = parameter_names(effect);
+    for (std::size_t i = 0; i < std::min(names.size(), effect.parameters.size()); ++i) {
+      if (effect.id + "." + names[i] == name) return effect.parameters[i];
+    }
+  }
+  return nan;
+}
+
+}  // namespace
+
+std::string rung_name(const ImproveStep& step) { return step.added.empty() ? "refitted" : "+ " + step.added; }
+
+bool is_averaged(const Improvement& improvement) {
+  return std::any_of(improvement.steps.begin(), improvement.steps.end(),
+                     [](const ImproveStep& step) { return !step.rivals.empty(); });
+}
+
+DotPanel ladder_picture(const Improvement& improvement) {
+  DotPanel panel;
+  panel.title = "The ladder";
+  panel.caption =
+      "Rms residual after each effect that was added. Bars are standard errors, as many independent samples "
+      "as the "
+      "memory of the residual leaves; the dashed line is the noise, below which no model comes.";
+  panel.axis = "rms residual";
+  panel.unit = "hPa";
+  panel.series = {"in the fit", held_out_series(improvement)};
+  const double noise = improvement.steps.back().noise_rms;
+  if (std::isfinite(noise)) panel.lines = {{fmt::format("noise, {:.3f} hPa", noise), noise}};
+  const double fitted = independent_samples(improvement, false);
+  const double apart = improvement.holdout_is_flights ? independent_samples(improvement, true) : fitted;
+  const auto dot = [](double rms, double independent) {
+    const double error = rms / std::sqrt(2.0 * independent);
+    return ReportDot{rms, std::isfinite(error) ? error : 0.0};
+  };
+  const auto add = [&](const std::string& label, double in_fit, double held_out) {
+    if (!std::isfinite(in_fit) && !std::isfinite(held_out)) return;
+    const auto text = [](double rms) { return std::isfinite(rms) ? fmt::format("{:.3f}", rms) : "–"; };
+    panel.rows.push_back({label,
+                          {dot(in_fit, fitted), dot(held_out, apart)},
+                          fmt::format("{} and {}", text(in_fit), text(held_out))});
+  };
+  add("as it came", improvement.given_rms_train, improvement.given_rms_holdout);
+  for (const ImproveStep& step : improvement.steps) add(rung_name(step), step.rms_train, step.rms_holdout);
+  if (is_averaged(improvement)) add("averaged over rivals", improvement.rms_train, improvement.rms_holdout);
+  return panel;
+}
+
+std::optional<DotPanel> coefficients_picture(const Improvement& improvement, const ModelFile& start) {
+  std::vector<FittedParameter> parameters = improvement.fit.parameters;
+  for (FittedParameter& parameter : parameters) parameter.start = value_in(start, parameter.name);
+  return coefficient_picture(parameters, "as it came", "in the best model");
+}
+
+void name_held_out(Report& report, const Improvement& improvement) {
+  for (const ImprovedFlight& flight : improvement.flights) {
+    if (!flight.held_out || flight.samples == nullptr) continue;
+    const auto is_fitted = [&](const ImprovedFlight& other) {
+      return !other.held_out && other.samples != nullptr && other.samples->name == flight.samples->name;
+    };
+    if (std::any_of(improvement.flights.begin(), improvement.flights.end(), is_fitted)) continue;
+    const auto name = std::find(report.flight_names.begin(), report.flight_names.end(), flight.samples->name);
+    if (name != report.flight_names.end()) *name += ", held out";
+  }
+}
+
+}  // namespace pcor::internal::report

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+
+#include <pcor/improve/improve.hpp>
+#include <pcor/report/report.hpp>
+
+namespace pcor::internal::report {
+
+/// What a rung is called: "refitted", "+ static-lag".
+std::string rung_name(const ImproveStep& step);
+
+/// Whether the model that is delivered has an average over effects that could not be told apart.
+bool is_averaged(const Improvement& improvement);
+
+/// The rms residual of every rung, in the fit and on what was held out, with the noise as a line.
+DotPanel ladder_picture(const Improvement& improvement);
+
+/// The coefficients of the best model beside those of the one to begin with; none where nothing was fitted.
+std::optional<DotPanel> coefficients_picture(const Improvement& improvement, const ModelFile& start);
+
+/// Says at the name of each flight that is held out as a whole that it is.
+void name_held_out(Report& report, const Improvement& improvement);
+
+}  // namespace pcor::internal::report

@@ -1,0 +1,149 @@
+// Rows of dots with error bars: checks with their verdicts, a ladder, coefficients, regimes.
+
+// A mark at a place, each with a form of its own, so that it is known without its colour.
+const marks = [
+  (pen, x, y, colour) => pen.dots([x, y], 8, colour),
+  (pen, x, y, colour, paper) => {
+    pen.dots([x, y], 8, colour);
+    pen.dots([x, y], 4.5, paper);
+  },
+  (pen, x, y, colour) => pen.lines([[x - 4, y - 4, x + 4, y + 4], [x - 4, y + 4, x + 4, y - 4]], colour, 2.25),
+  (pen, x, y, colour) => pen.lines([[x, y - 5, x, y + 5], [x - 5, y, x + 5, y]], colour, 2.25),
+  (pen, x, y, colour) => pen.lines([[x, y - 5.5, x + 5.5, y, x, y + 5.5, x - 5.5, y, x, y - 5.5]], colour, 1.75),
+];
+
+// What a verdict looks like: the place of its colour, and its mark.
+const tones = {
+  good: {colour: (theme) => theme.series[0], mark: marks[0]},
+  bad: {colour: (theme) => theme.series[1], mark: marks[2]},
+  open: {colour: (theme) => theme.quiet, mark: marks[1]},
+};
+
+const markHeight = 17;  // of a series in a row
+
+function dotsHeight(rows, series) {
+  return 76 + rows * Math.max(24, 8 + markHeight * series);
+}
+
+// Rows {label, dots: [{value, error}, ...], text, tone, mark}: an axis below, a band of what is small, and lines.
+function drawRows(pen, width, height, {rows, series, lines = [], band = null, axis}, theme) {
+  cover(pen, width, height, theme);
+  const colours = series.map((label, s) => theme.series[s % theme.series.length]);
+  const keys = series.length > 1
+    ? series.map((label, s) => ({label, colour: colours[s], mark: marks[s % marks.length]})) : [];
+  const top = keysAbove(pen, [...keys, ...lines.map(({label}) => ({label, colour: theme.ink, dash: [5, 3]})),
+    ...(band ? [{label: band.label, colour: theme.frame, wide: true}] : [])], width - 14, theme);
+  const swatch = rows.some(({mark}) => mark) ? 22 : 0;
+  const longest = Math.max(...rows.map(({label}) => textWidth(label, fontSize))) + swatch;
+  const left = Math.min(longest + 22, 0.36 * width);
+  const words = Math.max(0, ...rows.map(({text}) => textWidth(text ?? '', fontSize)));
+  const right = Math.min(words + 20, 0.34 * width);
+  const box = plotBox(width, height, {left, right, top});
+  const finite = rows.flatMap(({dots}) => dots.filter(({value}) => Number.isFinite(value)));
+  const range = limits(finite.map(({value}) => value),
+    [...finite.flatMap(({value, error}) => [value - error, value + error]), ...lines.map(({value}) => value),
+      ...(band ? [band.from, band.to] : [])].filter(Number.isFinite));
+  if (range.from > 0 && range.from < 0.5 * range.to) range.from = 0;
+  const x = scale(range.from, range.to, box.x, box.x + box.width);
+  if (band) pen.rect(x(band.from), box.y, x(band.to) - x(band.from), box.height, theme.frame, 0.22);
+  const placed = numberTicks(range.from, range.to, box.width, 52).map((tick) => ({at: x(tick.value), label: tick.label}));
+  horizontalTicks(pen, box, placed, axis, theme);
+  const room = box.height / rows.length;
+  pen.clip(box, () => {
+    for (const {value} of lines) pen.lines([[x(value), box.y, x(value), box.y + box.height]], theme.ink, 1.25, [5, 3]);
+    if (range.from < 0 && range.to > 0 && !lines.some(({value}) => value === 0)) pen.lines([[x(0), box.y, x(0), box.y + box.height]], theme.frame);
+  });
+  rows.forEach(({label, dots, text, tone, mark}, r) => {
+    const middle = box.y + (r + 0.5) * room;
+    if (r) pen.lines([[box.x, middle - room / 2, box.x + box.width, middle - room / 2]], theme.grid);
+    if (mark) pen.lines([[8, middle, 24, middle]], mark.colour, 4, mark.dash ?? []);
+    pen.text(box.x - 9, middle + 4, shortened(label, left - 18 - swatch, fontSize), {...small(theme, 'end'), fill: theme.ink});
+    if (text) pen.text(box.x + box.width + 9, middle + 4, shortened(text, right - 12, fontSize), small(theme));
+    dots.forEach(({value, error}, s) => {
+      if (!Number.isFinite(value)) return;
+      const y = middle + (s - (dots.length - 1) / 2) * Math.min(markHeight, room / dots.length);
+      const colour = tones[tone]?.colour(theme) ?? colours[s];
+      pen.clip({...box, x: box.x - 6, width: box.width + 12}, () => {
+        if (error > 0) {
+          const [low, high] = [x(value - error), x(value + error)];
+          pen.lines([[low, y, high, y], ...[low, high].map((end) => [end, y - 4, end, y + 4])], colour, 1.5);
+        }
+        (tones[tone]?.mark ?? marks[s % marks.length])(pen, x(value), y, colour, theme.paper);
+      });
+    });
+  });
+  frame(pen, box, theme, NaN);
+  return {box, points: finite.length};
+}
+
+// Marks and names above rows; returns the height that they take.
+function keysAbove(pen, keys, right, theme) {
+  let x = 8, y = 13;
+  for (const {label, colour, mark, dash, wide} of keys) {
+    const width = 24 + textWidth(label, fontSize);
+    if (x > 8 && x + width > right) { x = 8; y += 17; }
+    if (mark) mark(pen, x + 8, y - 4, colour, theme.paper);
+    else if (wide) pen.rect(x, y - 10, 16, 12, colour, 0.3);
+    else pen.lines([[x, y - 4, x + 16, y - 4]], colour, 1.5, dash);
+    pen.text(x + 21, y, label, {...small(theme), fill: theme.ink});
+    x += width + 16;
+  }
+  return keys.length ? y + 9 : 8;
+}
+
+function drawDots(pen, width, height, item, samples, theme) {
+  const rows = item.rows.map(({label, dots, text, tone}) =>
+    ({label, text, tone, dots: dots.map(({value, error}) => ({value: value ?? NaN, error: error ?? 0}))}));
+  const axis = item.unit ? `${item.axis} (${item.unit})` : item.axis;
+  const {box, points} = drawRows(pen, width, height, {...item, rows, axis}, theme);
+  const toneWords = {good: 'consistent', bad: 'inconsistent', open: 'cannot tell'};
+  const judged = rows.some(({tone}) => tone), told = rows.some(({text}) => text);
+  return {
+    points,
+    plot: box,
+    alternative: `${axis} of ${plural(rows.length, 'row')}: ${rows.map(({label, dots, text, tone}) =>
+      `${label}${tone ? `, ${toneWords[tone]}` : ''}, ${text || dots.map(({value, error}) =>
+        error ? withError(value, error) : brief(value)).join(' and ')}`).join('; ')}`,
+    table: {
+      headers: ['', ...item.series.map((label) => label || axis), ...(judged ? ['Verdict'] : []), ...(told ? ['Numbers'] : [])],
+      rows: rows.map(({label, dots, text, tone}) => [label,
+        ...dots.map(({value, error}) => error ? withError(value, error) : brief(value)),
+        ...(judged ? [toneWords[tone] ?? '–'] : []), ...(told ? [text || '–'] : [])]),
+    },
+  };
+}
+
+// Of each regime the mean of columns, with the scatter about it as a bar.
+function drawRegimes(pen, width, height, item, samples, theme) {
+  const columns = columnsOf(samples, item.columns);
+  const names = [...samples.regimes.keys()];
+  const all = [...names.map((name) => [name, samples.regimes.get(name)]), ['All', samples.every]];
+  const rows = all.map(([label, inside]) => {
+    const found = columns.map((column) =>
+      statistics(column.values, samples.indices([column], samples.selected.map((one, i) => one & inside[i]))));
+    return {
+      label,
+      mark: names.includes(label) ? regimeMark(label, names, theme) : null,
+      dots: found.map(({mean, rms}) => ({value: mean, error: Math.sqrt(Math.max(rms * rms - mean * mean, 0))})),
+      text: `rms ${found.map(({rms}) => number(rms, 1e-3)).join(' → ')}`,
+      found,
+    };
+  });
+  const {box} = drawRows(pen, width, height,
+    {rows, series: columns.map(({title}) => title), axis: sharedLabel(columns, item.axis)}, theme);
+  return {
+    points: columns.reduce((sum, column) => sum + samples.indices([column]).length, 0),
+    plot: box,
+    alternative: `Mean and scatter by regime: ${rows.map(({label, found}) => `${label}, rms ${found.map(({rms}) =>
+      number(rms, 1e-3)).join(' and ')}`).join('; ')}`,
+    table: {
+      headers: ['Regime', ...columns.flatMap(({label}) => [`${label}, mean`, 'scatter', 'rms'])],
+      rows: rows.map(({label, dots, found}) => [label, ...found.flatMap(({mean, rms}, c) =>
+        [number(mean, 1e-3), number(dots[c].error, 1e-3), number(rms, 1e-3)])]),
+    },
+  };
+}
+
+Object.assign(pictures, {dots: drawDots, byregime: drawRegimes});
+heights.dots = ({rows, series}) => dotsHeight(rows.length, series.length);
+heights.byregime = ({columns}, samples) => dotsHeight(samples.regimes.size + 1, columns.length);

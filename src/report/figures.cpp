@@ -1,0 +1,227 @@
+#include <fmt/format.h>
+#include <openssl/evp.h>
+#include <unistd.h>
+#include <pcor/report/figures.hpp>
+#include <pcor/words/error.hpp>
+#include <pcor/words/replacement_file.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace pcor {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* captions = "captions.txt";
+
+// A program that the variable PATH leads to; empty where it leads to none.
+std::string program_named(const std::string& name) {
+  if (name.find('/') != std::string::npos) return ::access(name.c_str(), X_OK) == 0 ? name : "";
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "/usr/bin:/bin" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const std::string file = (folder.empty() ? "." : folder) + "/" + name;
+    if (::access(file.c_str(), X_OK) == 0 && !fs::is_directory(file)) return file;
+  }
+  return "";
+}
+
+std::string browser() {
+  if (const char* const chosen = std::getenv("CHROMIUM"); chosen != nullptr && *chosen != '\0') {
+    const std::string found = program_named(chosen);
+    if (found.empty())
+      throw Error(fmt::format(
+          "figures: CHROMIUM names {}, which is no program; name Chromium or a browser of its kind", chosen));
+    return found;
+  }
+  for (const char* const name : {"chromium", "chromium-browser", "google-chrome"}) {
+    if (std::string found = program_named(name); !found.empty()) return found;
+  }
+  throw Error(
+      "figures: there is no Chromium to draw them; install it (on Debian: apt-get install chromium), set "
+      "CHROMIUM to a browser of its kind, or save the pictures of a --report from your own browser");
+}
+
+// A word of a shell's command line that is what it is.
+std::string shell_word(const std::string& word) {
+  std::string quoted = "'";
+  for (const char letter : word)
+    if (letter == '\'')
+      quoted += "'\\''";
+    else
+      quoted += letter;
+  return quoted + "'";
+}
+
+std::string file_address(const fs::path& path) {
+  std::string address = "file://";
+  for (const char letter : path.string())
+    if (std::isalnum(static_cast<unsigned char>(letter)) != 0 ||
+        std::string_view("/._-").find(letter) != std::string_view::npos)
+      address += letter;
+    else
+      address += fmt::format("%{:02X}", static_cast<unsigned char>(letter));
+  return address;
+}
+
+// A new folder for the page and what the browser keeps.
+fs::path make_work_folder() {
+  std::string name = (fs::temp_directory_path() / "pcor-figures-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr)
+    throw Error(Error::Code::output, "figures: nothing can be written in " +
+                                         fs::temp_directory_path().string() +
+                                         "; check the space there, or set TMPDIR to another folder");
+  return name;
+}
+
+// What the page leaves in place of itself: lines "NAME BASE64". A shell starts the browser and removes the
+// folder whatever happens, also where this program is stopped.
+std::string exported(const std::string& program, const std::string& html, FigureUse use) {
+  constexpr std::array<const char*, 3> words{"page", "column", "slide"};
+  const fs::path folder = make_work_folder();
+  const fs::path page = folder / "page.html";
+  std::ofstream stream(page, std::ios::binary);
+  stream << html;
+  stream.close();
+  const bool is_root = ::geteuid() == 0;  // for whom Chromium has no sandbox
+  const std::string command = fmt::format(
+      "trap 'rm -rf '{0} EXIT; trap 'exit 1' INT TERM HUP PIPE\n"
+      "{1} --headless=new {2} --disable-gpu --user-data-dir={0}/profile --dump-dom {3} 2> {0}/messages ||\n"
+      "{{ tail -n 1 {0}/messages; exit 1; }}\n",
+      shell_word(folder.string()), shell_word(program), is_root ? "--no-sandbox" : "",
+      shell_word(file_address(page) + "#export+for=" + words.at(static_cast<std::size_t>(use))));
+  std::FILE* const pipe = ::popen(command.c_str(), "r");
+  if (pipe == nullptr) {
+    fs::remove_all(folder);
+    throw Error("figures: no shell can be started; close other programs, and try again");
+  }
+  std::string text;
+  std::array<char, 65536> buffer{};
+  for (std::size_t count = 0; (count = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
+    text.append(buffer.data(), count);
+  if (::pclose(pipe) != 0) {
+    while (!text.empty() && text.back() == '\n') text.pop_back();
+    throw Error(fmt::format("figures: {} failed: {}; start it by hand, or set CHROMIUM to another browser",
+                            program, text.substr(text.rfind('\n') + 1)));
+  }
+  return text;
+}
+
+std::string decoded(const std::string& base64) {
+  std::string bytes(base64.size() / 4 * 3, '\0');
+  const int length =
+      EVP_DecodeBlock(reinterpret_cast<unsigned char*>(bytes.data()),
+                      reinterpret_cast<const unsigned char*>(base64.data()), static_cast<int>(base64.size()));
+  const auto padding = static_cast<std::size_t>(std::count(base64.begin(), base64.end(), '='));
+  bytes.resize(length < 0 ? 0 : static_cast<std::size_t>(length) - padding);
+  return bytes;
+}
+
+bool is_picture(const std::string& name) {
+  static const std::regex pattern("[0-9]+-[a-z0-9-]+\\.(svg|png)");
+  return std::regex_match(name, pattern);
+}
+
+using Files = std::vector<std::pair<std::string, std::string>>;
+
+Files files_of(const std::string& text) {
+  Files files;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t space = line.find(' ');
+    const std::string name = line.substr(0, space);
+    if (space != std::string::npos && (is_picture(name) || name == captions))
+      files.emplace_back(name, decoded(line.substr(space + 1)));
+  }
+  return files;
+}
+
+// The pictures of an earlier run, which its captions name.
+std::vector<fs::path> earlier_pictures(const fs::path& folder) {
+  std::vector<fs::path> all;
+  std::ifstream stream(folder / captions);
+  for (std::string line; std::getline(stream, line);) {
+    const std::string name = line.substr(0, line.find(':'));
+    for (const char* const kind : {".svg", ".png"})
+      if (is_picture(name + kind)) all.push_back(folder / (name + kind));
+  }
+  return all;
+}
+
+// A folder that is there, and is no more when it goes unless something was put into it.
+class Folder {
+ public:
+  explicit Folder(const fs::path& path) : path_(path) {
+    std::error_code code;
+    is_new_ = fs::create_directories(path, code);
+    if (!fs::is_directory(path))
+      throw Error(Error::Code::output,
+                  fmt::format("{} cannot be a folder of figures: {}; choose another", path.string(),
+                              code ? code.message() : "there is something else of that name"));
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  ~Folder() {
+    std::error_code ignored;
+    if (is_new_ && fs::is_empty(path_, ignored)) fs::remove(path_, ignored);
+  }
+
+ private:
+  fs::path path_;
+  bool is_new_ = false;
+};
+
+void write_file(const fs::path& path, const std::string& bytes) {
+  ReplacementFile file(path);
+  std::ofstream stream(file.path(), std::ios::binary);
+  stream << bytes;
+  stream.close();
+  if (!stream)
+    throw Error(Error::Code::output,
+                path.string() + " cannot be written: check the space there, or choose another output");
+  file.commit();
+}
+
+}  // namespace
+
+void require_figures(const fs::path& folder) {
+  browser();
+  const Folder there(folder);
+  const ReplacementFile probe(folder / captions);
+}
+
+std::vector<std::string> write_figures(const Report& report, const fs::path& folder, FigureUse use) {
+  const std::string program = browser();
+  const Files files = files_of(exported(program, report_html(report), use));
+  if (files.size() < 2) throw Error(fmt::format("figures: {} shows no pictures of this report", program));
+  const Folder there(folder);
+  std::vector<std::string> names;
+  for (const auto& [name, bytes] : files) {
+    if (bytes.empty()) throw Error(fmt::format("figures: {} drew nothing for {}", program, name));
+    names.push_back(name);
+  }
+  const std::vector<fs::path> earlier = earlier_pictures(folder);
+  for (const auto& [name, bytes] : files) write_file(folder / name, bytes);
+  for (const fs::path& path : earlier) {
+    std::error_code ignored;
+    if (std::find(names.begin(), names.end(), path.filename().string()) == names.end())
+      fs::remove(path, ignored);
+  }
+  return names;
+}
+
+}  // namespace pcor

@@ -1,0 +1,92 @@
+#include "report/residual_pictures.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "numerics/octave_spectrum.hpp"
+#include "report/columns.hpp"
+#include "report/present_columns.hpp"
+
+namespace pcor::internal {
+namespace {
+
+std::vector<std::string> present(const Report& report, std::vector<std::string> names) {
+  names.erase(std::remove_if(names.begin(), names.end(),
+                             [&report](const std::string& name) { return !has_column(report, name); }),
+              names.end());
+  return names;
+}
+
+// The usual distance of samples, s.
+double step_of(const Report& report) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < report.time.size(); ++i) {
+    if (report.time[i] > report.time[i - 1]) steps.push_back(report.time[i] - report.time[i - 1]);
+  }
+  if (steps.empty()) return 0.0;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
+}  // namespace
+
+void add_regimes(Report& report, const std::vector<std::string>& residuals) {
+  const std::vector<std::string> shown = present(report, residuals);
+  if (shown.empty() || report.intervals.empty()) return;
+  report.items.emplace_back(RegimePanel{
+      "Residual by regime",
+      "Dots are the mean of the selected samples of a regime, bars the scatter about it, the rms is at the "
+      "right. A mean off zero in one regime is an effect of what is flown there.",
+      shown, "residual"});
+}
+
+void add_distributions(Report& report, const std::vector<std::string>& residuals) {
+  const std::vector<std::string> shown = present(report, residuals);
+  if (shown.empty()) return;
+  CurvePanel spectrum{
+      "Residual by period",
+      "The rms of the part of the residual within an octave about each period, with standard errors: "
+      "what an effect of manoeuvres leaves lies at their periods, noise without memory rises to "
+      "short ones.",
+      {},
+      "period",
+      "rms per octave",
+      "s",
+      "hPa",
+      true};
+  const double step = step_of(report);
+  for (const std::string& name : shown) {
+    const ReportColumn& column = *column_named(report.columns, name);
+    OctaveSpectrum found = octave_spectrum(column.values, report.time, step);
+    if (!found.period.empty())
+      spectrum.curves.push_back(
+          {column.title, std::move(found.period), std::move(found.rms), std::move(found.error)});
+  }
+  if (!spectrum.curves.empty()) report.items.emplace_back(std::move(spectrum));
+  report.items.emplace_back(QuantilePanel{
+      "Quantiles of the residual",
+      "Noise lies on the line, whose slope is its standard deviation. Ends that turn away are outliers "
+      "or an effect that acts at times only.",
+      shown, "residual"});
+}
+
+void add_strip(Report& report) {
+  std::vector<std::string> shown = present(report, {"altitude", "airspeed", "true_airspeed"});
+  if (shown.empty()) return;
+  report.items.emplace_back(
+      StripPanel{"Height, speed and regimes",
+                 "What was flown, with a lane for each regime. Drag over a time range, and "
+                 "every picture shows its samples alone.",
+                 std::move(shown)});
+}
+
+void add_track(Report& report, const std::string& title, const std::string& caption,
+               const std::string& colour, std::vector<ReportBarb> wind, bool diverging) {
+  if (meet(report.columns, {"latitude", "longitude", colour}))
+    report.items.emplace_back(
+        TrackPanel{title, caption, "latitude", "longitude", colour, diverging, std::move(wind)});
+}
+
+}  // namespace pcor::internal

@@ -1,0 +1,161 @@
+// The track over the ground, in a projection of its own: distances from the middle of the track are true.
+
+const earthRadius = 6371;  // km
+
+const radians = (degrees) => degrees * Math.PI / 180;
+
+// Kilometres to the east and the north of a place, along great circles through it.
+function projectionAbout(latitude, longitude) {
+  const [sin, cos] = [Math.sin(radians(latitude)), Math.cos(radians(latitude))];
+  return (lat, lon) => {
+    const turn = radians(lon - longitude), s = Math.sin(radians(lat)), c = Math.cos(radians(lat));
+    const angle = Math.acos(Math.min(Math.max(sin * s + cos * c * Math.cos(turn), -1), 1));
+    const factor = earthRadius * (angle > 1e-9 ? angle / Math.sin(angle) : 1);
+    return [factor * c * Math.sin(turn), factor * (cos * s - sin * c * Math.cos(turn))];
+  };
+}
+
+// The middle of places on the globe, wherever longitude jumps.
+function middleOf(indices, latitudes, longitudes) {
+  const sum = [0, 0, 0];
+  for (const i of indices) {
+    const c = Math.cos(radians(latitudes[i]));
+    sum[0] += c * Math.cos(radians(longitudes[i]));
+    sum[1] += c * Math.sin(radians(longitudes[i]));
+    sum[2] += Math.sin(radians(latitudes[i]));
+  }
+  const longitude = Math.atan2(sum[1], sum[0]) * 180 / Math.PI;
+  return [Math.atan2(sum[2], Math.hypot(sum[0], sum[1])) * 180 / Math.PI, longitude];
+}
+
+const degreesText = (degrees, step, [positive, negative]) => {
+  const turned = (degrees + 540) % 360 - 180;
+  const side = Math.abs(turned) === 180 || turned === 0 ? '' : ` ${turned < 0 ? negative : positive}`;
+  return `${number(Math.abs(turned), step)}°${side}`;
+};
+
+// A wind of so many m/s as a barb at a place: the shaft points to where it comes from, in knots by its feathers.
+function barb(pen, x, y, east, north, colour) {
+  const speed = Math.hypot(east, north);
+  let knots = Math.round(speed * 1.943844 / 5) * 5;
+  if (knots < 5) { pen.lines([[x - 3, y, x, y - 3, x + 3, y, x, y + 3, x - 3, y]], colour, 1.25); return; }
+  const [a, b] = [-east / speed, north / speed];  // along the shaft on the picture, whose y is downwards
+  const at = (along, aside) => [x + along * a - aside * b, y + along * b + aside * a];
+  const length = 26, paths = [[...at(0, 0), ...at(length, 0)]];
+  let along = length;
+  for (; knots >= 50; knots -= 50, along -= 7)
+    paths.push([...at(along, 0), ...at(along - 2.5, 9), ...at(along - 5, 0)]);
+  for (; knots >= 10; knots -= 10, along -= 4) paths.push([...at(along, 0), ...at(along + 2, 9)]);
+  if (knots >= 5) paths.push([...at(along === length ? along - 4 : along, 0), ...at((along === length ? along - 4 : along) + 1, 5)]);
+  pen.lines(paths, colour, 1.25);
+}
+
+function drawTrack(pen, width, height, item, samples, theme) {
+  const [lat, lon, shade] = columnsOf(samples, [item.latitude, item.longitude, item.colour]);
+  const places = samples.indices([lat, lon], samples.every);
+  const found = samples.indices([lat, lon, shade]);
+  cover(pen, width, height, theme);
+  const box = plotBox(width, height, {left: 58, right: 84, top: 12});
+  const [middleLat, middleLon] = middleOf(places, lat.values, lon.values);
+  const project = projectionAbout(middleLat, middleLon);
+  const at = new Map(places.map((i) => [i, project(lat.values[i], lon.values[i])]));
+  const ends = (axis) => [...at.values()].reduce(([least, greatest], place) =>
+    [Math.min(least, place[axis]), Math.max(greatest, place[axis])], [Infinity, -Infinity]);
+  const [east, north] = [ends(0), ends(1)];
+  const centre = [(east[0] + east[1]) / 2, (north[0] + north[1]) / 2];
+  const perPixel = Math.max((east[1] - east[0]) / (box.width - 36), (north[1] - north[0]) / (box.height - 36), 1e-3);
+  const x = (place) => box.x + box.width / 2 + (place[0] - centre[0]) / perPixel;
+  const y = (place) => box.y + box.height / 2 - (place[1] - centre[1]) / perPixel;
+
+  // Parallels and meridians, each with its name where it meets the left side or the bottom.
+  const span = [box.width * perPixel / 111 / Math.max(Math.cos(radians(middleLat)), 0.05), box.height * perPixel / 111];
+  const grid = (isMeridian) => {
+    const middle = isMeridian ? middleLon : middleLat, wide = isMeridian ? Math.min(span[0], 359) : span[1];
+    const {step, all} = ticks(middle - wide, middle + wide, 2 * wide / (isMeridian ? span[0] : span[1]) * (isMeridian ? box.width / 95 : box.height / 60));
+    for (const value of all) {
+      if (!isMeridian && Math.abs(value) > 90) continue;
+      const path = [];
+      for (let part = 0; part <= 40; ++part) {
+        const other = isMeridian ? Math.min(Math.max(middleLat - span[1] + part / 20 * span[1], -90), 90)
+          : middleLon - Math.min(span[0], 180) + part / 20 * Math.min(span[0], 180);
+        const place = isMeridian ? project(other, value) : project(value, other);
+        path.push(x(place), y(place));
+      }
+      pen.clip(box, () => pen.lines([path], theme.grid));
+      nameOfLine(path, isMeridian, degreesText(value, step, isMeridian ? ['E', 'W'] : ['N', 'S']));
+    }
+  };
+  const nameOfLine = (path, isMeridian, words) => {
+    const side = isMeridian ? box.y + box.height : box.x, other = isMeridian ? 0 : 1;
+    for (let n = 2; n < path.length; n += 2) {
+      const [from, to] = [path[n - 1 - other], path[n + 1 - other]];
+      if ((from - side) * (to - side) > 0 || from === to) continue;
+      const part = (side - from) / (to - from);
+      const along = path[n - 2 + other] + part * (path[n + other] - path[n - 2 + other]);
+      if (isMeridian && along > box.x && along < box.x + box.width) pen.text(along, side + 17, words, small(theme, 'middle'));
+      if (!isMeridian && along > box.y && along < box.y + box.height) pen.text(side - 6, along + 4, words, small(theme, 'end'));
+      return;
+    }
+  };
+  grid(true);
+  grid(false);
+  frame(pen, box, theme, NaN);
+
+  const sorted = Float64Array.from(samples.indices([lat, lon, shade], samples.every), (i) =>
+    item.diverging ? Math.abs(shade.values[i]) : shade.values[i]).sort();
+  const greatest = sorted[Math.floor(0.99 * (sorted.length - 1))] || 1;
+  const range = item.diverging ? {from: -greatest, to: greatest} : limits(sorted);
+  const colours = item.diverging ? theme.diverging : theme.sequential;
+  const level = scale(range.from, range.to, 0, levels - 1);
+  const dots = Array.from({length: levels}, () => []);
+  for (const i of found)
+    dots[Math.min(Math.max(Math.round(level(shade.values[i])), 0), levels - 1)].push(x(at.get(i)), y(at.get(i)));
+  const order = [...dots.keys()];
+  if (item.diverging) order.sort((a, b) => Math.abs(a - levels / 2 + 0.5) - Math.abs(b - levels / 2 + 0.5));
+  pen.clip(box, () => {
+    pen.dots(places.flatMap((i) => [x(at.get(i)), y(at.get(i))]), 1.5, theme.frame, 0.6);
+    for (const l of order) pen.dots(dots[l], 3.5, mixed(colours, l / (levels - 1)));
+    if (item.barbs) drawBarbs();
+    for (const flight of samples.flights) {
+      const first = places.find((i) => i >= flight.first && i < flight.end);
+      if (first === undefined) continue;
+      const [px, py] = [x(at.get(first)), y(at.get(first))];
+      pen.lines([[px - 5, py - 5, px + 5, py - 5, px + 5, py + 5, px - 5, py + 5, px - 5, py - 5]], theme.ink, 1.5);
+      const words = `${flight.name} ${clock(samples.time[first], false)}`.trim();
+      const fits = px + 9 + textWidth(words, fontSize) < box.x + box.width;
+      pen.text(fits ? px + 9 : px - 9, py + 4, words, {...small(theme, fits ? 'start' : 'end'), fill: theme.ink});
+    }
+  });
+  // No barb so close to another that they meet.
+  function drawBarbs() {
+    const drawn = [];
+    for (const {time, east: u, north: v} of item.wind) {
+      const i = places.reduce((best, each) =>
+        Math.abs(samples.time[each] - time) < Math.abs(samples.time[best] - time) ? each : best, places[0]);
+      const [px, py] = [x(at.get(i)), y(at.get(i))];
+      if (Math.abs(samples.time[i] - time) > 60 || drawn.some(([ox, oy]) => Math.hypot(px - ox, py - oy) < 34)) continue;
+      drawn.push([px, py]);
+      const ahead = project(lat.values[i] + 0.01, lon.values[i]);  // where north is on the picture
+      const turn = Math.atan2(ahead[0] - at.get(i)[0], ahead[1] - at.get(i)[1]);
+      barb(pen, px, py, u * Math.cos(turn) + v * Math.sin(turn), v * Math.cos(turn) - u * Math.sin(turn), theme.ink);
+    }
+  }
+  const longest = box.width * perPixel / 4, power = 10 ** Math.floor(Math.log10(longest));
+  const bar = power * [5, 2, 1].find((factor) => factor * power <= longest);
+  pen.lines([[box.x + 12, box.y + 14, box.x + 12, box.y + 18, box.x + 12 + bar / perPixel, box.y + 18,
+    box.x + 12 + bar / perPixel, box.y + 14]], theme.ink, 1.25);
+  pen.text(box.x + 18 + bar / perPixel, box.y + 20, `${number(bar, bar)} km`, {...small(theme), fill: theme.ink});
+  colourBar(pen, box, colours, range, shade.label, theme);
+  return {
+    points: found.length,
+    plot: box,
+    place: (i) => at.has(i) ? {x: x(at.get(i)), y: y(at.get(i))} : {x: NaN, y: NaN},
+    alternative: `Track over the ground, ${brief((east[1] - east[0]))} km from west to east and ` +
+      `${brief(north[1] - north[0])} km from south to north about ${degreesText(middleLat, 0.01, ['N', 'S'])}, ` +
+      `${degreesText(middleLon, 0.01, ['E', 'W'])}, by colour the ${shade.label}`,
+    table: statisticsTable(samples, [lat, lon, shade]),
+  };
+}
+
+pictures.track = drawTrack;
+heights.track = () => 430;

@@ -1,0 +1,201 @@
+#!/usr/bin/env python3
+"""The report of every command in browsers: Chromium and, where it is installed, Firefox.
+
+    every_report_test.py TOOL SOURCE_DIRECTORY BUILD_DIRECTORY
+
+Each page tests itself (each panel has data, a text alternative and numbers), wide and narrow, and axe-core, which is
+fetched from npm into the build directory, finds no violation. Without Chromium the test is skipped (status 77), or
+fails if PCOR_REQUIRE_CHROMIUM is set; without axe-core or Firefox its part of it is.
+"""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+from browser import Browser
+from firefox import Firefox
+
+TOOL, SOURCE, BUILD = (Path(word).resolve() for word in sys.argv[1:4])
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+FIREFOX = shutil.which("firefox-esr") or shutil.which("firefox")
+AXE_VERSION = "4.14.1"
+MADE = tempfile.TemporaryDirectory()
+FOLDER = Path(MADE.name)
+FITTED = ("one.nc", "two.nc")
+COMMANDS = {
+    "inspect": ("one.nc",),
+    "compare": (*FITTED, "-m", "model.toml"),
+    "refit": (*FITTED, "-m", "model.toml", "-o", "fitted.toml"),
+    "diagnose": (*FITTED, "-m", "fitted.toml"),
+    "improve": (*FITTED, "-m", "model.toml", "--holdout", "three.nc", "--trace-variables", "-o", "best.toml"),
+    "check": (*FITTED, "three.nc", "-m", "fitted.toml"),
+    "process": ("three.nc", "-m", "fitted.toml", "-o", "corrected.nc"),
+    "temperature": ("climbs.nc", "-m", "model.toml", "-o", "calibrated.toml", "--force"),
+}
+
+
+def run(*words, **more):
+    return subprocess.run([str(word) for word in words], cwd=FOLDER, check=True, capture_output=True, text=True, timeout=280, **more)
+
+
+def page(command):
+    return (FOLDER / f"{command}.html").as_uri()
+
+
+def setUpModule():
+    hidden = SOURCE / "data/scenarios/c130-hidden.toml"
+    for name, scenario, seed in (("one", hidden, 101), ("two", hidden, 102), ("three", hidden, 103),
+                                 ("climbs", SOURCE / "data/scenarios/c130-climbs.toml", 1)):
+        run(TOOL, "simulate", scenario, "--seed", seed, "-o", f"{name}.nc", "--quiet")
+    shutil.copy(SOURCE / "data/scenarios/models/c130-psfd-eq18.toml", FOLDER / "model.toml")
+    for command, words in COMMANDS.items():
+        run(TOOL, command, *words, "--report", f"{command}.html", "--quiet")
+
+
+def tearDownModule():
+    MADE.cleanup()
+
+
+def axe_core():
+    """The text of axe-core; empty where it cannot be had."""
+    folder = BUILD / "axe"
+    script = folder / "node_modules/axe-core/axe.min.js"
+    if not script.exists() and shutil.which("npm"):
+        folder.mkdir(parents=True, exist_ok=True)
+        subprocess.run(["npm", "install", "--no-audit", "--no-fund", "--silent", "--no-save", f"axe-core@{AXE_VERSION}"],
+                       cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=120)
+    return script.read_text() if script.exists() else ""
+
+
+class EveryReport(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.browser = Browser(CHROMIUM, FOLDER / "profile", 1400)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+
+    def resize(self, width):
+        self.browser.ask("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
+
+    def test_every_panel_has_data_wide_and_narrow(self):
+        for command in COMMANDS:
+            for width in (1400, 420):
+                with self.subTest(command=command, width=width):
+                    self.resize(width)
+                    self.browser.errors.clear()
+                    self.browser.open(page(command) + "#selftest")
+                    result = json.loads(self.browser.value("document.getElementById('selftest').textContent"))
+                    self.assertEqual(result["wrong"], [])
+                    self.assertGreater(result["panels"], 1)
+                    self.assertEqual(self.browser.errors, [])
+
+    def test_axe_finds_no_violation(self):
+        axe = axe_core()
+        if not axe:
+            self.skipTest("axe-core cannot be had from npm")
+        self.resize(1400)
+        for command in COMMANDS:
+            for theme in ("light", "dark"):
+                with self.subTest(command=command, theme=theme):
+                    self.browser.open(f"{page(command)}#{theme}")
+                    self.browser.value("document.querySelectorAll('details').forEach((each) => { each.open = true; })")
+                    self.browser.value(f"{axe}; 1")
+                    found = self.browser.value("""axe.run(document, {resultTypes: ['violations']}).then(({violations}) =>
+                      violations.map(({id, nodes}) => `${id}: ${nodes[0].html.slice(0, 200)}`))""")
+                    self.assertEqual(found, [])
+
+    def test_each_picture_tells_its_numbers(self):
+        for command in COMMANDS:
+            with self.subTest(command=command):
+                self.browser.open(page(command))
+                for label, rows in self.browser.value("pcorReport.panels.map(({canvas, numbers}) => [canvas.getAttribute('aria-label'), numbers.tBodies[0].rows.length])"):
+                    self.assertRegex(label, r"\w+.*\. .*\w+.*\. [\d\u202f]+ points?\.$")
+                    self.assertGreater(rows, 0, label)
+                    self.assertNotIn("NaN", label)
+                    self.assertNotIn("undefined", label)
+
+
+@unittest.skipUnless(FIREFOX, "Firefox is not installed")
+class InFirefox(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.browser = Firefox(FIREFOX, FOLDER / "firefox", 1400)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+
+    def test_every_panel_has_data(self):
+        for command in COMMANDS:
+            with self.subTest(command=command):
+                self.browser.open(page(command) + "#selftest")
+                result = json.loads(self.browser.value("document.getElementById('selftest').textContent"))
+                self.assertEqual(result["wrong"], [])
+
+    def test_a_drag_selects(self):
+        self.browser.open(page("compare"))
+        left, top, width, height = self.browser.value("""(() => {
+          const {canvas, drawn: {plot}} = pcorReport.panels[0];
+          canvas.scrollIntoView({block: 'center'});
+          const box = canvas.getBoundingClientRect();
+          return [box.left + plot.x, box.top + plot.y, plot.width, plot.height];
+        })()""")
+        before = self.browser.value("pcorReport.selection.count")
+        self.browser.drag(left + 0.25 * width, top + 0.5 * height, left + 0.75 * width, top + 0.5 * height)
+        view = self.browser.value("pcorReport.samples.view.map((position) => position / pcorReport.samples.length)")
+        for found, wanted in zip(view, (0.25, 0.75)):
+            self.assertAlmostEqual(found, wanted, delta=0.01)  # some pixels
+        self.assertLess(self.browser.value("pcorReport.selection.count"), before)
+
+
+class Figures(unittest.TestCase):
+    def test_a_command_writes_them(self):
+        result = run(TOOL, "compare", *COMMANDS["compare"], "--figures", "figures", "--figures-for", "column")
+        self.assertIn("wrote figures\n", result.stdout)
+        names = sorted(each.name for each in (FOLDER / "figures").iterdir())
+        self.assertIn("captions.txt", names)
+        self.assertEqual(len([name for name in names if name.endswith(".svg")]), len([name for name in names if name.endswith(".png")]))
+        text = (FOLDER / "figures" / "captions.txt").read_text()
+        self.assertIn("Command: pcor compare one.nc two.nc -m model.toml", text)
+
+    def test_what_cannot_be_drawn_is_said_before_the_work(self):
+        words = [str(TOOL), "refit", *FITTED, "-m", "model.toml", "-o", "none.toml", "--figures"]
+        for folder, browser, said in (("figures2", "/nowhere", "CHROMIUM names"), ("model.toml", CHROMIUM, "is an input itself"),
+                                      ("one.nc/figures", CHROMIUM, "cannot be a folder")):
+            found = subprocess.run([*words, folder], cwd=FOLDER, env={**os.environ, "CHROMIUM": browser}, capture_output=True, text=True)
+            self.assertEqual((found.returncode, found.stdout), (1, ""))
+            self.assertIn(said, found.stderr)
+            self.assertEqual(found.stderr.count("\n"), 1)
+            self.assertFalse((FOLDER / "none.toml").exists() or (FOLDER / "figures2").exists())
+
+    def test_a_stopped_run_leaves_nothing(self):
+        temporary = FOLDER / "temporary"
+        temporary.mkdir()
+        slow = FOLDER / "slow"
+        slow.write_text("#!/bin/sh\nsleep 2\n")
+        slow.chmod(0o755)
+        child = subprocess.Popen([TOOL, "inspect", "one.nc", "--figures", "stopped", "--quiet"], cwd=FOLDER,
+                                 env={**os.environ, "CHROMIUM": str(slow), "TMPDIR": str(temporary)})
+        end = 120
+        while not list(temporary.iterdir()) and end:
+            end -= 1
+            subprocess.run(["sleep", "0.1"], check=True)
+        child.terminate()
+        child.wait()
+        subprocess.run(["sleep", "3"], check=True)
+        self.assertEqual(list(temporary.iterdir()), [])
+        self.assertFalse((FOLDER / "stopped").exists())
+
+
+if __name__ == "__main__":
+    if CHROMIUM is None:
+        print("chromium is not installed; reports were not looked at", file=sys.stderr)
+        sys.exit(1 if os.environ.get("PCOR_REQUIRE_CHROMIUM") else 77)
+    unittest.main(argv=sys.argv[:1])
