@@ -62,6 +62,7 @@ class Shows {
                        [this](const std::string& name) { return meet({name}); });
   }
   bool operator()(const CurvePanel& panel) const { return !panel.curves.empty(); }
+  bool operator()(const WhatIfPanel& panel) const { return meet({panel.residual}); }
   bool operator()(const BarPanel& panel) const {
     return std::any_of(panel.bars.begin(), panel.bars.end(),
                        [](const ReportBar& bar) { return std::isfinite(bar.value); });
