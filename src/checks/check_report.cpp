@@ -64,6 +64,7 @@ class Shows {
   bool operator()(const PlanePanel& panel) const { return meet({panel.x, panel.y, panel.colour}); }
   bool operator()(const PairPanel& panel) const { return meet({panel.x, panel.y}); }
   bool operator()(const CurvePanel& panel) const { return !panel.curves.empty(); }
+  bool operator()(const WhatIfPanel& panel) const { return meet({panel.residual}); }
   bool operator()(const BarPanel& panel) const {
     return std::any_of(panel.bars.begin(), panel.bars.end(),
                        [](const ReportBar& bar) { return std::isfinite(bar.value); });

@@ -18,7 +18,6 @@ constexpr double generous_threshold = 9.0;
 constexpr std::size_t generous_effects = 6;
 constexpr double stretch_time = 300.0;  // s
 constexpr double least_eigenvalue = 1e-11;
-constexpr int parts = 5;
 
 template <class Value>
 std::vector<Value> part(const std::vector<Value>& all, std::size_t first, std::size_t last) {
@@ -26,6 +25,11 @@ std::vector<Value> part(const std::vector<Value>& all, std::size_t first, std::s
 }
 
 }  // namespace
+
+std::size_t held_out_part(const FlightSamples& samples, double time) {
+  return static_cast<std::size_t>(
+      std::fmod(std::floor((time - samples.time.front()) / stretch_time), static_cast<double>(held_out_parts)));
+}
 
 Analysis::Analysis(std::vector<FlightColumns> flights, std::vector<ColumnGroup> groups, std::uint64_t seed,
                    double explained)
@@ -241,10 +245,9 @@ Scores Analysis::scores_with(const std::vector<Eigen::MatrixXd>& more) const {
 HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
   const std::vector<Eigen::MatrixXd> columns = all_columns_of(groups);
   const Eigen::Index width = columns.front().cols() + 1;
-  std::vector<Eigen::MatrixXd> information(parts, Eigen::MatrixXd::Zero(width, width));
+  std::vector<Eigen::MatrixXd> information(held_out_parts, Eigen::MatrixXd::Zero(width, width));
   const auto part_of = [this](std::size_t f, double time) {
-    return static_cast<std::size_t>(
-        std::fmod(std::floor((time - flight(f).samples->time.front()) / stretch_time), parts));
+    return held_out_part(*flight(f).samples, time);
   };
   std::vector<Eigen::MatrixXd> white;
   for (std::size_t f = 0; f < columns.size(); ++f) {

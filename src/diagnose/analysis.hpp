@@ -12,6 +12,12 @@
 
 namespace pcor::internal {
 
+/// The flights in stretches of five minutes, one in five of which is left out of a fit at a time.
+inline constexpr std::size_t held_out_parts = 5;
+
+/// The part that a time of a flight belongs to.
+std::size_t held_out_part(const FlightSamples& samples, double time);
+
 /// What is left on stretches that took no part in a fit.
 struct HeldOut {
   double rms = 0.0;      ///< hPa, with the first reference, without outliers

@@ -201,6 +201,22 @@ std::string name_of_system(const ModelFile& model, const References& references)
   return several ? system_of(model) : "";
 }
 
+std::vector<BaseCoefficient> base_of(const ModelFile& model) {
+  std::vector<BaseCoefficient> base;
+  for (std::size_t e = 0; e < model.model.effects.size(); ++e) {
+    const ModelEffect& effect = model.model.effects[e];
+    const std::vector<std::string> names = parameter_names(effect);
+    const EffectFacts* const facts = effect.is_formula() ? nullptr : &effect_facts[effect_named(effect.id)];
+    for (std::size_t p = 0; p < names.size(); ++p) {
+      if (model.fit(e, p).fixed) continue;
+      base.push_back({effect.id + "." + names[p],
+                      std::string(facts == nullptr ? "" : facts->parameters[p].unit), effect.parameters[p],
+                      model.bounds(e, p)});
+    }
+  }
+  return base;
+}
+
 /// Everything that the own system may have, a system that it is held against may have too. One residual of
 /// both knows their difference alone.
 void add_those_of_the_references(CandidateSet& set, const References& references,
@@ -220,9 +236,11 @@ void add_those_of_the_references(CandidateSet& set, const References& references
     if (same != references.begin() + static_cast<std::ptrdiff_t>(r)) {
       set.base_of_others.back() = set.base_of_others[static_cast<std::size_t>(same - references.begin())];
     } else {
-      const std::vector<std::string> names = residual_parameter_names(*model, *lams_reference());
-      for (const std::size_t parameter : free_parameters(*model))
-        set.base.push_back(id_on_other_system(system, names[parameter]));
+      for (BaseCoefficient& coefficient : base_of(*model)) {
+        coefficient.name = id_on_other_system(system, coefficient.name);
+        coefficient.of_reference = true;
+        set.base.push_back(std::move(coefficient));
+      }
     }
     other = *model;
     name_usual_variables(*other, flights);
@@ -339,8 +357,7 @@ CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffe
     }
     consider(candidate);
   }
-  const std::vector<std::string> names = residual_parameter_names(model, *lams_reference());
-  for (const std::size_t parameter : free_parameters(model)) set.base.push_back(names[parameter]);
+  set.base = base_of(model);
   const bool two_systems = std::any_of(references.begin(), references.end(),
                                        [](const auto& each) { return each->model() != nullptr; });
   add_derived_ones(set, two_systems);

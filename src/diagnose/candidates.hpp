@@ -45,6 +45,15 @@ struct Candidate {
   }
 };
 
+/// A coefficient that is fitted beside every candidate.
+struct BaseCoefficient {
+  std::string name;  ///< like "static-qp.a2" and "reference:static-qp.a2"
+  std::string unit;
+  double value = 0.0;  ///< in its model
+  Bounds bounds{};
+  bool of_reference = false;
+};
+
 /// What can be tested on some flights.
 struct CandidateSet {
   /// The model with every candidate besides, and the variables of all roles that these need.
@@ -54,9 +63,7 @@ struct CandidateSet {
   /// The model of each reference, with every candidate on its system besides; nothing where it has none.
   std::vector<std::optional<ModelFile>> others{};
   std::vector<std::size_t> effects_of_others{};  ///< how many effects the law of each has without candidates
-  /// The coefficients that are fitted beside every candidate, like "static-qp.a2" and
-  /// "reference:static-qp.a2".
-  std::vector<std::string> base{};
+  std::vector<BaseCoefficient> base{};
   /// Where those of each reference's own model begin.
   std::vector<std::size_t> base_of_others{};
   std::vector<Candidate> candidates{};

@@ -13,7 +13,7 @@
 #include "diagnose/advice.hpp"
 #include "diagnose/analysis.hpp"
 #include "diagnose/candidates.hpp"
-#include "diagnose/columns.hpp"
+#include "diagnose/flight_columns.hpp"
 #include "diagnose/findings.hpp"
 #include "diagnose/flaps.hpp"
 #include "diagnose/rms.hpp"
@@ -21,7 +21,6 @@
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "residuals/flight_statistics.hpp"
-#include "residuals/frozen.hpp"
 #include "residuals/masks.hpp"
 
 namespace pcor {
@@ -30,82 +29,10 @@ using namespace internal;
 
 namespace {
 
-constexpr std::size_t fewest_samples = 300;
-
-/// Why a candidate cannot be tested on these columns; empty where it can.
-std::string trouble_of(const std::vector<FlightColumns>& flights, Eigen::Index first, Eigen::Index count) {
-  bool varies = false;
-  for (const FlightColumns& flight : flights) {
-    std::size_t missing = 0;
-    std::size_t used = 0;
-    for (std::size_t i = 0; i < flight.given.size(); ++i) {
-      if (std::isnan(flight.given[i])) continue;
-      ++used;
-      const auto values = flight.candidates.row(as_index(i)).segment(first, count);
-      missing += values.allFinite() ? 0 : 1;
-      varies = varies || values.cwiseAbs().maxCoeff() > 0.0F;
-    }
-    if (missing > 0) {
-      return fmt::format("an input has no value, or an impossible one, in {} of {} samples of {}", missing,
-                         used, flight.samples->name);
-    }
-  }
-  if (!varies)
-    return "nothing of it reaches the residual in the samples used: what it depends on does not occur there, "
-           "or the reference does not see it";
-  return "";
-}
-
-/// The references that a diagnosis can use, those that tell of each sample first; a note on each of the
-/// others.
-References usable(const References& references, std::vector<std::string>& notes) {
-  References result;
-  References of_windows;
-  for (const auto& reference : references) {
-    if (reference->is_of_one_sample()) {
-      result.push_back(reference);
-    } else if (reference->window() > 0.0) {
-      of_windows.push_back(reference);
-    } else {
-      notes.push_back(fmt::format(
-          "the reference {} took no part in the diagnosis: it holds many minutes together, of which no part "
-          "tells something for itself; compare shows it, and refit uses it",
-          reference->name()));
-    }
-  }
-  const bool tells_of_samples = !result.empty();
-  result.insert(result.end(), of_windows.begin(), of_windows.end());
-  if (!tells_of_samples)
-    throw Error(
-        "nothing to diagnose with: give a reference that tells of each sample, such as --reference lams");
-  return result;
-}
-
 std::string description_of(const References& references) {
   std::string text;
   for (const auto& reference : references) text += (text.empty() ? "" : "; ") + reference->description();
   return text;
-}
-
-/// Takes out the candidates that cannot be tested, and their columns.
-void drop_untestable(CandidateSet& set, std::vector<FlightColumns>& flights) {
-  std::vector<Eigen::Index> kept;
-  std::vector<Candidate> candidates;
-  Eigen::Index first = 0;
-  for (Candidate& candidate : set.candidates) {
-    const Eigen::Index count = as_index(candidate.tested.size());
-    std::string trouble = trouble_of(flights, first, count);
-    if (trouble.empty()) {
-      for (Eigen::Index k = 0; k < count; ++k) kept.push_back(first + k);
-      candidates.push_back(std::move(candidate));
-    } else if (!candidate.is_variant) {
-      set.not_testable.push_back({candidate.id, candidate.title, std::move(trouble)});
-    }
-    first += count;
-  }
-  set.candidates = std::move(candidates);
-  for (FlightColumns& flight : flights)
-    flight.candidates = Eigen::MatrixXf(flight.candidates(Eigen::all, kept));
 }
 
 /// The variables that effects of the catalogue read.
@@ -120,56 +47,6 @@ std::set<std::string> inputs_of(const std::vector<Finding>& findings, const Mode
     }
   }
   return names;
-}
-
-/// Whether an effect reads the flow angles, which the radome tells by more than one sensor.
-bool reads_flow_angles(const EffectFacts& facts) {
-  return std::any_of(facts.needs.begin(), facts.needs.end(), [](Quantity need) {
-    return need == Quantity::attack || need == Quantity::attack_ratio || need == Quantity::sideslip ||
-           need == Quantity::sideslip_ratio;
-  });
-}
-
-// Of an effect of flow angles where the model has one: what is left of its variance may be the noise by which
-// two sensors of one angle differ. Another scaling of it differs still less.
-constexpr double left_by_same_angle = 0.005;
-constexpr double left_by_same_sensors = 0.02;
-
-/// Whether an effect of the catalogue is of the family and the place of one that a model has, by other
-/// sensors.
-bool is_like_one_of(const ModelFile& model, const Candidate& candidate) {
-  const std::size_t known = effect_named(candidate.effect.id);
-  if (known == catalogue_size || candidate.is_of_reference()) return false;
-  const EffectFacts& facts = effect_facts[known];
-  if (!reads_flow_angles(facts)) return false;
-  return std::any_of(model.model.effects.begin(), model.model.effects.end(), [&](const ModelEffect& effect) {
-    const std::size_t other = effect_named(effect.id);
-    return other != catalogue_size && effect_facts[other].family == facts.family &&
-           effect_facts[other].where == facts.where;
-  });
-}
-
-std::vector<ColumnGroup> groups_of(const ModelFile& model, const std::vector<Candidate>& candidates) {
-  std::vector<ColumnGroup> groups;
-  Eigen::Index first = 0;
-  std::size_t effect = 0;
-  std::string before;
-  for (const Candidate& candidate : candidates) {
-    if (candidate.id != before) ++effect;
-    before = candidate.id;
-    ColumnGroup& group = groups.emplace_back();
-    group.effect = effect;
-    if (is_like_one_of(model, candidate))
-      group.least_left = candidate.is_variant ? left_by_same_sensors : left_by_same_angle;
-    group.first = first;
-    group.count = as_index(candidate.tested.size());
-    for (const CandidateParameter& parameter : candidate.tested) {
-      group.bounds.push_back(parameter.bounds);
-      group.usual.push_back(parameter.typical);
-    }
-    first += group.count;
-  }
-  return groups;
 }
 
 std::vector<FlightDiagnosis> flights_of(const Analysis& analysis) {
@@ -204,6 +81,20 @@ std::vector<FlightDiagnosis> flights_of(const Analysis& analysis) {
     flight.sideslip = columns.quantity(Quantity::sideslip);
   }
   return flights;
+}
+
+/// The model's own coefficients, fitted again.
+std::vector<Estimate> own_of(const Analysis& analysis, const std::vector<BaseCoefficient>& base) {
+  Eigen::VectorXd change;
+  Eigen::MatrixXd covariance;
+  analysis.search().fit({}, change, covariance);
+  std::vector<Estimate> own;
+  for (std::size_t b = 0; b < base.size(); ++b) {
+    const Eigen::Index place = as_index(b);
+    own.push_back({base[b].name, base[b].unit, base[b].value + change[place],
+                   std::sqrt(std::max(0.0, covariance(place, place)))});
+  }
+  return own;
 }
 
 double noise_with_findings(const std::vector<FlightDiagnosis>& flights) {
@@ -337,36 +228,15 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
   for (const Flight& file : files) flights.push_back(&file);
 
   Diagnosis diagnosis;
-  const References references = usable(all_references, diagnosis.notes);
+  const References references = usable_references(all_references, diagnosis.notes);
   diagnosis.reference = description_of(references);
   CandidateSet set = find_candidates(model, options.formulas, flights, references);
-  std::vector<FlightColumns> columns;
-  for (std::size_t r = 0; r < references.size(); ++r) {
-    for (std::size_t f = 0; f < flights.size(); ++f) {
-      auto samples = std::make_shared<FlightSamples>(
-          r == 0 ? read_samples(*flights[f], set.extended, *set.references[0], options.mask)
-                 : *columns[f].samples);
-      if (r > 0) {
-        samples->notes.clear();
-        samples->reference = set.references[r]->read(*flights[f], samples->time, samples->notes);
-        mark_frozen(*samples, &FlightSamples::reference, options.mask.least_airspeed);
-      }
-      diagnosis.notes.insert(diagnosis.notes.end(), samples->notes.begin(), samples->notes.end());
-      columns.push_back(
-          find_columns(std::move(samples), model, set, r, options.mask, options.training_share));
-      if (r > 0) continue;
-      for (const Mask mask : columns.back().mask) ++diagnosis.masks[static_cast<std::size_t>(mask)];
-      if (options.progress) options.progress(columns.size(), flights.size());
-    }
+  std::vector<FlightColumns> columns = columns_of_flights(files, model, set, options, diagnosis.notes);
+  for (const FlightColumns& flight : columns) {
+    if (flight.reference != 0) continue;
+    for (const Mask mask : flight.mask) ++diagnosis.masks[static_cast<std::size_t>(mask)];
   }
-  columns.erase(
-      std::remove_if(columns.begin(), columns.end(),
-                     [](const FlightColumns& flight) {
-                       const auto used = std::count(flight.mask.begin(), flight.mask.end(), Mask::none);
-                       return !has_value(flight.given) ||
-                              (flight.reference != 0 && used < static_cast<std::ptrdiff_t>(fewest_samples));
-                     }),
-      columns.end());
+  leave_out_empty(columns);
   add_statistics(columns, options.training_share, diagnosis);
   if (diagnosis.samples < diagnosis.masks[0]) {
     diagnosis.notes.push_back(fmt::format("{} samples of the later parts of the flights took no part",
@@ -390,6 +260,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
   diagnosis.absorbed = absorbed_of(analysis, set.candidates, set.base);
   diagnosis.limits = limits_of(analysis, set.candidates, diagnosis.findings);
   diagnosis.not_testable = std::move(set.not_testable);
+  diagnosis.own = own_of(analysis, set.base);
   diagnosis.flights = flights_of(analysis);
   diagnosis.residual_rms = rms_of(diagnosis.flights, &FlightDiagnosis::before);
   diagnosis.residual_rms_held_out = analysis.held_out({}).rms;

@@ -140,21 +140,59 @@ void DiagnosisPanels::add_binned(std::string title, std::string caption, std::ve
   BinnedPanel panel;
   y.erase(std::remove_if(y.begin(), y.end(), [&](const std::string& name) { return !meet({name}); }),
           y.end());
-  const auto offer = [&](const std::string& x) {
-    const bool known = std::find(panel.x_choices.begin(), panel.x_choices.end(), x) != panel.x_choices.end();
-    const bool shown = std::any_of(y.begin(), y.end(), [&](const std::string& name) {
-      return meet({x, name});
-    });
-    if (!known && shown) panel.x_choices.push_back(x);
-  };
-  for (const std::string& x : first) offer(x);
-  for (const std::string& x : variables_) offer(x);
+  panel.x_choices = choices(y, first);
   if (panel.x_choices.empty()) return;
   panel.title = std::move(title);
   panel.caption = std::move(caption);
   panel.y = std::move(y);
   panel.axis = "residual";
   panel.samples_per_independent = memory_;
+  add(std::move(panel));
+}
+
+std::vector<std::string> DiagnosisPanels::choices(const std::vector<std::string>& y,
+                                                  const std::vector<std::string>& first) const {
+  std::vector<std::string> all;
+  const auto offer = [&](const std::string& x) {
+    const bool known = std::find(all.begin(), all.end(), x) != all.end();
+    const bool shown = std::any_of(y.begin(), y.end(), [&](const std::string& name) {
+      return meet({x, name});
+    });
+    if (!known && shown) all.push_back(x);
+  };
+  for (const std::string& x : first) offer(x);
+  for (const std::string& x : variables_) offer(x);
+  return all;
+}
+
+void DiagnosisPanels::add_what_if(const WhatIf& what_if, const std::string& residual,
+                                  const std::vector<std::string>& first, double noise) {
+  if (what_if.panel.effects.empty() || !meet({residual})) return;
+  WhatIfPanel panel = what_if.panel;
+  for (std::size_t c = 0; c < panel.coefficients.size(); ++c) {
+    Series& column = panel.coefficients[c].column;
+    for (const Used& used : used_) {
+      const auto flight =
+          std::find_if(what_if.flights.begin(), what_if.flights.end(), [&used](const WhatIfFlight& each) {
+            return each.samples->name == used.samples->name && each.samples->time == used.samples->time;
+          });
+      for (const std::size_t i : used.places)
+        column.push_back(flight == what_if.flights.end() ? std::numeric_limits<double>::quiet_NaN()
+                                                         : flight->columns[c][i]);
+    }
+  }
+  panel.title = "What if";
+  panel.caption =
+      "Switch an effect on, or move its coefficient: residual, table, ladder and figures follow, and the "
+      "coefficients that were not moved by hand are fitted again. The fit takes the derivatives of the "
+      "residual where the model is now, in units of the noise that is left when all that was found is taken "
+      "off. That is what pcor refit finds where the residual is a straight line in the coefficients, and "
+      "nearly so elsewhere, as for a lag. The figures are of all samples; pictures and table take the "
+      "derivatives at some thousand samples, with straight lines between them.";
+  panel.residual = residual;
+  panel.x_choices = choices({residual}, first);
+  panel.samples_per_independent = memory_;
+  panel.noise = noise;
   add(std::move(panel));
 }
 

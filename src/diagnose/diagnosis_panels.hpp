@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <pcor/diagnose/diagnose.hpp>
+#include <pcor/diagnose/what_if.hpp>
 #include <pcor/numerics/noise.hpp>
 #include <pcor/report/report.hpp>
 #include "report/columns.hpp"
@@ -93,6 +94,12 @@ class DiagnosisPanels {
   /// column. `by_dynamic_pressure` where the reference is a laser; else by static pressure.
   void add_responses(const std::vector<std::string>& residuals, bool by_dynamic_pressure);
 
+  /// Effects to add under the reader's hand; nothing where there are none.
+  /// @param residual the column that it starts from
+  /// @param first variables that there are before the others
+  void add_what_if(const WhatIf& what_if, const std::string& residual, const std::vector<std::string>& first,
+                   double noise);
+
   void add_plane(std::string title, std::string caption, const std::string& colour);
 
   /// Unless it has no rows.
@@ -131,6 +138,9 @@ class DiagnosisPanels {
   };
 
   void add_variables(const Flights& flights);
+  /// Of the variables those that some sample has together with one of the columns, `first` first.
+  std::vector<std::string> choices(const std::vector<std::string>& y,
+                                   const std::vector<std::string>& first) const;
 
   Report report_;
   std::vector<Used> used_;

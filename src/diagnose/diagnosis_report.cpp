@@ -220,7 +220,7 @@ std::string limits_text(const UpperLimit& limit) {
   return list_text(all);
 }
 
-Report diagnosis_report(const Diagnosis& diagnosis, const ModelFile& model) {
+Report diagnosis_report(const Diagnosis& diagnosis, const ModelFile& model, const WhatIf* what_if) {
   using F = FlightDiagnosis;
   DiagnosisPanels panels(diagnosis.flights);
   Report& report = panels.report();
@@ -240,6 +240,11 @@ Report diagnosis_report(const Diagnosis& diagnosis, const ModelFile& model) {
   panels.measure_memory(diagnosis.flights,
                         [&](const F& f) -> const Series& { return found ? f.after : f.before; });
   add_residual_panels(panels, residuals);
+  if (what_if != nullptr) {
+    const std::vector<std::string> inputs = found ? inputs_of(diagnosis.findings.front().effect)
+                                                  : std::vector<std::string>{};
+    panels.add_what_if(*what_if, "before", inputs, diagnosis.noise_rms_with_findings);
+  }
   if (found) {
     add_findings(panels, diagnosis, residuals);
   } else {

@@ -407,7 +407,7 @@ std::vector<std::vector<double>> evidence_along(const Analysis& analysis, std::s
 }
 
 std::vector<AbsorbedEffect> absorbed_of(const Analysis& analysis, const std::vector<Candidate>& candidates,
-                                        const std::vector<std::string>& base) {
+                                        const std::vector<BaseCoefficient>& base) {
   constexpr double notable = 0.1;  // of the effect's rms
   std::vector<AbsorbedEffect> absorbed;
   for (std::size_t g = 0; g < candidates.size(); ++g) {
@@ -425,7 +425,7 @@ std::vector<AbsorbedEffect> absorbed_of(const Analysis& analysis, const std::vec
     for (Eigen::Index b = 0; b < analysis.base(); ++b) {
       const double size = std::abs(solution[b]) * std::sqrt(normal(b, b));
       if (size > notable * std::sqrt(information(own, own)))
-        effect.by.push_back(base[static_cast<std::size_t>(b)]);
+        effect.by.push_back(base[static_cast<std::size_t>(b)].name);
     }
     absorbed.push_back(std::move(effect));
   }

@@ -16,9 +16,9 @@ std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Can
 /// where not used.
 std::vector<std::vector<double>> evidence_along(const Analysis& analysis, std::size_t flight);
 
-/// Candidates that the model's own coefficients imitate. @param base the names of these
+/// Candidates that the model's own coefficients imitate. @param base these
 std::vector<AbsorbedEffect> absorbed_of(const Analysis& analysis, const std::vector<Candidate>& candidates,
-                                        const std::vector<std::string>& base);
+                                        const std::vector<BaseCoefficient>& base);
 
 /// What the effects that were not found may amount to.
 std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Candidate>& candidates,

@@ -5,12 +5,9 @@
 #include <memory>
 
 #include <pcor/fit/loss.hpp>
+#include "numerics/tukey.hpp"
 
 namespace pcor::internal {
-
-/// Beyond so many robust deviations Tukey's loss gives a sample no weight: 95 % efficiency on normal noise
-/// (Holland and Welsch 1977, Communications in Statistics A6, 813).
-inline constexpr double tukey_width = 4.685;
 
 /// The loss of residuals whose robust deviation is `deviation`; null for least squares, and where there is no
 /// deviation.

@@ -11,6 +11,7 @@
 
 #include <pcor/flight/flight.hpp>
 #include <pcor/words/error.hpp>
+#include "diagnose/traced_effect.hpp"
 #include "fit/lineage.hpp"
 #include "improve/average.hpp"
 #include "improve/improve_loop.hpp"
@@ -57,16 +58,6 @@ struct Candidates {
   bool all = false;
 };
 
-std::string id_of_trace(const std::string& variable) {
-  std::string id = "traced-";
-  for (const char letter : variable) {
-    const bool upper = letter >= 'A' && letter <= 'Z';
-    const bool plain = (letter >= 'a' && letter <= 'z') || (letter >= '0' && letter <= '9');
-    id += upper ? static_cast<char>(letter - 'A' + 'a') : plain ? letter : '-';
-  }
-  return id;
-}
-
 Candidate candidate_of(const Finding& finding, Verdict verdict) {
   Candidate candidate;
   candidate.choices.push_back({{finding.effect, finding.held, finding.is_alike}, finding.probability});
@@ -90,17 +81,8 @@ Candidate candidate_of(const Finding& finding, Verdict verdict) {
 }
 
 Candidate candidate_of(const TracedVariable& variable, const std::string& flights) {
-  ModelEffect effect;
-  effect.id = id_of_trace(variable.name);
-  effect.parameter_names = {"k"};
-  effect.parameters = {variable.slope};
-  effect.formula = variable.formula;
-  effect.where = variable.where;
-  effect.unit = "hPa";
-  effect.source = fmt::format("traced in the residuals of {}: {:.0f} % of their variance, p = {:.2g}",
-                              flights, 100.0 * variable.r2, variable.p_value);
   Candidate candidate;
-  candidate.choices = {{{std::move(effect)}, 1.0}};
+  candidate.choices = {{{effect_of(variable, flights)}, 1.0}};
   candidate.title = fmt::format("what goes with {}{}", variable.name,
                                 variable.description.empty() ? "" : ", " + variable.description);
   candidate.is_named = false;
@@ -190,6 +172,7 @@ class Climb {
   Improvement run() {
     while (result_.why_stopped.empty()) climb_on();
     result_.model = result_.fit.model;
+    result_.refitted = refitted_;
     average();
     compare_with_the_given();
     return std::move(result_);

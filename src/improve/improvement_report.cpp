@@ -164,7 +164,7 @@ void add_rung(DiagnosisPanels& panels, const Improvement& improvement, std::size
 
 }  // namespace
 
-Report improvement_report(const Improvement& improvement, const ModelFile& start) {
+Report improvement_report(const Improvement& improvement, const ModelFile& start, const WhatIf* what_if) {
   if (improvement.steps.empty()) throw Error("report: the ladder has no rung; improve a model first");
   const std::vector<ImproveStep>& steps = improvement.steps;
   const Diagnosis& top = steps.back().diagnosis;
@@ -196,6 +196,11 @@ Report improvement_report(const Improvement& improvement, const ModelFile& start
                      rungs.back());
   panels.add_table(ladder_table(improvement));
   add_ladder_in_time(panels, improvement);
+  if (what_if != nullptr) {
+    const ModelEffect& last = improvement.fit.model.model.effects.back();
+    panels.add_what_if(*what_if, "ladder-refitted",
+                       added > 0 ? inputs_of(last) : std::vector<std::string>{}, steps.back().noise_rms);
+  }
   add_residual_panels(panels, rungs.size() < 2 ? rungs : std::vector{rungs.front(), rungs.back()});
   for (std::size_t i = 1; i < steps.size(); ++i) add_rung(panels, improvement, i);
   const std::vector<std::string> ends = rungs.size() < 2 ? rungs : std::vector{rungs.front(), rungs.back()};

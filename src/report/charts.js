@@ -37,8 +37,11 @@ function places(indices, xs, ys, x, y) {
   return xy;
 }
 
+// The columns by which a scale is chosen: those that do not change under the hand, where there are some.
+const steady = (columns) => columns.some(({live}) => !live) ? columns.filter(({live}) => !live) : columns;
+
 // All values of columns, selected or not: scales stay where they are when the reader selects.
-const valuesOf = (samples, columns) => columns.flatMap((column) =>
+const valuesOf = (samples, columns) => steady(columns).flatMap((column) =>
   samples.indices([column], samples.every).map((i) => column.values[i]));
 
 const cover = (pen, width, height, theme) => pen.rect(0, 0, width, height, theme.paper);
@@ -172,8 +175,9 @@ function drawBinned(pen, width, height, item, samples, theme) {
   const bins = columns.map(({values}, c) =>
     binned(abscissa.values, values, found[c], across, item.bins, item.samplesPerIndependent));
   const shown = bins.map((all) => all.filter(({count}) => count >= fewest));
-  const up = limits(columns.flatMap(({values}, c) => whole[c].map((i) => values[i])),
-    shown.flat().flatMap(({mean, error}) => [mean - error, mean + error]));
+  const steadily = (of) => steady(columns).flatMap((column) => of(column, columns.indexOf(column)));
+  const up = limits(steadily(({values}, c) => whole[c].map((i) => values[i])),
+    steadily((column, c) => shown[c]).flatMap(({mean, error}) => [mean - error, mean + error]));
   const x = scale(across.from, across.to, box.x, box.x + box.width);
   const y = scale(up.from, up.to, box.y + box.height, box.y);
   verticalAxis(pen, box, y, up, sharedLabel(columns, item.axis), theme);

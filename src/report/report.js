@@ -22,6 +22,7 @@ class ReportPage {
     data.items.forEach((item, i) => {
       const section = document.querySelector(`[data-item="${i}"]`);
       if (item.kind === 'regimes') this.tables.push(new Regimes(item, section, this));
+      else if (item.kind === 'what-if') this.whatIf = new WhatIf(item, section, this);
       else if (pictures[item.kind]) this.panels.push(new Panel(item, section, this));
     });
     for (const panel of this.panels) {
@@ -125,6 +126,7 @@ class ReportPage {
       if (vertical) own.vertical = [vertical.from, vertical.to];
       if (Object.keys(own).length) (view.panels ??= {})[i] = own;
     });
+    if (this.whatIf?.state) view.whatIf = this.whatIf.state;
     const words = Object.keys(view).length ? [`view=${encodeURIComponent(JSON.stringify(view))}`] : [];
     const address = `#${[...wishes.filter((wish) => !wish.startsWith('view=')), ...words].join('+')}`;
     if (address === (location.hash || '#')) return;
@@ -161,6 +163,7 @@ class ReportPage {
       }
       item.vertical = isRange(vertical) ? {from: vertical[0], to: vertical[1], beyond: 0} : undefined;
     });
+    this.whatIf?.recall(view.whatIf);
     this.draw();
   }
 

@@ -25,7 +25,7 @@ namespace {
 
 class Columns {
  public:
-  explicit Columns(const Report& report) : columns_(report.columns) {
+  explicit Columns(const Report& report) : columns_(report.columns), samples_(report.time.size()) {
     std::set<std::string> names;
     for (const ReportColumn& column : report.columns) {
       if (!names.insert(column.name).second)
@@ -35,6 +35,8 @@ class Columns {
              std::to_string(report.time.size()) + " samples; give one per sample, NaN where missing");
     }
   }
+
+  std::size_t samples() const { return samples_; }
 
   // Whether some sample has a value in every one of the columns that the panel names.
   bool meet(const std::string& panel, std::initializer_list<std::string> names) const {
@@ -54,6 +56,7 @@ class Columns {
 
  private:
   const std::vector<ReportColumn>& columns_;
+  std::size_t samples_;
 };
 
 struct CheckItem {
@@ -131,6 +134,32 @@ struct CheckItem {
       for (const ReportDot& dot : row.dots) shown = shown || std::isfinite(dot.value);
     }
     if (!shown) fail_empty(panel.title);
+  }
+
+  void operator()(const WhatIfPanel& panel) const {
+    if (!columns.meet(panel.title, {panel.residual})) fail_empty(panel.title);
+    if (panel.effects.empty()) fail("panel '" + panel.title + "' has no effect to switch on; leave it out");
+    for (const WhatIfCoefficient& coefficient : panel.coefficients)
+      if (coefficient.column.size() != columns.samples())
+        fail("coefficient '" + coefficient.name + "' of panel '" + panel.title + "' has " +
+             std::to_string(coefficient.column.size()) + " values for " + std::to_string(columns.samples()) +
+             " samples; give one per sample, NaN where missing");
+    for (const WhatIfEffect& effect : panel.effects)
+      if (effect.first < panel.own || effect.first + effect.count > panel.coefficients.size())
+        fail("effect '" + effect.id + "' of panel '" + panel.title +
+             "' has coefficients that are not in the panel; correct its first and count");
+    const std::size_t width = panel.coefficients.size() + 1;
+    std::vector<WhatIfSums> all = panel.weighted;
+    all.insert(all.end(), panel.alike.begin(), panel.alike.end());
+    all.push_back(panel.outliers);
+    if (!panel.held_out.products.empty()) all.push_back(panel.held_out);
+    if (panel.weighted.empty() || panel.weighted.size() != panel.alike.size() ||
+        std::any_of(all.begin(), all.end(),
+                    [width](const WhatIfSums& sums) { return sums.products.size() != width * (width + 1) / 2; }))
+      fail("panel '" + panel.title + "' has sums that are not of its " +
+           std::to_string(panel.coefficients.size()) + " coefficients and the residual; give all of them");
+    for (const std::string& x : panel.x_choices)
+      if (!columns.meet(panel.title, {x, panel.residual})) fail_empty(panel.title);
   }
 
   void operator()(const ReportTable& table) const {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "report/report_data.hpp"
+#include "report/thinned.hpp"
 
 namespace pcor::internal::report {
 
@@ -94,7 +96,45 @@ const char* name_of(ReportTone tone) {
   return names[static_cast<std::size_t>(tone)];
 }
 
+std::string base64_of(const std::vector<double>& numbers) {
+  std::vector<std::uint64_t> bits(numbers.size());
+  if (!numbers.empty()) std::memcpy(bits.data(), numbers.data(), numbers.size() * sizeof(double));
+  return base64(bits);
+}
+
+json sums_json(const WhatIfSums& sums) {
+  return {{"products", base64_of(sums.products)}, {"samples", sums.samples}};
+}
+
+json sums_json(const std::vector<WhatIfSums>& all) {
+  json sums = json::array();
+  for (const WhatIfSums& each : all) sums.push_back(sums_json(each));
+  return sums;
+}
+
+// The samples at which the columns are kept, and their values there.
+json what_if_columns(const WhatIfPanel& panel, const Report& report) {
+  constexpr std::size_t most = 4000;
+  // Of what is kept pictures are drawn, in which a hundredth of the noise is nothing.
+  const double enough = 0.01 * panel.noise;
+  std::vector<ScaledSeries> series;
+  for (const WhatIfCoefficient& coefficient : panel.coefficients)
+    series.push_back({&coefficient.column, coefficient.size});
+  const std::vector<std::size_t> points = thinned(report.time, report.flight_starts, series, most, enough);
+  json columns = json::array();
+  for (const WhatIfCoefficient& coefficient : panel.coefficients) {
+    ReportColumn column;
+    for (const std::size_t i : points) column.values.push_back(coefficient.column[i]);
+    const json kept = quantised(column);
+    columns.push_back({{"least", kept["least"]}, {"step", kept["step"]}, {"values", kept["values"]}});
+  }
+  return {{"points", base64(std::vector<std::uint32_t>(points.begin(), points.end()))},
+          {"columns", std::move(columns)}};
+}
+
 struct ItemJson {
+  const Report& report;
+
   json operator()(const TimePanel& panel) const {
     return {{"title", panel.title}, {"columns", panel.columns}, {"axis", panel.axis}};
   }
@@ -166,6 +206,52 @@ struct ItemJson {
     if (!panel.band.empty()) all["band"] = {{"label", panel.band}, {"from", -1.0}, {"to", 1.0}};
     return all;
   }
+
+  json operator()(const WhatIfPanel& panel) const {
+    json coefficients = json::array();
+    for (const WhatIfCoefficient& each : panel.coefficients)
+      coefficients.push_back({{"name", each.name},
+                              {"unit", each.unit},
+                              {"given", each.given},
+                              {"start", each.start},
+                              {"least", each.least},
+                              {"greatest", each.greatest},
+                              {"fixed", each.fixed}});
+    json effects = json::array();
+    for (const WhatIfEffect& each : panel.effects)
+      effects.push_back({{"id", each.id},
+                         {"title", each.title},
+                         {"why", each.why},
+                         {"first", each.first},
+                         {"count", each.count},
+                         {"argument", each.argument},
+                         {"isFormula", each.is_formula},
+                         {"note", each.note}});
+    json separations = json::array();
+    for (const WhatIfSeparation& each : panel.separations)
+      separations.push_back({{"effect", each.effect}, {"rival", each.rival}, {"text", each.text}});
+    json item{{"title", panel.title},
+              {"residual", panel.residual},
+              {"coefficients", std::move(coefficients)},
+              {"own", panel.own},
+              {"effects", std::move(effects)},
+              {"choices", panel.x_choices},
+              {"samplesPerIndependent", panel.samples_per_independent},
+              {"weighted", sums_json(panel.weighted)},
+              {"alike", sums_json(panel.alike)},
+              {"inflation", panel.inflation},
+              {"outliers", sums_json(panel.outliers)},
+              {"heldOut", sums_json(panel.held_out)},
+              {"noise", panel.noise},
+              {"separations", std::move(separations)},
+              {"commands",
+               {{"add", panel.commands.add},
+                {"model", panel.commands.model},
+                {"with", panel.commands.with},
+                {"refit", panel.commands.refit}}}};
+    item.update(what_if_columns(panel, report));
+    return item;
+  }
   json operator()(const ReportTable&) const { return json::object(); }
   json operator()(const ReportText&) const { return json::object(); }
 };
@@ -173,8 +259,9 @@ struct ItemJson {
 }  // namespace
 
 const char* kind_of(const ReportItem& item) {
-  constexpr const char* kinds[] = {"time",  "binned", "plane",    "pair",      "regimes", "bars",  "curves",
-                                   "track", "strip",  "byregime", "quantiles", "dots",    "table", "text"};
+  constexpr const char* kinds[] = {"time",      "binned", "plane",   "pair",  "regimes",
+                                   "bars",      "curves", "track",   "strip", "byregime",
+                                   "quantiles", "dots",   "what-if", "table", "text"};
   static_assert(std::size(kinds) == std::variant_size_v<ReportItem>);
   return kinds[item.index()];
 }
@@ -188,7 +275,7 @@ std::string data_json(const Report& report) {
   for (const ReportInterval& interval : report.intervals)
     data["intervals"].push_back({{"name", interval.name}, {"begin", interval.begin}, {"end", interval.end}});
   for (const ReportItem& item : report.items) {
-    json one = std::visit(ItemJson{}, item);
+    json one = std::visit(ItemJson{report}, item);
     one["kind"] = kind_of(item);
     data["items"].push_back(std::move(one));
   }

@@ -198,15 +198,24 @@ void run(const Options& options) {
   diagnose_with.not_variables = options.not_variables;
   diagnose_with.training_share = options.training_share;
   Diagnosis diagnosis;
+  WhatIf tried;
   {
     Progress bar("diagnosing", !options.common.quiet);
     diagnose_with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
     diagnosis = diagnose(flight_paths(options.comparison), model, references.used, diagnose_with);
+    if (!options.common.report.empty()) {
+      tried = what_if(flight_paths(options.comparison), model, references.used,
+                      what_if_candidates(diagnosis, diagnose_with.formulas),
+                      {diagnose_with, {}, true, diagnosis.own});
+      std::string fit = command_line(options.comparison);
+      if (options.training_share < 1.0) fit += fmt::format(" --training-share {}", options.training_share);
+      add_commands(tried, options.model, options.comparison.flights.front(), fit);
+    }
   }
   OutputsTogether together;
   if (wants_report(options.common))
-    write_report_of_run(diagnosis_report(diagnosis, model), {{options.model}, options.comparison.flights, {}},
-                        options.common);
+    write_report_of_run(diagnosis_report(diagnosis, model, &tried),
+                        {{options.model}, options.comparison.flights, {}}, options.common);
   json.write(as_json(diagnosis));
   together.appear();
   if (wants_text(options.common)) print(diagnosis, references, options);

@@ -11,6 +11,7 @@
 #include <pcor/words/suggest.hpp>
 #include <pcor/words/utc.hpp>
 #include "comparison.hpp"
+#include "shaped_effect.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -201,6 +202,22 @@ std::string command_line(const CandidateOptions& options) {
   for (const std::string& formula : options.formulas) line += option("--try", formula);
   if (!options.file.empty()) line += option("--candidates", options.file);
   return line;
+}
+
+void add_commands(WhatIf& what_if, const std::string& model, const std::string& first_flight,
+                  const std::string& fit) {
+  for (std::size_t e = 0; e < what_if.effects.size(); ++e) {
+    const ModelEffect& effect = what_if.effects[e];
+    WhatIfEffect& shown = what_if.panel.effects[e];
+    const bool of_reference = shown.id != effect.id;
+    if (!effect.is_formula() && !of_reference) shown.argument = quoted(argument_of(effect));
+    if (effect.is_formula() && effect.parameter_names == std::vector<std::string>{"k"})
+      shown.argument = fmt::format("{} --formula {} --where {}", quoted(effect.id), quoted(effect.formula),
+                                   facts_of(effect.where).name);
+  }
+  what_if.panel.commands = {fmt::format("{} add", program()), quoted(model),
+                            fmt::format("--flight {}", quoted(first_flight)),
+                            fmt::format("{} refit {}", program(), fit)};
 }
 
 std::string probability(double p) { return p < 0.001 ? "< 0.001" : fmt::format("{:.3f}", p); }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <pcor/diagnose/diagnose.hpp>
+#include <pcor/diagnose/what_if.hpp>
 
 namespace pcor::tool {
 
@@ -35,6 +35,11 @@ ModelEffect formula_effect(const std::string& id, const std::string& formula, co
 /// those of `place`. @throws Error that says what may have been meant.
 void require_known_variables(const ModelEffect& effect, const std::string& option,
                              const std::vector<std::string>& variables, const std::string& place);
+
+/// Puts into a what-if the commands that add its effects and refit, ready to be copied.
+/// @param fit the flights and options of the refit, as they stand on a command line
+void add_commands(WhatIf& what_if, const std::string& model, const std::string& first_flight,
+                  const std::string& fit);
 
 /// "< 0.001", or the number.
 std::string probability(double p);

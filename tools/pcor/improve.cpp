@@ -147,17 +147,26 @@ void run(const Options& options) {
   const ChosenReferences references = references_to_fit(options.comparison, model, options.holdout);
   ImproveOptions improve_with = improve_options(options, model);
   Improvement improvement;
+  WhatIf tried;
   {
     std::optional<Progress> bar;
     improve_with.progress = [&](const std::string& what) { bar.emplace(what, !options.common.quiet); };
     improve_with.refit.progress = [&bar](std::size_t done, std::size_t total) { bar->show(done, total); };
     improvement = improve(flight_paths(options.comparison), model, references.used, improve_with);
+    if (!options.common.report.empty()) {
+      tried = what_if(flight_paths(options.comparison), improvement, references.used, improve_with);
+      std::string fit = command_line(options.comparison);
+      for (const std::string& flight : options.holdout) fit += " --holdout " + quoted(flight);
+      if (options.training_share < 1.0) fit += fmt::format(" --training-share {}", options.training_share);
+      if (options.loss != "tukey") fit += " --loss " + options.loss;
+      add_commands(tried, options.model, options.comparison.flights.front(), fit);
+    }
   }
   refuse_worse(improvement.worse, options.force, improvement.model);
   OutputsTogether together;
   deliver(improvement.model, options.output, inputs);
   if (wants_report(options.common))
-    write_report_of_run(improvement_report(improvement, model),
+    write_report_of_run(improvement_report(improvement, model, &tried),
                         {{options.model, options.output}, options.comparison.flights, options.holdout},
                         options.common);
   json.write(as_json(improvement, options));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <pcor/diagnose/diagnose.hpp>
+#include <pcor/diagnose/what_if.hpp>
 #include <pcor/report/report.hpp>
 
 #include <string>
@@ -21,7 +22,8 @@ std::string limits_text(const UpperLimit& limit);
 /// the residual before and after in time and against the inputs of each effect, the evidence in time and over
 /// Mach number and pressure, the ranking with its rivals, and a page in words for each finding.
 /// @param model the one that was diagnosed
-Report diagnosis_report(const Diagnosis& diagnosis, const ModelFile& model);
+/// @param what_if effects that the reader can add; null for none
+Report diagnosis_report(const Diagnosis& diagnosis, const ModelFile& model, const WhatIf* what_if = nullptr);
 
 /// What kind of effect it is, where it may act, and how large it is beside the usual: "family: zero; place:
 /// p-transducer or other-system; 15 times its usual size: ...".

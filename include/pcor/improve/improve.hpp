@@ -1,6 +1,7 @@
 #pragma once
 
 #include <pcor/diagnose/diagnose.hpp>
+#include <pcor/diagnose/what_if.hpp>
 #include <pcor/fit/refit.hpp>
 
 #include <filesystem>
@@ -62,7 +63,8 @@ struct ImprovedFlight {
 };
 
 struct Improvement {
-  ModelFile model;  ///< the best one, refitted, its correction averaged over the rivals that remain
+  ModelFile model;     ///< the best one, refitted, its correction averaged over the rivals that remain
+  ModelFile refitted;  ///< the one that came, refitted
   double given_rms_train =
       std::numeric_limits<double>::quiet_NaN();  ///< of the model as it came, hPa, on the samples of the fit
   double given_rms_holdout = std::numeric_limits<double>::quiet_NaN();  ///< on what was held out; NaN without
@@ -89,5 +91,10 @@ std::string rivals_text(const ImproveStep& step);
 /// @throws Error as `refit` and `diagnose`.
 Improvement improve(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
                     const References& references, const ImproveOptions& options = {});
+
+/// The effects of the ladder, and what they could not be told from, for a reader to add under his hand to the
+/// model that came, refitted. Arguments as of `improve`. @throws Error as `diagnose`.
+WhatIf what_if(const std::vector<std::filesystem::path>& flights, const Improvement& improvement,
+               const References& references, const ImproveOptions& options);
 
 }  // namespace pcor

@@ -8,6 +8,8 @@ namespace pcor {
 /// The report of an improvement: the ladder, why it ended, the residual at its foot and at its top, and for
 /// each effect that was added the page of its finding.
 /// @param start the model at the foot of the ladder
-Report improvement_report(const Improvement& improvement, const ModelFile& start);
+/// @param what_if effects that the reader can add; null for none
+Report improvement_report(const Improvement& improvement, const ModelFile& start,
+                          const WhatIf* what_if = nullptr);
 
 }  // namespace pcor

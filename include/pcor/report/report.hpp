@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <utility>
 #include <variant>
@@ -185,6 +186,80 @@ struct CurvePanel {
   bool log_x = false;
 };
 
+/// A coefficient that the reader of a what-if moves, or that is fitted again there.
+struct WhatIfCoefficient {
+  std::string name;  ///< of the parameter, e.g. "tau"; of the model's own "static-qp.a2"
+  std::string unit{};
+  double given = 0.0;  ///< in the model; of an effect that it lacks, that with which the effect does nothing
+  double start = 0.0;  ///< at which the residual is as its column has it
+  double least = -std::numeric_limits<double>::infinity();  ///< that physics allows
+  double greatest = std::numeric_limits<double>::infinity();
+  bool fixed = false;  ///< keeps the value that is given
+  double size = 0.0;   ///< of its changes: pictures are right where it moves by so much
+  /// What a unit of it takes off the residual, one value per sample; NaN where not known. Reports keep the
+  /// samples between which a straight line will not do, a few thousand at most.
+  std::vector<double> column{};
+};
+
+/// An effect that the reader of a what-if switches on.
+struct WhatIfEffect {
+  std::string id;
+  std::string title;
+  std::string why{};      ///< it is in the list, e.g. "found", "instead of static-lag"
+  std::size_t first = 0;  ///< of its coefficients
+  std::size_t count = 0;
+  std::string argument{};   ///< by which a command adds it, ready for a shell; empty where none can
+  bool is_formula = false;  ///< a command of its own adds it
+  std::string note{};       ///< what the reader should know of it; a sentence
+};
+
+/// Sums over samples of what coefficients and residual have in common: the lower triangle, row by row, of the
+/// products of (columns, residual at the start).
+struct WhatIfSums {
+  std::vector<double> products;
+  double samples = 0.0;
+};
+
+/// What two effects are told apart by, as a sentence.
+struct WhatIfSeparation {
+  std::size_t effect = 0;
+  std::size_t rival = 0;
+  std::string text;
+};
+
+/// Commands to copy, ready for a shell.
+struct WhatIfCommands {
+  std::string add;    ///< up to the effects, e.g. "pcor add"
+  std::string model;  ///< the file to begin with
+  std::string with;   ///< behind the model, e.g. "--flight rf01.nc"
+  std::string refit;  ///< up to the model, e.g. "pcor refit rf01.nc rf02.nc"
+};
+
+/// Effects that the reader adds to the model by switches, with their coefficients on sliders: what the
+/// residual would be, with the model's own coefficients fitted again.
+struct WhatIfPanel {
+  std::string title;
+  std::string caption;
+  std::string residual;                         ///< the column that it starts from
+  std::vector<WhatIfCoefficient> coefficients;  ///< the model's own, then those of the effects
+  std::size_t own = 0;                          ///< how many are the model's own
+  std::vector<WhatIfEffect> effects;
+  std::vector<std::string> x_choices{};  ///< columns that the residual is shown against
+  double samples_per_independent = 1.0;  ///< as of `BinnedPanel`
+  /// Of parts of the flights, each of which is left out in turn: of rows in units of the noise, for a fit;
+  /// and of all samples alike but outliers, hPa.
+  std::vector<WhatIfSums> weighted;
+  std::vector<WhatIfSums> alike;
+  /// By how much the variance of a coefficient is larger than least squares of the weighted rows has it,
+  /// since the weights come from the residuals.
+  double inflation = 1.0;
+  WhatIfSums outliers{};  ///< as `alike`
+  WhatIfSums held_out{};  ///< as `alike`, of what took no part in any fit; empty where there is nothing
+  double noise = 0.0;     ///< rms, hPa
+  std::vector<WhatIfSeparation> separations{};
+  WhatIfCommands commands{};
+};
+
 /// A table of words and numbers; cells that are numbers are aligned.
 struct ReportTable {
   std::string title;
@@ -200,7 +275,7 @@ struct ReportText {
 
 using ReportItem =
     std::variant<TimePanel, BinnedPanel, PlanePanel, PairPanel, RegimeTable, BarPanel, CurvePanel, TrackPanel,
-                 StripPanel, RegimePanel, QuantilePanel, DotPanel, ReportTable, ReportText>;
+                 StripPanel, RegimePanel, QuantilePanel, DotPanel, WhatIfPanel, ReportTable, ReportText>;
 
 /// What a report says, in the order in which the reader meets it: the title, the summary, the facts, the
 /// items, its origin. All texts are plain text in UTF-8.

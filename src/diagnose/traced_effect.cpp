@@ -1,0 +1,30 @@
+#include "diagnose/traced_effect.hpp"
+
+#include <fmt/format.h>
+
+namespace pcor::internal {
+
+std::string id_of_trace(const std::string& variable) {
+  std::string id = "traced-";
+  for (const char letter : variable) {
+    const bool upper = letter >= 'A' && letter <= 'Z';
+    const bool plain = (letter >= 'a' && letter <= 'z') || (letter >= '0' && letter <= '9');
+    id += upper ? static_cast<char>(letter - 'A' + 'a') : plain ? letter : '-';
+  }
+  return id;
+}
+
+ModelEffect effect_of(const TracedVariable& variable, const std::string& flights) {
+  ModelEffect effect;
+  effect.id = id_of_trace(variable.name);
+  effect.parameter_names = {"k"};
+  effect.parameters = {variable.slope};
+  effect.formula = variable.formula;
+  effect.where = variable.where;
+  effect.unit = "hPa";
+  effect.source = fmt::format("traced in the residuals of {}: {:.0f} % of their variance, p = {:.2g}",
+                              flights, 100.0 * variable.r2, variable.p_value);
+  return effect;
+}
+
+}  // namespace pcor::internal

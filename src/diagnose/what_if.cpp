@@ -1,0 +1,323 @@
+#include <pcor/diagnose/what_if.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <pcor/words/error.hpp>
+#include "diagnose/flight_columns.hpp"
+#include "diagnose/separation.hpp"
+#include "diagnose/traced_effect.hpp"
+#include "diagnose/what_if_fit.hpp"
+#include "numerics/missing.hpp"
+#include "numerics/triangular_factor.hpp"
+#include "residuals/masks.hpp"
+#include "residuals/moving_columns.hpp"
+
+namespace pcor {
+
+using namespace internal;
+
+namespace {
+
+constexpr std::size_t most_effects = 12;
+constexpr std::size_t most_traced = 2;
+
+/// Whether a candidate is the wanted effect, in its shape.
+bool is_meant(const Candidate& candidate, const WhatIfCandidate& wanted) {
+  if (candidate.id != wanted.id || candidate.is_shared != wanted.is_alike) return false;
+  if (!wanted.effect) return !candidate.is_variant;
+  if (!(candidate.effect.scaling == wanted.effect->scaling)) return false;
+  for (std::size_t p = 0; p < candidate.effect.parameters.size(); ++p) {
+    const bool is_tested =
+        std::any_of(candidate.tested.begin(), candidate.tested.end(),
+                    [p](const CandidateParameter& parameter) { return parameter.place == p; });
+    if (!is_tested && candidate.effect.parameters[p] != wanted.effect->parameters[p]) return false;
+  }
+  return true;
+}
+
+/// How far the time over which a candidate's need is found is from the one that the wanted effect has.
+double distance(const Candidate& candidate, const WhatIfCandidate& wanted) {
+  const Memory memory = memory_of(candidate.effect);
+  if (memory.of == Quantity::count || !wanted.effect) return 0.0;
+  return std::abs(candidate.memory - std::abs(wanted.effect->parameters[memory.parameter]));
+}
+
+/// The place of the candidate that is meant; the number of all where there is none.
+std::size_t place_of(const std::vector<Candidate>& candidates, const WhatIfCandidate& wanted) {
+  std::size_t best = candidates.size();
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    if (!is_meant(candidates[c], wanted)) continue;
+    if (best == candidates.size() || distance(candidates[c], wanted) < distance(candidates[best], wanted))
+      best = c;
+  }
+  return best;
+}
+
+/// Leaves the candidates that are wanted, and those that others are made of.
+void keep(CandidateSet& set, const std::vector<WhatIfCandidate>& wanted) {
+  std::vector<bool> kept(set.candidates.size() + 1, false);
+  for (const WhatIfCandidate& each : wanted) {
+    std::size_t place = place_of(set.candidates, each);
+    kept[place] = true;
+    while (place < set.candidates.size() && set.candidates[place].is_shared) --place;
+    kept[place] = true;
+  }
+  std::vector<Candidate> candidates;
+  for (std::size_t c = 0; c < set.candidates.size(); ++c) {
+    if (kept[c]) candidates.push_back(std::move(set.candidates[c]));
+  }
+  set.candidates = std::move(candidates);
+}
+
+/// Brings candidates and columns into the order in which they are wanted; gives what is wanted of those that
+/// could be tested.
+std::vector<WhatIfCandidate> put_in_order(CandidateSet& set, std::vector<FlightColumns>& flights,
+                                          const std::vector<WhatIfCandidate>& wanted) {
+  std::vector<Eigen::Index> begins;
+  Eigen::Index width = 0;
+  for (const Candidate& candidate : set.candidates) {
+    begins.push_back(width);
+    width += as_index(candidate.tested.size());
+  }
+  std::vector<WhatIfCandidate> found;
+  std::vector<Candidate> candidates;
+  std::vector<Eigen::Index> columns;
+  for (const WhatIfCandidate& each : wanted) {
+    const std::size_t place = place_of(set.candidates, each);
+    if (place == set.candidates.size()) continue;
+    found.push_back(each);
+    candidates.push_back(set.candidates[place]);
+    for (std::size_t k = 0; k < candidates.back().tested.size(); ++k)
+      columns.push_back(begins[place] + as_index(k));
+  }
+  set.candidates = std::move(candidates);
+  for (FlightColumns& flight : flights)
+    flight.candidates = Eigen::MatrixXf(flight.candidates(Eigen::all, columns));
+  return found;
+}
+
+/// The samples of a flight that took no part, with their columns: of a flight that is held out all of them,
+/// else those behind the part that was used.
+FlightColumns held_out(FlightColumns all, double used_share) {
+  for (const std::size_t i : used_samples(all.mask, used_share)) all.given[i] = nan;
+  return all;
+}
+
+WhatIfSums as_sums(const SumOfProducts& sum) {
+  WhatIfSums sums;
+  sums.samples = sum.count;
+  for (Eigen::Index i = 0; i < sum.products.rows(); ++i) {
+    for (Eigen::Index j = 0; j <= i; ++j) sums.products.push_back(sum.products(i, j));
+  }
+  return sums;
+}
+
+std::vector<WhatIfSums> as_sums(const std::vector<SumOfProducts>& all) {
+  std::vector<WhatIfSums> sums;
+  for (const SumOfProducts& each : all) sums.push_back(as_sums(each));
+  return sums;
+}
+
+/// All columns of a flight by records, in double precision.
+std::vector<std::vector<double>> by_records(const FlightColumns& flight) {
+  std::vector<std::vector<double>> columns;
+  for (const Eigen::MatrixXf* part : {&flight.base, &flight.candidates}) {
+    for (Eigen::Index c = 0; c < part->cols(); ++c) {
+      std::vector<double>& column = columns.emplace_back(flight.given.size(), nan);
+      for (std::size_t i = 0; i < column.size(); ++i) {
+        if (!std::isnan(flight.given[i])) column[i] = static_cast<double>((*part)(as_index(i), c));
+      }
+    }
+  }
+  return columns;
+}
+
+/// Puts what took no part behind, or beside, what did.
+void add_held_out(std::vector<WhatIfFlight>& flights, const FlightColumns& held_out) {
+  std::vector<std::vector<double>> columns = by_records(held_out);
+  const auto same = std::find_if(flights.begin(), flights.end(), [&](const WhatIfFlight& flight) {
+    return flight.samples->name == held_out.samples->name && flight.samples->time == held_out.samples->time;
+  });
+  if (same == flights.end()) {
+    flights.push_back({held_out.samples, std::move(columns)});
+    return;
+  }
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    for (std::size_t i = 0; i < columns[c].size(); ++i) {
+      if (!std::isnan(columns[c][i])) same->columns[c][i] = columns[c][i];
+    }
+  }
+}
+
+std::string note_of(const Candidate& candidate) {
+  if (candidate.is_of_reference())
+    return "It is of the system that the model is held against: the model is not to be changed for it.";
+  if (candidate.is_shared)
+    return "It is alike on the system that the model is held against, which no model file can hold: the "
+           "command adds it without that.";
+  return "";
+}
+
+/// What would tell each effect from each other, at the sizes that each has alone.
+std::vector<WhatIfSeparation> separations_of(const std::vector<FlightColumns>& flights,
+                                             const WhatIfFit& fit, const CandidateSet& set,
+                                             const ModelFile& model, const MaskOptions& mask) {
+  std::vector<WhatIfSeparation> separations;
+  if (set.candidates.size() < 2) return separations;
+  std::vector<std::shared_ptr<const FlightSamples>> samples;
+  for (const FlightColumns& flight : flights) {
+    if (flight.reference == 0) samples.push_back(flight.samples);
+  }
+  const std::vector<Prospect> prospects = prospects_of(samples, fit.noise(), set, model, mask);
+  const auto columns_of = [&fit](std::size_t effect) { return places_of(fit.groups()[effect], fit.base()); };
+  for (std::size_t effect = 0; effect < set.candidates.size(); ++effect) {
+    if (set.candidates[effect].is_shared) continue;  // its columns are those of another
+    const Eigen::VectorXd alone = fit.fitted({effect}).values;
+    const std::vector<Eigen::Index> own = columns_of(effect);
+    Rivalry rivalry{fit.information(), fit.variance({effect}), own, alone(own), {}};
+    for (std::size_t rival = 0; rival < set.candidates.size(); ++rival) {
+      if (rival == effect || set.candidates[rival].is_shared) continue;
+      std::vector<Eigen::Index> rest = fit.own();
+      const std::vector<Eigen::Index> others = columns_of(rival);
+      rest.insert(rest.end(), others.begin(), others.end());
+      rivalry.rests = {std::move(rest)};
+      separations.push_back({effect, rival,
+                             text_of(best_plan(prospects, rivalry), set.candidates[effect].id,
+                                     set.candidates[effect].effect, {set.candidates[rival].id})});
+    }
+  }
+  return separations;
+}
+
+}  // namespace
+
+std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
+                                                const std::vector<ModelEffect>& formulas) {
+  std::vector<WhatIfCandidate> candidates;
+  const auto add = [&candidates](WhatIfCandidate candidate) {
+    const bool is_new = std::none_of(candidates.begin(), candidates.end(),
+                                     [&](const WhatIfCandidate& each) { return each.id == candidate.id; });
+    if (is_new && candidates.size() < most_effects) candidates.push_back(std::move(candidate));
+  };
+  for (const Finding& finding : diagnosis.findings)
+    add({finding.id(), "found", finding.effect, finding.is_alike, true});
+  for (const Finding& finding : diagnosis.findings) {
+    for (const Alias& alias : finding.aliases)
+      add({alias.effect, "instead of " + finding.id(), alias.correction, alias.is_alike});
+  }
+  for (const ModelEffect& formula : formulas) add({formula.id, "your formula"});
+  std::vector<std::string> flights;
+  for (const FlightDiagnosis& flight : diagnosis.flights) flights.push_back(flight.samples->name);
+  // A variable that no effect explains is as good as found.
+  std::size_t traced = 0;
+  for (const TracedVariable& variable : diagnosis.unexplained.variables) {
+    if (variable.formula.empty() || traced == most_traced) continue;
+    const ModelEffect effect = effect_of(variable, fmt::format("{}", fmt::join(flights, ", ")));
+    add({effect.id, "goes with " + variable.name, effect, false, traced++ == 0 && diagnosis.findings.empty()});
+  }
+  // What comes nearest: by its estimate in units of the error.
+  constexpr std::size_t nearest = 4;
+  std::vector<std::pair<double, const UpperLimit*>> others;
+  for (const UpperLimit& limit : diagnosis.limits) {
+    double score = 0.0;
+    for (const Estimate& estimate : limit.estimates)
+      score = std::max(score, std::abs(estimate.value) / estimate.standard_error);
+    if (std::isfinite(score)) others.emplace_back(score, &limit);
+  }
+  std::stable_sort(others.begin(), others.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  others.resize(std::min(others.size(), nearest));
+  for (const auto& [score, limit] : others) add({limit->effect, "not found"});
+  return candidates;
+}
+
+WhatIf what_if(const std::vector<std::filesystem::path>& paths, const ModelFile& model,
+               const References& all_references, const std::vector<WhatIfCandidate>& wanted,
+               const WhatIfOptions& options) {
+  const TimeStamp time_stamp = options.diagnose.time_stamp;
+  std::vector<Flight> files;
+  std::vector<Flight> held_out_files;
+  for (const std::filesystem::path& path : paths) files.emplace_back(path, time_stamp);
+  for (const std::filesystem::path& path : options.holdout) held_out_files.emplace_back(path, time_stamp);
+  std::vector<const Flight*> flights;
+  for (const Flight& file : files) flights.push_back(&file);
+  for (const Flight& file : held_out_files) flights.push_back(&file);
+  std::vector<std::string> notes;  // the diagnosis tells them
+  std::vector<ModelEffect> formulas = options.diagnose.formulas;
+  for (const WhatIfCandidate& each : wanted) {
+    const auto same = [&each](const ModelEffect& formula) { return formula.id == each.id; };
+    if (each.effect && each.effect->is_formula() && std::none_of(formulas.begin(), formulas.end(), same))
+      formulas.push_back(*each.effect);
+  }
+  CandidateSet set =
+      find_candidates(model, formulas, flights, usable_references(all_references, notes));
+  keep(set, wanted);
+  const MaskOptions& mask = options.diagnose.mask;
+  const double share = options.diagnose.training_share;
+  std::vector<FlightColumns> columns = columns_of_flights(files, model, set, options.diagnose, notes);
+  leave_out_empty(columns);
+  if (columns.empty()) throw Error("no sample is left to try effects on");
+  const std::size_t fitted_flights = columns.size();
+  drop_untestable(set, columns);
+  std::vector<FlightColumns> others;
+  for (const Flight& file : held_out_files) {
+    auto samples = std::make_shared<FlightSamples>(read_samples(file, set.extended, *set.references[0], mask));
+    others.push_back(held_out(find_columns(std::move(samples), model, set, 0, mask, 1.0), 0.0));
+  }
+  for (std::size_t f = 0; f < fitted_flights && share < 1.0; ++f) {
+    if (columns[f].reference == 0)
+      others.push_back(held_out(find_columns(columns[f].samples, model, set, 0, mask, 1.0), share));
+  }
+  CandidateSet ordered = set;
+  const std::vector<WhatIfCandidate> found = put_in_order(ordered, columns, wanted);
+  put_in_order(set, others, wanted);
+
+  WhatIf result;
+  if (found.empty()) return result;
+  WhatIfPanel& panel = result.panel;
+  panel.own = ordered.base.size();
+  for (const BaseCoefficient& coefficient : ordered.base) {
+    const auto start = std::find_if(options.own.begin(), options.own.end(), [&](const Estimate& each) {
+      return each.name == coefficient.name;
+    });
+    panel.coefficients.push_back({coefficient.name, coefficient.unit, coefficient.value,
+                                  start == options.own.end() ? coefficient.value : start->value,
+                                  coefficient.bounds.lower, coefficient.bounds.upper,
+                                  coefficient.of_reference});
+  }
+  std::vector<std::size_t> are_found;
+  for (std::size_t e = 0; e < found.size(); ++e) {
+    const Candidate& candidate = ordered.candidates[e];
+    result.effects.push_back(candidate.effect);
+    panel.effects.push_back({found[e].id, candidate.title, found[e].why, panel.coefficients.size(),
+                             candidate.tested.size(), "", candidate.effect.is_formula(),
+                             note_of(candidate)});
+    for (const CandidateParameter& tested : candidate.tested) {
+      const double neutral = candidate.effect.parameters[tested.place];
+      panel.coefficients.push_back({tested.name, tested.unit, neutral, neutral,
+                                    neutral + tested.bounds.lower, neutral + tested.bounds.upper});
+    }
+    if (found[e].is_found) are_found.push_back(e);
+  }
+  const WhatIfFit fit(std::move(columns), std::move(others), panel.coefficients,
+                      groups_of(model, ordered.candidates), are_found, options.is_robust);
+  fit.describe(panel.coefficients);
+  panel.weighted = as_sums(fit.weighted());
+  panel.alike = as_sums(fit.alike());
+  panel.inflation = fit.inflation();
+  panel.outliers = as_sums(fit.outliers());
+  if (fit.held_out().count > 0.0) panel.held_out = as_sums(fit.held_out());
+  for (const FlightColumns& flight : fit.flights()) {
+    if (flight.reference == 0) result.flights.push_back({flight.samples, by_records(flight)});
+  }
+  for (const FlightColumns& flight : fit.others()) add_held_out(result.flights, flight);
+  panel.separations = separations_of(fit.flights(), fit, ordered, model, mask);
+  return result;
+}
+
+}  // namespace pcor

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstddef>
+#include <vector>
+
+#include <pcor/report/report.hpp>
+#include "diagnose/columns.hpp"
+#include "diagnose/search.hpp"
+#include "numerics/noise_model.hpp"
+
+namespace pcor::internal {
+
+/// Products of (columns, residual) with themselves, summed over so many samples.
+struct SumOfProducts {
+  Eigen::MatrixXd products{};
+  double count = 0.0;
+};
+
+/// What a what-if fits: columns and residual of some flights in units of the noise, weighted as a refit with
+/// the effects that were found weights them.
+class WhatIfFit {
+ public:
+  /// @param others samples that take no part
+  /// @param coefficients of all columns: the residual is taken at their start, those that are fixed have the
+  /// value that is given
+  /// @param found the groups with which the noise is found
+  WhatIfFit(std::vector<FlightColumns> flights, std::vector<FlightColumns> others,
+            const std::vector<WhatIfCoefficient>& coefficients, std::vector<ColumnGroup> groups,
+            const std::vector<std::size_t>& found, bool is_robust);
+
+  const std::vector<FlightColumns>& flights() const { return flights_; }
+  const std::vector<FlightColumns>& others() const { return others_; }
+  const std::vector<ColumnGroup>& groups() const { return groups_; }
+  Eigen::Index base() const { return base_; }
+  /// The model's own columns that are fitted.
+  const std::vector<Eigen::Index>& own() const { return own_; }
+  /// Of the flights against the first reference.
+  const NoiseModel& noise() const { return noise_; }
+
+  const std::vector<SumOfProducts>& weighted() const { return weighted_; }
+  const std::vector<SumOfProducts>& alike() const { return alike_; }
+  double inflation() const { return inflation_; }
+  const SumOfProducts& outliers() const { return outliers_; }
+  const SumOfProducts& held_out() const { return held_out_; }
+
+  /// Of all columns.
+  Eigen::MatrixXd information() const;
+
+  /// Changes of all coefficients from the start, and their covariance.
+  struct Fitted {
+    Eigen::VectorXd values;
+    Eigen::VectorXd errors;
+  };
+
+  /// The model's own coefficients with those of some groups, fitted; the others as they are given.
+  Fitted fitted(const std::vector<std::size_t>& groups) const;
+
+  /// What is left of the whitened residuals after that, the variance of one row.
+  double variance(const std::vector<std::size_t>& groups) const;
+
+  /// Says which coefficients the flights do not tell, and how large the changes of each are.
+  void describe(std::vector<WhatIfCoefficient>& coefficients) const;
+
+ private:
+  std::vector<Eigen::Index> free_columns(const std::vector<std::size_t>& groups) const;
+  /// Gives the coefficients with the groups that were found.
+  Eigen::VectorXd find_sums(const std::vector<std::size_t>& found, bool is_robust, bool drifts);
+  double rms_of(const Eigen::VectorXd& values) const;
+  void sum_records();
+
+  std::vector<FlightColumns> flights_;
+  std::vector<FlightColumns> others_;
+  std::vector<ColumnGroup> groups_;
+  std::vector<std::vector<Eigen::Index>> told_{};  // columns of each group
+  Eigen::Index base_ = 0;
+  std::vector<Eigen::Index> own_{};
+  Eigen::VectorXd given_{};  // changes from the start to what is given
+  std::vector<Binning> bins_{};
+  NoiseModel noise_{};
+  std::vector<SumOfProducts> weighted_{};
+  SumOfProducts whole_{};
+  double inflation_ = 1.0;
+  std::vector<SumOfProducts> alike_{};
+  SumOfProducts outliers_{};
+  SumOfProducts held_out_{};
+};
+
+}  // namespace pcor::internal

@@ -1,0 +1,65 @@
+#include <pcor/improve/improve.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace pcor {
+namespace {
+
+/// The effect of the best model that a rung added.
+const ModelEffect& effect_of(const Improvement& improvement, const ImproveStep& step) {
+  const std::vector<ModelEffect>& effects = improvement.fit.model.model.effects;
+  return *std::find_if(effects.begin(), effects.end(),
+                       [&step](const ModelEffect& effect) { return effect.id == step.added; });
+}
+
+/// The finding that a rung follows; null where it follows none.
+const Finding* finding_of(const Improvement& improvement, std::size_t rung) {
+  const std::vector<Finding>& findings = improvement.steps[rung - 1].diagnosis.findings;
+  const auto found = std::find_if(findings.begin(), findings.end(), [&](const Finding& finding) {
+    return finding.id() == improvement.steps[rung].added;
+  });
+  return found == findings.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+WhatIf what_if(const std::vector<std::filesystem::path>& flights, const Improvement& improvement,
+               const References& references, const ImproveOptions& options) {
+  WhatIfOptions with;
+  with.diagnose.mask = options.refit.mask;
+  with.diagnose.time_stamp = options.refit.time_stamp;
+  with.diagnose.training_share = options.refit.training_share;
+  with.diagnose.formulas = options.formulas;
+  with.holdout = options.refit.holdout;
+  with.is_robust = options.refit.loss != Loss::none;
+  std::vector<WhatIfCandidate> candidates;
+  std::vector<WhatIfCandidate> rivals;
+  for (std::size_t rung = 1; rung < improvement.steps.size(); ++rung) {
+    const ImproveStep& step = improvement.steps[rung];
+    const ModelEffect& effect = effect_of(improvement, step);
+    const Finding* const finding = finding_of(improvement, rung);
+    candidates.push_back(
+        {step.added, fmt::format("rung {}", rung), effect, finding != nullptr && finding->is_alike, true});
+    if (finding == nullptr) continue;
+    for (const Alias& alias : finding->aliases)
+      rivals.push_back({alias.effect, "instead of " + step.added, alias.correction, alias.is_alike});
+  }
+  // What the top of the ladder says is missing, or nearly so, is not part of it.
+  for (WhatIfCandidate& left : what_if_candidates(improvement.steps.back().diagnosis, options.formulas)) {
+    left.is_found = false;
+    rivals.push_back(std::move(left));
+  }
+  constexpr std::size_t most = 12;
+  for (WhatIfCandidate& rival : rivals) {
+    const bool is_new =
+        std::none_of(candidates.begin(), candidates.end(),
+                     [&rival](const WhatIfCandidate& each) { return each.id == rival.id; });
+    if (is_new && candidates.size() < most) candidates.push_back(std::move(rival));
+  }
+  return what_if(flights, improvement.refitted, references, candidates, with);
+}
+
+}  // namespace pcor

@@ -1,0 +1,455 @@
+// Effects that the reader switches on, with their coefficients on sliders; residual, table, ladder and figures
+// follow.
+
+const sliderSteps = 1000;
+
+class WhatIf {
+  constructor(item, section, report) {
+    Object.assign(this, {item, section, report});
+    this.fit = new WhatIfFit(item);
+    this.forget();
+    this.readColumns();
+    this.makeControls();
+    this.makePictures();
+    const body = make('div', {class: 'what-if-body'}, this.controls, this.pictures);
+    section.querySelector('.caption').after(body);
+    this.update();
+  }
+
+  // All as it was at first.
+  forget() {
+    this.on = new Set();
+    this.byHand = new Map();
+    this.own = true;
+    this.pair = [0, Math.min(1, this.item.effects.length - 1)];
+  }
+
+  get samples() { return this.report.samples; }
+
+  get isChanged() { return this.on.size > 0 || !this.own; }
+
+  // The columns at some samples, and where each sample of the report lies between those.
+  readColumns() {
+    const {item, samples} = this;
+    const points = decode(item.points, Uint32Array);
+    this.columns = item.columns.map((column) => decodeColumn({...column, name: '', title: '', unit: ''}).values);
+    this.before = new Int32Array(samples.count).fill(-1);
+    this.part = new Float64Array(samples.count);
+    this.points = points.length;
+    for (const {first, end} of samples.flights) {
+      let k = points.findIndex((i) => i >= first);
+      if (k < 0 || points[k] >= end) continue;
+      for (let i = first; i < end; ++i) {
+        while (k + 1 < points.length && points[k + 1] < end && points[k + 1] <= i) ++k;
+        const next = k + 1 < points.length && points[k + 1] < end ? k + 1 : k;
+        const from = samples.position[points[k]], to = samples.position[points[next]];
+        this.before[i] = k;
+        this.part[i] = to > from ? Math.min(Math.max((samples.position[i] - from) / (to - from), 0), 1) : 0;
+      }
+    }
+    this.residual = samples.columns.get(item.residual);
+    this.live = this.addColumn('what-if', 'residual, what if', true);
+    this.sides = ['what-if-first', 'what-if-second'].map((name) => this.addColumn(name, name, false));
+  }
+
+  addColumn(name, title, live) {
+    const column = {name, title, label: `${title} (hPa)`, unit: 'hPa', live, values: new Float64Array(this.samples.count).fill(NaN)};
+    this.samples.columns.set(name, column);
+    return column;
+  }
+
+  // Fills `result` with what changes of the coefficients take off the residual.
+  takenOff(values, result) {
+    const sums = new Float64Array(this.points + 1);
+    this.columns.forEach((column, c) => {
+      if (values[c]) for (let k = 0; k < this.points; ++k) sums[k] += values[c] * column[k];
+    });
+    sums[this.points] = sums[this.points - 1];
+    for (let i = 0; i < result.length; ++i) {
+      const k = this.before[i];
+      result[i] = k < 0 ? NaN : sums[k] + this.part[i] * (sums[k + 1] - sums[k]);
+    }
+  }
+
+  makeControls() {
+    const {item} = this;
+    const text = (words, attributes = {}) => make('span', attributes, words);
+    this.figures = make('table', {class: 'what-if-figures'});
+    this.ownSwitch = make('input', {type: 'checkbox', role: 'switch', onchange: () => {
+      this.own = this.ownSwitch.checked;
+      this.changed();
+    }});
+    this.reset = make('button', {type: 'button', onclick: () => {
+      this.forget();
+      this.changed();
+    }}, 'Reset');
+    this.rows = item.effects.map((effect, e) => this.effectRow(effect, e));
+    this.command = make('code', {tabindex: '0', 'aria-label': 'Command that adds the effects'});
+    this.copy = make('button', {type: 'button', onclick: () => this.copyCommand()}, 'Copy');
+    this.commandPart = make('div', {class: 'what-if-command'}, make('p', {}, 'To add what is switched on, and refit'), this.copy, this.command);
+    this.coefficients = make('table');
+    this.controls = make('div', {class: 'what-if-controls'},
+      make('div', {class: 'scroll'}, this.figures),
+      make('div', {class: 'what-if-general'},
+        make('label', {class: 'switch'}, this.ownSwitch, text('The model’s own coefficients are fitted again')), this.reset),
+      this.commandPart,
+      make('ul', {class: 'what-if-effects', 'aria-label': 'Effects'}, ...this.rows.map(({element}) => element)),
+      make('details', {}, make('summary', {}, 'Coefficients'), make('div', {class: 'scroll'}, this.coefficients)));
+  }
+
+  effectRow({id, title, why, note}, e) {
+    const box = make('input', {type: 'checkbox', role: 'switch', onchange: () => {
+      if (box.checked) this.on.add(e);
+      else this.off(e);
+      this.changed();
+    }});
+    const gain = make('span', {class: 'gain'});
+    const sliders = this.fit.coefficientsOf(e).map((c) => this.slider(c, e));
+    const about = [title, note].filter((words) => words).join('. ');
+    const element = make('li', {},
+      make('label', {class: 'switch'}, box, make('b', {}, id), make('span', {class: 'why'}, why)), gain,
+      make('p', {class: 'about'}, about), ...sliders.map((slider) => slider.element));
+    return {element, box, gain, sliders};
+  }
+
+  off(e) {
+    this.on.delete(e);
+    for (const c of this.fit.coefficientsOf(e)) this.byHand.delete(c);
+  }
+
+  // A slider and a number for coefficient `c` of effect `e`; where they reach stays as it is.
+  slider(c, e) {
+    const {name, unit, given, start, least, greatest} = this.item.coefficients[c];
+    const {values, errors} = this.fit.fit([e], new Map(), true, false);
+    const estimate = start + values[c], reach = 0.75 * Math.max(Math.abs(values[c]), 4 * errors[c]);
+    const from = Math.max(Math.min(given, estimate) - reach, least ?? -Infinity);
+    const to = Math.min(Math.max(given, estimate) + reach, greatest ?? Infinity);
+    const step = 10 ** Math.floor(Math.log10(Math.max((to - from) / sliderSteps, 1e-300)));
+    const label = `${this.item.effects[e].id} ${name}`;
+    const range = make('input', {type: 'range', min: 0, max: sliderSteps, step: 1, 'aria-label': label});
+    const number = make('input', {type: 'number', step: 'any', 'aria-label': `${label}, value`,
+                                  min: least ?? null, max: greatest ?? null});
+    const band = make('span', {class: 'band'}), zero = make('span', {class: 'zero'});
+    const told = make('span', {class: 'told'});
+    const fitted = make('button', {type: 'button', title: 'Let the fit find it again', 'aria-label': `Fit ${label} again`,
+                                   onclick: () => { this.byHand.delete(c); this.changed(); }}, 'Fit');
+    const move = (value) => {
+      this.on.add(e);
+      this.byHand.set(c, value);
+      this.follow();
+    };
+    range.addEventListener('input', () => move(from + Number(range.value) / sliderSteps * (to - from)));
+    number.addEventListener('input', () => { if (number.value !== '' && number.validity.valid) move(number.valueAsNumber); });
+    for (const input of [range, number]) input.addEventListener('change', () => this.changed());
+    zero.style.left = this.place(given, from, to);
+    const element = make('div', {class: 'coefficient'},
+      make('div', {class: 'words-of'}, make('span', {class: 'name'}, name), told, fitted),
+      make('span', {class: 'track'}, band, zero, range), number, make('span', {class: 'unit'}, unit === '1' ? '' : unit));
+    return {c, element, range, number, band, told, fitted, from, to, step, unit};
+  }
+
+  // Where a value stands on a track: the thumb is 1rem wide, and its middle tells.
+  place(value, from, to) {
+    const part = Math.min(Math.max((value - from) / (to - from), 0), 1);
+    return `calc(0.5rem + ${part} * (100% - 1rem))`;
+  }
+
+  makePictures() {
+    const {item, report} = this;
+    this.pictures = make('div', {class: 'what-if-pictures'});
+    const part = (kind, title, caption, ...more) => {
+      const id = `what-if-${this.pictures.childElementCount}`;
+      const section = make('section', {class: `item ${kind}`, 'aria-labelledby': id}, make('h2', {id}, title),
+        ...more, make('p', {class: 'caption'}, caption));
+      this.pictures.append(section);
+      return section;
+    };
+    const columns = [item.residual, 'what-if'];
+    const add = (own, caption, ...more) => {
+      const panel = new Panel(own, part(own.kind, own.title, caption, ...more), report);
+      report.panels.push(panel);
+      return panel;
+    };
+    this.panels = [add({kind: 'time', title: 'What if: residual in time', columns, axis: 'residual'},
+      'The scale is that of the residual without the effects, so that it stays where it is.')];
+    this.ladder = {kind: 'bars', title: 'What if: ladder', bars: this.rungs(), axis: this.heldOutWords, unit: 'hPa'};
+    this.panels.push(add(this.ladder, this.fit.heldOut
+      ? 'On what is held out, effect by effect as they were switched on.'
+      : 'On parts of the flights that were left out of the fit in turn, without outliers, effect by effect as they were switched on.'));
+    const regimes = {title: 'What if: by regime', columns};
+    this.regimes = new Regimes(regimes, part('regimes', regimes.title, 'Bias and rms of the residual of the selected samples.'), report);
+    report.tables.push(this.regimes);
+    if (item.choices.length)
+      this.panels.push(add({kind: 'binned', title: 'What if: residual against a variable', columns, choices: item.choices, bins: 12,
+        samplesPerIndependent: item.samplesPerIndependent, axis: 'residual'}, 'A slope or a bend that is more than the error bars is something that the model still lacks.'));
+    if (item.effects.length > 1) this.makePair(add, part);
+  }
+
+  get heldOutWords() { return this.fit.heldOut ? 'rms, held out' : 'rms, not in the fit'; }
+
+  makePair(add, part) {
+    const {item} = this;
+    this.selects = [0, 1].map((side) => {
+      const select = make('select', {onchange: () => {
+        this.pair[side] = Number(select.value);
+        this.changed();
+      }}, ...item.effects.map(({id}, e) => make('option', {value: e}, id)));
+      return select;
+    });
+    const labels = ['One', 'The other'].map((words, side) => make('label', {class: 'choice'}, words, this.selects[side]));
+    this.pairWords = make('div', {class: 'what-if-words', role: 'status'});
+    this.pairTable = make('table', {class: 'regime-table'});
+    this.pairPanel = add({kind: 'time', title: 'Two effects side by side', columns: this.sides.map(({name}) => name), axis: 'taken off the residual'},
+      'What each would take off the residual were it alone added and the model fitted again: where the two curves differ, these flights can tell them apart.',
+      make('div', {class: 'pair'}, ...labels));
+    this.panels.push(this.pairPanel);
+    const scroll = {class: 'scroll', tabindex: '0', role: 'region', 'aria-label': 'Two effects by regime'};
+    part('table', 'Where the two differ', 'Rms of what each takes off the residual, and of the difference, over the selected samples; the correlation is that over these samples.',
+      this.pairWords, make('div', scroll, this.pairTable));
+    this.report.tables.push({draw: () => this.fillPairTable(), table: this.pairTable});
+  }
+
+  // The ladder: with the coefficients as given, with the model's own fitted, and with one effect after another.
+  rungs() {
+    const {fit, item} = this;
+    const bars = [{label: 'as given', value: fit.heldOutRms(fit.fit([], new Map(), false))}];
+    const on = [...this.on];
+    for (let rung = this.own ? 0 : 1; rung <= on.length; ++rung)
+      bars.push({label: rung ? `+ ${item.effects[on[rung - 1]].id}` : 'fitted again',
+                 value: fit.heldOutRms(fit.fit(on.slice(0, rung), this.byHand, this.own))});
+    return [...bars, {label: 'noise', value: item.noise}];
+  }
+
+  // After a step that can be undone.
+  changed() {
+    this.follow();
+    this.report.remember();
+    const {rms} = this.now;
+    this.report.tell(`Rms ${brief(this.nothing.rms)} hPa without, ${brief(rms)} hPa with ${this.names || 'no effect'}`);
+  }
+
+  get names() { return [...this.on].map((e) => this.item.effects[e].id).join(', '); }
+
+  // What the reader did, shown at the next frame; of many moves in one frame the last.
+  follow() {
+    this.fitNow();
+    if (this.asked) return;
+    this.asked = true;
+    requestAnimationFrame(() => {
+      this.asked = false;
+      this.update();
+      for (const panel of this.panels) panel.draw();
+      this.regimes.draw();
+      this.fillPairTable();
+    });
+  }
+
+  fitNow() {
+    const {fit} = this;
+    this.nothing = fit.fit([]);
+    this.now = fit.fit(this.on, this.byHand, this.own);
+  }
+
+  update() {
+    this.fitNow();
+    this.fillLive();
+    this.ladder.bars = this.rungs();
+    this.showFigures();
+    this.ownSwitch.checked = this.own;
+    this.reset.disabled = !this.isChanged;
+    this.rows.forEach((row, e) => this.showEffect(row, e));
+    this.showCoefficients();
+    this.showCommand();
+    this.comparePair();
+  }
+
+  fillLive() {
+    const {values} = this.live;
+    if (!this.isChanged) {
+      values.fill(NaN);
+      return;
+    }
+    this.takenOff(this.now.values, values);
+    for (let i = 0; i < values.length; ++i) values[i] = this.residual.values[i] - values[i];
+  }
+
+  showFigures() {
+    const {fit, nothing, now, item} = this;
+    const given = fit.fit([], new Map(), false);
+    const three = (words, of, digits = 4) => [words, ...[given, nothing, now].map((each, i) =>
+      i === 2 && !this.isChanged ? '–' : number(of(each), 10 ** -digits))];
+    fillTable(this.figures, {
+      headers: ['hPa', 'as given', 'fitted again', 'what if'],
+      rows: [three('rms', ({rms}) => rms), three(this.heldOutWords, (each) => fit.heldOutRms(each)),
+             ['noise', '', '', number(item.noise, 1e-4)],
+             ['χ² falls by', '', '', this.isChanged ? number((nothing.squares - now.squares) / now.variance, 0.1) : '–']],
+    });
+  }
+
+  showEffect({box, gain, sliders}, e) {
+    const {fit} = this;
+    const isOn = this.on.has(e);
+    box.checked = isOn;
+    const others = [...this.on].filter((other) => other !== e);
+    const without = isOn ? fit.fit(others, this.byHand, this.own) : this.now;
+    const ifOn = isOn ? this.now : fit.fit([...others, e], this.byHand, this.own);
+    const fall = (without.squares - ifOn.squares) / ifOn.variance;
+    gain.textContent = `χ² ${number(-fall, fall < 10 ? 0.1 : 1)}`;
+    gain.title = isOn ? 'By how much chi2 falls with it, beside the others that are on' : 'By how much chi2 would fall with it, beside those that are on';
+    for (const slider of sliders) this.showSlider(slider, e, isOn, ifOn);
+  }
+
+  showSlider({c, range, number: input, band, told, fitted, from, to, step, unit}, e, isOn, ifOn) {
+    const {start} = this.item.coefficients[c];
+    const byHand = this.byHand.has(c);
+    // Where the fit would have it, the others as they are.
+    const hand = new Map(this.byHand);
+    hand.delete(c);
+    const {values, errors} = byHand ? this.fit.fit([...this.on], hand, this.own) : ifOn;
+    const estimate = start + values[c], error = errors[c];
+    const value = byHand ? this.byHand.get(c) : estimate;
+    range.value = Math.round((value - from) / (to - from) * sliderSteps);
+    range.setAttribute('aria-valuetext', `${number(value, step)} ${unit === '1' ? '' : unit}`.trim());
+    if (document.activeElement !== input || Number(input.value) !== value) input.value = Number(value.toPrecision(6));
+    band.hidden = !(error > 0);
+    band.style.left = this.place(estimate - error, from, to);
+    band.style.right = `calc(100% - ${this.place(estimate + error, from, to)})`;
+    told.textContent = error > 0 ? withError(estimate, error) : 'at its bound';
+    told.title = 'What the fit finds, with its standard error';
+    fitted.hidden = !byHand;
+  }
+
+  showCoefficients() {
+    const {item, nothing, now} = this;
+    const shown = (fitted, c) => {
+      const {start} = item.coefficients[c];
+      return fitted.errors[c] > 0 ? withError(start + fitted.values[c], fitted.errors[c]) : brief(start + fitted.values[c]);
+    };
+    const owner = (c) => item.effects.find(({first, count}) => c >= first && c < first + count);
+    const rows = item.coefficients.map(({name, unit, given}, c) => ({c, name, unit, given}))
+      .filter(({c}) => c < item.own || this.on.has(item.effects.indexOf(owner(c))))
+      .map(({c, name, unit, given}) => [`${c < item.own ? '' : `${owner(c).id}.`}${name}`, brief(given),
+                                        c < item.own ? shown(nothing, c) : '–', this.isChanged ? shown(now, c) : '–', unit]);
+    fillTable(this.coefficients, {headers: ['', 'given', 'fitted again', 'what if', 'unit'], rows});
+  }
+
+  // The command that adds the effects that are on: one for all of the catalogue, one for each formula.
+  get commandText() {
+    const {commands, effects, coefficients} = this.item;
+    const on = [...this.on].map((e) => effects[e]).filter(({argument}) => argument);
+    if (!on.length || !commands.add) return '';
+    const catalogue = on.filter(({isFormula}) => !isFormula).map(({argument}) => argument).join(' ');
+    const added = [...(catalogue ? [catalogue] : []), ...on.filter(({isFormula}) => isFormula).map(({argument}) => argument)];
+    const name = (n) => n + 1 === added.length ? 'extended.toml' : `extended-${n + 1}.toml`;
+    const lines = added.map((argument, n) =>
+      `${commands.add} ${argument} -m ${n ? name(n - 1) : commands.model} ${commands.with} -o ${name(n)}`);
+    const held = on.flatMap(({id, first, count}) => coefficients.slice(first, first + count)
+      .filter(({fixed}) => fixed).map((coefficient) => ` --fix ${id}.${coefficient.name}`)).join('');
+    return [...lines, `${commands.refit} -m extended.toml${held} -o extended-fitted.toml`].join(' && \\\n  ');
+  }
+
+  showCommand() {
+    const text = this.commandText;
+    this.commandPart.hidden = !this.on.size;
+    this.command.textContent = text || 'No command can add this.';
+    this.copy.disabled = !text;
+    this.copy.textContent = 'Copy';
+  }
+
+  async copyCommand() {
+    try {
+      await navigator.clipboard.writeText(this.commandText);
+    } catch {
+      // A browser that does not let the page write: the reader finds the command marked, ready to be copied.
+      getSelection().selectAllChildren(this.command);
+      this.copy.textContent = 'Marked';
+      return;
+    }
+    this.copy.textContent = 'Copied';
+    this.report.tell('The command is copied');
+  }
+
+  comparePair() {
+    if (!this.selects) return;
+    const {fit, item, nothing} = this;
+    const changes = this.pair.map((e, side) => {
+      this.selects[side].value = e;
+      const {values} = fit.fit([e], this.byHand);
+      const change = values.map((value, c) => value - nothing.values[c]);
+      this.takenOff(change, this.sides[side].values);
+      const column = this.sides[side];
+      column.title = item.effects[e].id + (this.pair[0] === this.pair[1] && side ? ' again' : '');
+      column.label = `${column.title} (hPa)`;
+      this.pairPanel.switches[side].lastChild.data = column.title;
+      return change;
+    });
+    const [a, b] = this.pair;
+    const alike = fit.correlation(...changes);
+    const separation = item.separations.find(({effect, rival}) => effect === a && rival === b);
+    const sentences = a === b ? ['Choose two effects.'] : [
+      `On these flights the two are alike to a correlation of ${number(alike, 0.001)}, in units of the noise and after the model’s own coefficients.`,
+      separation ? `${separation.text[0].toUpperCase()}${separation.text.slice(1)}.` : 'No manoeuvre was tried that would tell them apart.'];
+    this.pairWords.replaceChildren(...sentences.map((words) => make('p', {}, words)));
+  }
+
+  fillPairTable() {
+    if (!this.selects) return;
+    const {samples} = this;
+    const [a, b] = this.sides;
+    const difference = a.values.map((value, i) => value - b.values[i]);
+    const masks = [...samples.regimes].map(([name, inside]) => [name, samples.selected.map((one, i) => one & inside[i])]);
+    const rows = [...masks, ['All', samples.selected]].map(([name, mask]) => {
+      const inside = samples.indices([a, b], mask);
+      const rms = (values) => statistics(values, inside).rms;
+      return [name, countText(inside.length), ...[a.values, b.values, difference].map((values) => number(rms(values), 0.001)),
+              number(correlationOf(a.values, b.values, inside), 0.001)];
+    });
+    fillTable(this.pairTable, {headers: ['Regime', 'Samples', `${a.title}, hPa`, `${b.title}, hPa`, 'Difference, hPa', 'Correlation'], rows});
+  }
+
+  // What is in the address, and what it asks for; what it says of another report is passed over.
+  get state() {
+    const {item} = this;
+    const state = {};
+    const name = (c) => {
+      const {id} = item.effects.find(({first, count}) => c >= first && c < first + count);
+      return `${id}.${item.coefficients[c].name}`;
+    };
+    if (this.on.size) state.on = [...this.on].map((e) => item.effects[e].id);
+    if (this.byHand.size) state.by = Object.fromEntries([...this.byHand].map(([c, value]) => [name(c), Number(value.toPrecision(8))]));
+    if (!this.own) state.own = false;
+    if (this.pair[0] !== 0 || this.pair[1] !== Math.min(1, item.effects.length - 1)) state.pair = this.pair.map((e) => item.effects[e].id);
+    return Object.keys(state).length ? state : undefined;
+  }
+
+  recall(state) {
+    const {item} = this;
+    const numberOf = (id) => item.effects.findIndex((effect) => effect.id === id);
+    this.forget();
+    const known = (ids) => Array.isArray(ids) ? ids.map(numberOf).filter((e) => e >= 0) : [];
+    for (const e of known(state?.on)) this.on.add(e);
+    for (const e of this.on)
+      for (const c of this.fit.coefficientsOf(e)) {
+        const value = state?.by?.[`${item.effects[e].id}.${item.coefficients[c].name}`];
+        if (Number.isFinite(value)) this.byHand.set(c, value);
+      }
+    this.own = state?.own !== false;
+    const pair = known(state?.pair);
+    if (pair.length === 2) this.pair = pair;
+    this.update();
+  }
+}
+
+// How alike two series are at some samples, -1 to 1.
+function correlationOf(xs, ys, indices) {
+  let sx = 0, sy = 0, xx = 0, yy = 0, xy = 0;
+  for (const i of indices) {
+    sx += xs[i];
+    sy += ys[i];
+    xx += xs[i] * xs[i];
+    yy += ys[i] * ys[i];
+    xy += xs[i] * ys[i];
+  }
+  const count = indices.length;
+  return (xy - sx * sy / count) / Math.sqrt((xx - sx * sx / count) * (yy - sy * sy / count));
+}

@@ -1,0 +1,158 @@
+// The arithmetic of a what-if: least squares by the sums that the report keeps, without a page. A coefficient is
+// its number; values are changes from the start, at which the residual is as its column has it.
+
+const leastPivot = 1e-11;  // of a column, beside those before it: less is what they imitate
+
+// Sums of products of (columns, residual), whole again from their lower triangle.
+function wholeSums({products, samples}, width) {
+  const lower = decode(products, Float64Array);
+  const matrix = Array.from({length: width}, () => new Float64Array(width));
+  for (let i = 0, n = 0; i < width; ++i)
+    for (let j = 0; j <= i; ++j, ++n) matrix[i][j] = matrix[j][i] = lower[n];
+  return {matrix, samples};
+}
+
+function combined(a, b, sign = 1) {
+  return {matrix: a.matrix.map((row, i) => row.map((value, j) => value + sign * b.matrix[i][j])),
+          samples: a.samples + sign * b.samples};
+}
+
+// A symmetric matrix as L L', unknowns scaled alike. Those that others imitate stay out: their pivot is zero.
+class Cholesky {
+  constructor(matrix) {
+    this.scale = matrix.map((row, i) => row[i] > 0 ? 1 / Math.sqrt(row[i]) : 0);
+    this.lower = matrix.map((row) => new Float64Array(row.length));
+    const {lower, scale} = this;
+    for (let i = 0; i < matrix.length; ++i)
+      for (let j = 0; j <= i; ++j) {
+        let sum = scale[i] * scale[j] * matrix[i][j];
+        for (let k = 0; k < j; ++k) sum -= lower[i][k] * lower[j][k];
+        if (i === j) lower[i][i] = sum > leastPivot ? Math.sqrt(sum) : 0;
+        else lower[i][j] = lower[j][j] ? sum / lower[j][j] : 0;
+      }
+  }
+
+  solve(right) {
+    const {lower, scale} = this, size = right.length;
+    const x = Float64Array.from(right, (value, i) => value * scale[i]);
+    for (let i = 0; i < size; ++i) {
+      for (let k = 0; k < i; ++k) x[i] -= lower[i][k] * x[k];
+      x[i] = lower[i][i] ? x[i] / lower[i][i] : 0;
+    }
+    for (let i = size - 1; i >= 0; --i) {
+      for (let k = i + 1; k < size; ++k) x[i] -= lower[k][i] * x[k];
+      x[i] = lower[i][i] ? x[i] / lower[i][i] : 0;
+    }
+    return x.map((value, i) => value * scale[i]);
+  }
+
+  // The diagonal of the inverse.
+  get variances() {
+    return this.lower.map((row, i) => this.solve(row.map((_, j) => j === i ? 1 : 0))[i]);
+  }
+}
+
+// What is left of the squares with these values.
+function squaresLeft({matrix}, values) {
+  const change = [...values].map((value) => -value);
+  change.push(1);
+  return matrix.reduce((sum, row, i) =>
+    sum + change[i] * row.reduce((product, value, j) => product + value * change[j], 0), 0);
+}
+
+const rmsLeft = (sums, values) => Math.sqrt(Math.max(squaresLeft(sums, values), 0) / sums.samples);
+
+class WhatIfFit {
+  constructor({coefficients, own, effects, weighted, alike, inflation, outliers, heldOut}) {
+    Object.assign(this, {coefficients, own, effects, inflation});
+    const width = coefficients.length + 1;
+    this.weighted = weighted.map((sums) => wholeSums(sums, width));
+    this.alike = alike.map((sums) => wholeSums(sums, width));
+    this.whole = this.weighted.reduce((a, b) => combined(a, b));
+    this.all = [...this.alike, wholeSums(outliers, width)].reduce((a, b) => combined(a, b));
+    this.heldOut = heldOut.samples ? wholeSums(heldOut, width) : null;
+  }
+
+  // The numbers of the coefficients of an effect that the flights tell.
+  coefficientsOf(effect) {
+    const {first, count} = this.effects[effect];
+    return Array.from({length: count}, (_, k) => first + k).filter((c) => !this.coefficients[c].fixed);
+  }
+
+  // The values that leave least by some sums, where `free` says which are looked for.
+  solved(sums, free, values) {
+    const {matrix} = sums, last = values.length;
+    const fixed = values.map((value, c) => free.includes(c) ? 0 : value);
+    const right = free.map((c) => matrix[c][last] - matrix[c].reduce((sum, value, j) => j < last ? sum + value * fixed[j] : sum, 0));
+    const factor = new Cholesky(free.map((a) => free.map((b) => matrix[a][b])));
+    const found = factor.solve(right);
+    free.forEach((c, k) => { fixed[c] = found[k]; });
+    return {values: fixed, factor};
+  }
+
+  // Fits with some effects in the model. @param byHand a Map of coefficients to values that are held
+  // @param own the model's own coefficients are fitted again; @param bounded only to values that physics allows
+  fit(on, byHand = new Map(), own = true, bounded = true) {
+    const {coefficients} = this;
+    const values = Float64Array.from(coefficients, ({given, start}) => given - start);
+    const free = [];
+    if (own) for (let c = 0; c < this.own; ++c) if (!coefficients[c].fixed) free.push(c);
+    for (const effect of on)
+      for (const c of this.coefficientsOf(effect)) {
+        if (byHand.has(c)) values[c] = byHand.get(c) - coefficients[c].start;
+        else free.push(c);
+      }
+    // A coefficient that would go beyond its bound stays there, until the others let it go.
+    const atBound = [];
+    for (let step = 0;; ++step) {
+      const {values: found, factor} = this.solved(this.whole, free, values);
+      const beyond = bounded ? free.find((c) => found[c] < this.least(c) || found[c] > this.greatest(c)) : undefined;
+      if (beyond !== undefined) {
+        values[beyond] = found[beyond] < this.least(beyond) ? this.least(beyond) : this.greatest(beyond);
+        atBound.push(...free.splice(free.indexOf(beyond), 1));
+        continue;
+      }
+      const freed = atBound.find((c) => this.slope(c, found) * (found[c] === this.least(c) ? 1 : -1) < 0);
+      if (freed === undefined || step > 4 * this.coefficients.length) return this.told(found, free, factor);
+      free.push(...atBound.splice(atBound.indexOf(freed), 1));
+    }
+  }
+
+  // Half of what the squares grow by with a coefficient.
+  slope(c, values) {
+    const row = this.whole.matrix[c];
+    return values.reduce((sum, value, j) => sum + row[j] * value, -row[values.length]);
+  }
+
+  least(c) { return (this.coefficients[c].least ?? -Infinity) - this.coefficients[c].start; }
+
+  greatest(c) { return (this.coefficients[c].greatest ?? Infinity) - this.coefficients[c].start; }
+
+  told(values, free, factor) {
+    const squares = squaresLeft(this.whole, values);
+    const variance = this.inflation * squares / Math.max(this.whole.samples - free.length, 1);
+    const errors = new Float64Array(values.length);
+    factor.variances.forEach((one, k) => { errors[free[k]] = Math.sqrt(variance * Math.max(one, 0)); });
+    return {values, errors, free, squares, variance, rms: rmsLeft(this.all, values)};
+  }
+
+  // The rms on what took no part: on what is held out, else on parts of the flights left out in turn.
+  heldOutRms({values, free}) {
+    if (this.heldOut) return rmsLeft(this.heldOut, values);
+    let squares = 0, samples = 0;
+    this.weighted.forEach((part, k) => {
+      if (!this.alike[k].samples) return;
+      const {values: found} = this.solved(combined(this.whole, part, -1), free, values);
+      squares += squaresLeft(this.alike[k], found);
+      samples += this.alike[k].samples;
+    });
+    return Math.sqrt(Math.max(squares, 0) / samples);
+  }
+
+  // How alike two changes are in units of the noise, -1 to 1.
+  correlation(a, b) {
+    const product = (x, y) => x.reduce((sum, value, i) =>
+      sum + value * y.reduce((inner, other, j) => inner + this.whole.matrix[i][j] * other, 0), 0);
+    return product(a, b) / Math.sqrt(product(a, a) * product(b, b));
+  }
+}
