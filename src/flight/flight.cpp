@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <pcor/flight/flight.hpp>
+#include <pcor/flight/flights_stay_open.hpp>
 #include <pcor/words/error.hpp>
 #include <pcor/words/suggest.hpp>
 #include <pcor/words/utc.hpp>
@@ -162,7 +163,7 @@ struct Flight::Implementation {
   std::size_t records;
   TimeAxis axis;
   std::vector<std::string> names;
-  std::vector<Variable> variables;  // in the order of `names`
+  std::vector<std::optional<Variable>> variables;  // in the order of `names`, those that were asked for
   std::unordered_map<std::string, std::size_t> index;
   std::vector<double> scratch;
   std::vector<double> flags;
@@ -178,22 +179,31 @@ struct Flight::Implementation {
           fmt::format("{} has {} records, and a flight has at most {}; cut it with ncks -d {},FIRST,LAST",
                       path(), records, most_records, file->dimension_name(source.dimension)));
     for (int id = 0; id < file->variable_count(); ++id) {
-      variables.push_back(describe(*file, id, source.dimension));
-      names.push_back(variables.back().info.name);
-      if (!index.emplace(names.back(), variables.size() - 1).second)
+      names.push_back(file->variable_name(id));
+      if (!index.emplace(names.back(), names.size() - 1).second)
         throw Error(Error::Code::file,
                     fmt::format("{} has two variables {}, and nothing tells which is meant; fetch it again "
                                 "from its source",
                                 path(), names.back()));
     }
+    variables.resize(names.size());
     scan_time();
+  }
+
+  // A file has hundreds of variables with ten attributes each; few of them are needed.
+  Variable& variable(std::size_t number) {
+    if (!variables[number]) {
+      const FileInHand in_hand(file->path());
+      variables[number] = describe(*file, static_cast<int>(number), source.dimension);
+    }
+    return *variables[number];
   }
 
   std::string path() const { return file->path().string(); }
 
   Variable& find(const std::string& name) {
     const auto found = index.find(name);
-    if (found != index.end()) return variables[found->second];
+    if (found != index.end()) return variable(found->second);
     const std::vector<std::string> alike = suggest(name, names);
     throw Error(Error::Code::variable,
                 path() + ": " + name + " is not in this file; it has " +
@@ -202,10 +212,10 @@ struct Flight::Implementation {
   }
 
   // The names of rates that can be brought to the wanted one, as this file has them: "1, 5 or 25".
-  std::string rates_that_fit(int wanted) const {
+  std::string rates_that_fit(int wanted) {
     std::set<int> rates;
-    for (const Variable& variable : variables) {
-      const int rate = variable.info.rate;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const int rate = variable(i).info.rate;
       if (rate > 0 && (rate % wanted == 0 || wanted % rate == 0)) rates.insert(rate);
     }
     std::string text;
@@ -292,8 +302,7 @@ struct Flight::Implementation {
 
   // Records at which seconds of the day began again are known after the scan; until then it adds them itself.
   void read_time(RecordBlock block, double* out) {
-    Variable& variable = variables[static_cast<std::size_t>(source.variable)];
-    read(variable, block, out);
+    read(variable(static_cast<std::size_t>(source.variable)), block, out);
     for (std::size_t i = 0; i < block.count; ++i) {
       if (std::isnan(out[i]))
         throw Error(fmt::format("{}: the time of record {} is missing; leave that record out", path(),
@@ -360,10 +369,14 @@ struct Flight::Implementation {
 };
 
 Flight::Flight(const std::filesystem::path& path, TimeStamp time_stamp)
-    : Flight(open_flight_file(path), time_stamp) {}
+    : implementation_(FlightsStayOpen::find(path, time_stamp)) {
+  if (implementation_) return;
+  *this = Flight(open_flight_file(path), time_stamp);
+  FlightsStayOpen::keep(*this);
+}
 Flight::Flight(std::unique_ptr<FlightFile> file, TimeStamp time_stamp) {
   const FileInHand in_hand(file->path());
-  implementation_ = std::make_unique<Implementation>(std::move(file), time_stamp);
+  implementation_ = std::make_shared<Implementation>(std::move(file), time_stamp);
 }
 Flight::Flight(Flight&&) noexcept = default;
 Flight& Flight::operator=(Flight&&) noexcept = default;
@@ -408,8 +421,9 @@ UnitConversion Flight::conversion(const std::string& name, const std::string& wa
                                   const std::string& stated) const {
   if (!has(name) && !role.empty()) {
     std::vector<VariableInfo> series;
-    for (const Variable& variable : implementation_->variables) {
-      if (variable.info.is_series) series.push_back(variable.info);
+    for (std::size_t i = 0; i < variables().size(); ++i) {
+      const VariableInfo& info = implementation_->variable(i).info;
+      if (info.is_series) series.push_back(info);
     }
     throw absent_variable(path().string(), series, name, wanted, role);
   }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <pcor/flight/flights_stay_open.hpp>
 #include <pcor/laws/model_file.hpp>
 #include "comparison.hpp"
 #include "flight_table.hpp"
@@ -220,6 +221,7 @@ std::vector<std::string> models_of(const Options& options) {
 }
 
 void run(const Options& options) {
+  const FlightsStayOpen flights_stay_open;
   std::vector<std::filesystem::path> inputs = input_files(options.flights);
   inputs.insert(inputs.end(), {options.model, second_model(options)});
   refuse_overwriting({options.common.json, options.common.report, options.common.figures, options.table},

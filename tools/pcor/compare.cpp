@@ -9,6 +9,7 @@
 #include <string>
 
 #include <pcor/compare/comparison_report.hpp>
+#include <pcor/flight/flights_stay_open.hpp>
 #include <pcor/words/utc.hpp>
 #include "comparison.hpp"
 #include "flight_table.hpp"
@@ -246,6 +247,7 @@ std::string history_of(const Options& options) {
 }
 
 void run(const Options& options) {
+  const FlightsStayOpen flights_stay_open;
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.insert(inputs.end(), options.models.begin(), options.models.end());
   std::vector<std::filesystem::path> outputs{options.common.json, options.common.report, options.table};

@@ -9,6 +9,7 @@
 #include <string>
 
 #include <pcor/diagnose/diagnosis_report.hpp>
+#include <pcor/flight/flights_stay_open.hpp>
 #include <pcor/words/utc.hpp>
 #include "comparison.hpp"
 #include "diagnosis.hpp"
@@ -181,6 +182,7 @@ void print(const Diagnosis& diagnosis, const ChosenReferences& references, const
 }
 
 void run(const Options& options) {
+  const FlightsStayOpen flights_stay_open;
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.emplace_back(options.model);
   inputs.emplace_back(options.candidates.file);

@@ -1,3 +1,4 @@
+#include <pcor/flight/flights_stay_open.hpp>
 #include <pcor/improve/improve.hpp>
 
 #include <fmt/format.h>
@@ -134,6 +135,7 @@ ImproveOptions improve_options(const Options& options, const ModelFile& model) {
 }
 
 void run(const Options& options) {
+  const FlightsStayOpen flights_stay_open;
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.emplace_back(options.model);
   inputs.emplace_back(options.candidates.file);

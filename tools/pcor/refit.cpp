@@ -11,6 +11,7 @@
 #include <string>
 
 #include <pcor/fit/refit_report.hpp>
+#include <pcor/flight/flights_stay_open.hpp>
 #include <pcor/words/error.hpp>
 #include "comparison.hpp"
 #include "flight_table.hpp"
@@ -336,6 +337,7 @@ void deliver_models(RefitResult& result, const std::vector<std::filesystem::path
 }
 
 void run(const Options& options) {
+  const FlightsStayOpen flights_stay_open;
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.emplace_back(options.model);
   inputs.insert(inputs.end(), options.holdout.begin(), options.holdout.end());

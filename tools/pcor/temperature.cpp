@@ -1,3 +1,4 @@
+#include <pcor/flight/flights_stay_open.hpp>
 #include <pcor/temperature/temperature.hpp>
 
 #include <fmt/format.h>
@@ -225,6 +226,7 @@ const std::string& first_used(const TemperatureResult& result, const Options& op
 }
 
 void run(const Options& options) {
+  const FlightsStayOpen flights_stay_open;
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.emplace_back(options.model);
   refuse_overwriting({options.output, options.common.json, options.common.report, options.common.figures},
