@@ -154,12 +154,15 @@ void add_held_out(std::vector<WhatIfFlight>& flights, const FlightColumns& held_
   }
 }
 
-std::string note_of(const Candidate& candidate) {
+std::string note_of(const Candidate& candidate, const std::string& flaps_variable) {
   if (candidate.is_of_reference())
     return "It is of the system that the model is held against: the model is not to be changed for it.";
   if (candidate.is_shared)
     return "It is alike on the system that the model is held against, which no model file can hold: the "
            "command adds it without that.";
+  if (reads_flaps(candidate.effect, flaps_variable))
+    return "Here it is held against the samples with flaps in alone; a refit with it uses those with flaps out "
+           "too.";
   return "";
 }
 
@@ -205,10 +208,10 @@ std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
     if (is_new && candidates.size() < most_effects) candidates.push_back(std::move(candidate));
   };
   for (const Finding& finding : diagnosis.findings)
-    add({finding.id(), "found", finding.effect, finding.is_alike, true});
+    add({finding.id(), "found", finding.effect, finding.is_alike, finding.id()});
   for (const Finding& finding : diagnosis.findings) {
     for (const Alias& alias : finding.aliases)
-      add({alias.effect, "instead of " + finding.id(), alias.correction, alias.is_alike});
+      add({alias.effect, "instead of " + finding.id(), alias.correction, alias.is_alike, finding.id()});
   }
   for (const ModelEffect& formula : formulas) add({formula.id, "your formula"});
   std::vector<std::string> flights;
@@ -218,7 +221,8 @@ std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
   for (const TracedVariable& variable : diagnosis.unexplained.variables) {
     if (variable.formula.empty() || traced == most_traced) continue;
     const ModelEffect effect = effect_of(variable, fmt::format("{}", fmt::join(flights, ", ")));
-    add({effect.id, "goes with " + variable.name, effect, false, traced++ == 0 && diagnosis.findings.empty()});
+    const bool counts = traced++ == 0 && diagnosis.findings.empty();
+    add({effect.id, "goes with " + variable.name, effect, false, counts ? effect.id : ""});
   }
   // What comes nearest: by its estimate in units of the error.
   constexpr std::size_t nearest = 4;
@@ -294,22 +298,27 @@ WhatIf what_if(const std::vector<std::filesystem::path>& paths, const ModelFile&
   for (std::size_t e = 0; e < found.size(); ++e) {
     const Candidate& candidate = ordered.candidates[e];
     result.effects.push_back(candidate.effect);
-    panel.effects.push_back({found[e].id, candidate.title, found[e].why, panel.coefficients.size(),
+    const auto stands_for = std::find_if(found.begin(), found.end(), [&](const WhatIfCandidate& each) {
+      return each.id == found[e].stands_for;
+    });
+    panel.effects.push_back({found[e].id, candidate.title, found[e].why, {}, panel.coefficients.size(),
                              candidate.tested.size(), "", candidate.effect.is_formula(),
-                             note_of(candidate)});
+                             note_of(candidate, columns.front().samples->flaps_variable)});
+    if (stands_for != found.end())
+      panel.effects.back().stands_for = static_cast<std::size_t>(stands_for - found.begin());
     for (const CandidateParameter& tested : candidate.tested) {
       const double neutral = candidate.effect.parameters[tested.place];
       panel.coefficients.push_back({tested.name, tested.unit, neutral, neutral,
                                     neutral + tested.bounds.lower, neutral + tested.bounds.upper});
     }
-    if (found[e].is_found) are_found.push_back(e);
+    if (found[e].stands_for == found[e].id) are_found.push_back(e);
   }
   const WhatIfFit fit(std::move(columns), std::move(others), panel.coefficients,
                       groups_of(model, ordered.candidates), are_found, options.is_robust);
   fit.describe(panel.coefficients);
-  panel.weighted = as_sums(fit.weighted());
+  for (const WhatIfFit::Weights& each : fit.weights())
+    panel.weights.push_back({each.found, as_sums(each.parts), each.inflation});
   panel.alike = as_sums(fit.alike());
-  panel.inflation = fit.inflation();
   panel.outliers = as_sums(fit.outliers());
   if (fit.held_out().count > 0.0) panel.held_out = as_sums(fit.held_out());
   for (const FlightColumns& flight : fit.flights()) {

@@ -42,14 +42,15 @@ WhatIf what_if(const std::vector<std::filesystem::path>& flights, const Improvem
     const ModelEffect& effect = effect_of(improvement, step);
     const Finding* const finding = finding_of(improvement, rung);
     candidates.push_back(
-        {step.added, fmt::format("rung {}", rung), effect, finding != nullptr && finding->is_alike, true});
+        {step.added, fmt::format("rung {}", rung), effect, finding != nullptr && finding->is_alike, step.added});
     if (finding == nullptr) continue;
     for (const Alias& alias : finding->aliases)
-      rivals.push_back({alias.effect, "instead of " + step.added, alias.correction, alias.is_alike});
+      rivals.push_back(
+          {alias.effect, "instead of " + step.added, alias.correction, alias.is_alike, step.added});
   }
   // What the top of the ladder says is missing, or nearly so, is not part of it.
   for (WhatIfCandidate& left : what_if_candidates(improvement.steps.back().diagnosis, options.formulas)) {
-    left.is_found = false;
+    left.stands_for.clear();
     rivals.push_back(std::move(left));
   }
   constexpr std::size_t most = 12;
