@@ -108,6 +108,72 @@ FlightColumns held_out(FlightColumns all, double used_share) {
   return all;
 }
 
+/// The residual with effects at coefficients that are not small: as a refit with them has it.
+class WithEffects {
+ public:
+  WithEffects(const ModelFile& model, const CandidateSet& set, const MaskOptions& mask)
+      : model_(model), set_(set), mask_(mask) {}
+
+  std::vector<double> operator()(const FlightColumns& flight, const std::vector<std::size_t>& groups,
+                                 const Eigen::VectorXd& values) const {
+    const Reference& reference = *set_.references[flight.reference];
+    if (!reference.is_of_one_sample()) return {};
+    ModelFile with = model_;
+    with.variables = set_.extended.variables;
+    with.units = set_.extended.units;
+    std::vector<std::size_t> wanted = free_parameters(model_);
+    const std::vector<std::size_t> own = wanted;
+    std::size_t place = 0;
+    for (const ModelEffect& effect : model_.model.effects) place += effect.parameters.size();
+    std::vector<std::pair<std::size_t, double>> added;
+    for (const std::size_t group : groups) {
+      const Candidate& candidate = set_.candidates[group];
+      if (candidate.is_shared || candidate.is_of_reference() || candidate.memory != 0.0) return {};
+      with.model.effects.push_back(candidate.effect);
+      const Eigen::Index first = as_index(set_.base.size() + columns_before(group));
+      for (std::size_t k = 0; k < candidate.tested.size(); ++k) {
+        added.emplace_back(place + candidate.tested[k].place, values[first + as_index(k)]);
+        wanted.push_back(added.back().first);
+      }
+      place += candidate.effect.parameters.size();
+    }
+    with.fits.resize(with.model.effects.size());
+    const Residuals residuals(flight.samples, with, reference, mask_);
+    std::vector<double> parameters = residuals.parameters();
+    for (std::size_t k = 0; k < own.size(); ++k) parameters[own[k]] = values[as_index(k)];
+    for (const auto& [parameter, value] : added) parameters[parameter] = value;
+    std::vector<std::size_t> records;
+    for (std::size_t i = 0; i < flight.given.size(); ++i) {
+      if (!std::isnan(flight.given[i])) records.push_back(i);
+    }
+    // What a refit takes: the residual itself where it is linear, else in the measure of the laser.
+    const bool is_linear =
+        reference.model() != nullptr || !reference.is_static_pressure() ||
+        std::all_of(wanted.begin(), wanted.end(), [&](std::size_t p) { return residuals.is_linear()[p]; });
+    std::vector<double> found(records.size());
+    if (is_linear)
+      residuals.evaluate(records.data(), records.size(), parameters.data(), {}, found.data(), nullptr);
+    else
+      residuals.evaluate_at_sensor(records.data(), records.size(), parameters.data(), {}, found.data(),
+                                   nullptr);
+    std::vector<double> result(flight.given.size(), nan);
+    for (std::size_t k = 0; k < records.size(); ++k) result[records[k]] = found[k];
+    if (std::any_of(found.begin(), found.end(), [](double x) { return !std::isfinite(x); })) return {};
+    return result;
+  }
+
+ private:
+  std::size_t columns_before(std::size_t group) const {
+    std::size_t count = 0;
+    for (std::size_t g = 0; g < group; ++g) count += set_.candidates[g].tested.size();
+    return count;
+  }
+
+  const ModelFile& model_;
+  const CandidateSet& set_;
+  const MaskOptions& mask_;
+};
+
 WhatIfSums as_sums(const SumOfProducts& sum) {
   WhatIfSums sums;
   sums.samples = sum.count;
@@ -314,7 +380,8 @@ WhatIf what_if(const std::vector<std::filesystem::path>& paths, const ModelFile&
     if (found[e].stands_for == found[e].id) are_found.push_back(e);
   }
   const WhatIfFit fit(std::move(columns), std::move(others), panel.coefficients,
-                      groups_of(model, ordered.candidates), are_found, options.is_robust);
+                      groups_of(model, ordered.candidates), are_found, options.is_robust,
+                      WithEffects(model, ordered, mask));
   fit.describe(panel.coefficients);
   for (const WhatIfFit::Weights& each : fit.weights())
     panel.weights.push_back({each.found, as_sums(each.parts), each.inflation});

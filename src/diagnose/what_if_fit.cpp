@@ -25,24 +25,25 @@ constexpr double least_eigenvalue = 1e-11;
 
 using Places = std::vector<Eigen::Index>;
 
-/// What base and candidates, with changes of their coefficients, leave of the residual of a record.
-double left_at(const FlightColumns& flight, Eigen::Index record, const Eigen::VectorXd& values) {
-  return flight.given[static_cast<std::size_t>(record)] -
-         flight.base.row(record).cast<double>().dot(values.head(flight.base.cols())) -
-         flight.candidates.row(record).cast<double>().dot(values.tail(flight.candidates.cols()));
+/// What changes of the coefficients of base and candidates take off the residual of a record.
+double taken_off(const FlightColumns& flight, std::size_t record, const Eigen::VectorXd& values) {
+  const Eigen::Index row = as_index(record);
+  return flight.base.row(row).cast<double>().dot(values.head(flight.base.cols())) +
+         flight.candidates.row(row).cast<double>().dot(values.tail(flight.candidates.cols()));
 }
 
-/// The residual of a flight without its outliers: samples that depart from those around them.
-std::vector<double> calm(const FlightColumns& flight, const Eigen::VectorXd& values) {
-  std::vector<double> left(flight.given.size(), nan);
+/// A residual of a flight without its outliers: samples that depart from those around them.
+std::vector<double> calm(const FlightColumns& flight, const std::vector<double>& residual,
+                         const Eigen::VectorXd& values) {
+  std::vector<double> left(residual.size(), nan);
   for (std::size_t i = 0; i < left.size(); ++i) {
-    if (!std::isnan(flight.given[i])) left[i] = left_at(flight, as_index(i), values);
+    if (!std::isnan(residual[i])) left[i] = residual[i] - taken_off(flight, i, values);
   }
   const std::vector<double> nothing(left.size(), 0.0);
   std::size_t count = 0;
   const std::vector<double> without =
       without_outliers(left, nothing, flight.samples->time, flight.samples->step, count);
-  std::vector<double> result = flight.given;
+  std::vector<double> result = residual;
   for (std::size_t i = 0; i < left.size(); ++i) {
     if (!(without[i] == left[i])) result[i] = nan;
   }
@@ -140,12 +141,14 @@ void add(SumOfProducts& sum, const Eigen::VectorXd& row) {
 
 WhatIfFit::WhatIfFit(std::vector<FlightColumns> flights, std::vector<FlightColumns> others,
                      const std::vector<WhatIfCoefficient>& coefficients, std::vector<ColumnGroup> groups,
-                     const std::vector<std::size_t>& found, bool is_robust)
+                     const std::vector<std::size_t>& found, bool is_robust, const ResidualAt& residual_at)
     : flights_(std::move(flights)), others_(std::move(others)), groups_(std::move(groups)) {
   base_ = flights_.front().base.cols();
   given_.resize(as_index(coefficients.size()));
+  start_.resize(given_.size());
   for (Eigen::Index c = 0; c < given_.size(); ++c) {
     const WhatIfCoefficient& coefficient = coefficients[static_cast<std::size_t>(c)];
+    start_[c] = coefficient.start;
     given_[c] = coefficient.given - coefficient.start;
     if (c < base_ && !coefficient.fixed) own_.push_back(c);
   }
@@ -156,18 +159,18 @@ WhatIfFit::WhatIfFit(std::vector<FlightColumns> flights, std::vector<FlightColum
     }
   }
   for (const ColumnGroup& group : groups_) told_.push_back(places_of(group, base_));
-  for (const std::vector<std::size_t>& some : subsets_of(found)) settle(some, is_robust);
+  for (const std::vector<std::size_t>& some : subsets_of(found)) settle(some, is_robust, residual_at);
 }
 
 /// Where slow noise makes the fit leave more than the coefficients that are given, it is no noise but what the
 /// model lacks, and the fit follows it, as a refit does.
-void WhatIfFit::settle(const std::vector<std::size_t>& found, bool is_robust) {
+void WhatIfFit::settle(const std::vector<std::size_t>& found, bool is_robust, const ResidualAt& residual_at) {
   constexpr double larger = 1.02;
   weights_.push_back({found, {}, 1.0});
-  const Eigen::VectorXd with_drift = find_sums(found, is_robust, true);
+  const Eigen::VectorXd with_drift = find_sums(found, is_robust, true, residual_at);
   sum_records();
   if (rms_of(with_drift) > larger * rms_of(given_)) {
-    find_sums(found, is_robust, false);
+    find_sums(found, is_robust, false, residual_at);
     sum_records();
   }
   weights_.back().inflation = inflation_;
@@ -179,7 +182,21 @@ std::vector<Eigen::Index> WhatIfFit::free_columns(const std::vector<std::size_t>
   return free;
 }
 
-Eigen::VectorXd WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool is_robust, bool drifts) {
+/// The residual at the start, such that a step by the derivatives leads to what it really is at `values`.
+std::vector<double> WhatIfFit::residual_for(const FlightColumns& flight, const std::vector<std::size_t>& groups,
+                                            const Eigen::VectorXd& values,
+                                            const ResidualAt& residual_at) const {
+  const std::vector<double> there = residual_at(flight, groups, start_ + values);
+  if (there.empty()) return flight.given;
+  std::vector<double> residual = flight.given;
+  for (std::size_t i = 0; i < residual.size(); ++i) {
+    if (!std::isnan(residual[i])) residual[i] = there[i] + taken_off(flight, i, values);
+  }
+  return residual;
+}
+
+Eigen::VectorXd WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool is_robust, bool drifts,
+                                     const ResidualAt& residual_at) {
   Eigen::VectorXd values = given_;
   Scores scores;
   std::vector<NoiseModel> noise;
@@ -188,7 +205,9 @@ Eigen::VectorXd WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool
     std::vector<Eigen::MatrixXd> columns;
     std::vector<Eigen::VectorXd> residuals;
     for (const FlightColumns& flight : flights_) {
-      const std::vector<double> series = is_robust && round > 0 ? calm(flight, values) : flight.given;
+      std::vector<double> series =
+          round > 0 ? residual_for(flight, found, values, residual_at) : flight.given;
+      if (is_robust && round > 0) series = calm(flight, series, values);
       bins_.emplace_back(series, flight.samples->time, flight.samples->step,
                          std::max(flight.window, Binning::usual_width));
       columns.push_back(binned_columns(flight, bins_.back()));

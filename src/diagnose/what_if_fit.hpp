@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include <pcor/report/report.hpp>
@@ -10,6 +11,11 @@
 #include "numerics/noise_model.hpp"
 
 namespace pcor::internal {
+
+/// The residual of every record of a flight with some groups in the model, as a refit sees it, at values of all
+/// coefficients; empty where only its derivatives are known.
+using ResidualAt = std::function<std::vector<double>(
+    const FlightColumns& flight, const std::vector<std::size_t>& groups, const Eigen::VectorXd& values)>;
 
 /// Products of (columns, residual) with themselves, summed over so many samples.
 struct SumOfProducts {
@@ -27,7 +33,7 @@ class WhatIfFit {
   /// @param found the groups with which the noise is found, and with some of them
   WhatIfFit(std::vector<FlightColumns> flights, std::vector<FlightColumns> others,
             const std::vector<WhatIfCoefficient>& coefficients, std::vector<ColumnGroup> groups,
-            const std::vector<std::size_t>& found, bool is_robust);
+            const std::vector<std::size_t>& found, bool is_robust, const ResidualAt& residual_at);
 
   const std::vector<FlightColumns>& flights() const { return flights_; }
   const std::vector<FlightColumns>& others() const { return others_; }
@@ -71,9 +77,12 @@ class WhatIfFit {
 
  private:
   std::vector<Eigen::Index> free_columns(const std::vector<std::size_t>& groups) const;
-  void settle(const std::vector<std::size_t>& found, bool is_robust);
+  void settle(const std::vector<std::size_t>& found, bool is_robust, const ResidualAt& residual_at);
   /// Gives the coefficients with the groups that were found.
-  Eigen::VectorXd find_sums(const std::vector<std::size_t>& found, bool is_robust, bool drifts);
+  Eigen::VectorXd find_sums(const std::vector<std::size_t>& found, bool is_robust, bool drifts,
+                            const ResidualAt& residual_at);
+  std::vector<double> residual_for(const FlightColumns& flight, const std::vector<std::size_t>& groups,
+                                   const Eigen::VectorXd& values, const ResidualAt& residual_at) const;
   double rms_of(const Eigen::VectorXd& values) const;
   void sum_records();
 
@@ -83,6 +92,7 @@ class WhatIfFit {
   std::vector<std::vector<Eigen::Index>> told_{};  // columns of each group
   Eigen::Index base_ = 0;
   std::vector<Eigen::Index> own_{};
+  Eigen::VectorXd start_{};
   Eigen::VectorXd given_{};  // changes from the start to what is given
   std::vector<Binning> bins_{};
   NoiseModel noise_{};
