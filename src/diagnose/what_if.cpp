@@ -227,15 +227,16 @@ std::string note_of(const Candidate& candidate, const std::string& flaps_variabl
     return "It is alike on the system that the model is held against, which no model file can hold: the "
            "command adds it without that.";
   if (reads_flaps(candidate.effect, flaps_variable))
-    return "Here it is held against the samples with flaps in alone; a refit with it uses those with flaps out "
+    return "Here it is held against the samples with flaps in alone; a refit with it uses those with flaps "
+           "out "
            "too.";
   return "";
 }
 
 /// What would tell each effect from each other, at the sizes that each has alone.
-std::vector<WhatIfSeparation> separations_of(const std::vector<FlightColumns>& flights,
-                                             const WhatIfFit& fit, const CandidateSet& set,
-                                             const ModelFile& model, const MaskOptions& mask) {
+std::vector<WhatIfSeparation> separations_of(const std::vector<FlightColumns>& flights, const WhatIfFit& fit,
+                                             const CandidateSet& set, const ModelFile& model,
+                                             const MaskOptions& mask) {
   std::vector<WhatIfSeparation> separations;
   if (set.candidates.size() < 2) return separations;
   std::vector<std::shared_ptr<const FlightSamples>> samples;
@@ -324,8 +325,7 @@ WhatIf what_if(const std::vector<std::filesystem::path>& paths, const ModelFile&
     if (each.effect && each.effect->is_formula() && std::none_of(formulas.begin(), formulas.end(), same))
       formulas.push_back(*each.effect);
   }
-  CandidateSet set =
-      find_candidates(model, formulas, flights, usable_references(all_references, notes));
+  CandidateSet set = find_candidates(model, formulas, flights, usable_references(all_references, notes));
   keep(set, wanted);
   const MaskOptions& mask = options.diagnose.mask;
   const double share = options.diagnose.training_share;
@@ -336,7 +336,8 @@ WhatIf what_if(const std::vector<std::filesystem::path>& paths, const ModelFile&
   drop_untestable(set, columns);
   std::vector<FlightColumns> others;
   for (const Flight& file : held_out_files) {
-    auto samples = std::make_shared<FlightSamples>(read_samples(file, set.extended, *set.references[0], mask));
+    auto samples =
+        std::make_shared<FlightSamples>(read_samples(file, set.extended, *set.references[0], mask));
     others.push_back(held_out(find_columns(std::move(samples), model, set, 0, mask, 1.0), 0.0));
   }
   for (std::size_t f = 0; f < fitted_flights && share < 1.0; ++f) {
@@ -352,9 +353,8 @@ WhatIf what_if(const std::vector<std::filesystem::path>& paths, const ModelFile&
   WhatIfPanel& panel = result.panel;
   panel.own = ordered.base.size();
   for (const BaseCoefficient& coefficient : ordered.base) {
-    const auto start = std::find_if(options.own.begin(), options.own.end(), [&](const Estimate& each) {
-      return each.name == coefficient.name;
-    });
+    const auto start = std::find_if(options.own.begin(), options.own.end(),
+                                    [&](const Estimate& each) { return each.name == coefficient.name; });
     panel.coefficients.push_back({coefficient.name, coefficient.unit, coefficient.value,
                                   start == options.own.end() ? coefficient.value : start->value,
                                   coefficient.bounds.lower, coefficient.bounds.upper,
@@ -367,15 +367,21 @@ WhatIf what_if(const std::vector<std::filesystem::path>& paths, const ModelFile&
     const auto stands_for = std::find_if(found.begin(), found.end(), [&](const WhatIfCandidate& each) {
       return each.id == found[e].stands_for;
     });
-    panel.effects.push_back({found[e].id, candidate.title, found[e].why, {}, panel.coefficients.size(),
-                             candidate.tested.size(), "", candidate.effect.is_formula(),
+    panel.effects.push_back({found[e].id,
+                             candidate.title,
+                             found[e].why,
+                             {},
+                             panel.coefficients.size(),
+                             candidate.tested.size(),
+                             "",
+                             candidate.effect.is_formula(),
                              note_of(candidate, columns.front().samples->flaps_variable)});
     if (stands_for != found.end())
       panel.effects.back().stands_for = static_cast<std::size_t>(stands_for - found.begin());
     for (const CandidateParameter& tested : candidate.tested) {
       const double neutral = candidate.effect.parameters[tested.place];
-      panel.coefficients.push_back({tested.name, tested.unit, neutral, neutral,
-                                    neutral + tested.bounds.lower, neutral + tested.bounds.upper});
+      panel.coefficients.push_back({tested.name, tested.unit, neutral, neutral, neutral + tested.bounds.lower,
+                                    neutral + tested.bounds.upper});
     }
     if (found[e].stands_for == found[e].id) are_found.push_back(e);
   }

@@ -11,9 +11,9 @@
 #include "diagnose/separation.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
+#include "numerics/robust_weights.hpp"
 #include "numerics/spikes.hpp"
 #include "numerics/triangular_factor.hpp"
-#include "numerics/robust_weights.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -54,8 +54,7 @@ std::vector<double> calm(const FlightColumns& flight, const std::vector<double>&
 Eigen::VectorXd solved(const Eigen::MatrixXd& sum, const Places& free, Eigen::VectorXd values) {
   values(free).setZero();
   const Eigen::Index width = values.size();
-  const Eigen::VectorXd right =
-      sum.col(width).head(width) - sum.topLeftCorner(width, width) * values;
+  const Eigen::VectorXd right = sum.col(width).head(width) - sum.topLeftCorner(width, width) * values;
   values(free) = pseudo_solution(sum(free, free), right(free), least_eigenvalue);
   return values;
 }
@@ -91,8 +90,8 @@ void weigh(Scores& scores, const Places& free, Eigen::VectorXd& values, double (
   }
 }
 
-/// By how much the variances of a fit with Tukey's loss are larger than those of least squares of the rows with
-/// its weights (Huber and Ronchetti 2009, Robust Statistics, section 7.6). @param rows without weights
+/// By how much the variances of a fit with Tukey's loss are larger than those of least squares of the rows
+/// with its weights (Huber and Ronchetti 2009, Robust Statistics, section 7.6). @param rows without weights
 double inflation_by_weights(const std::vector<Eigen::MatrixXd>& rows, const Eigen::VectorXd& values) {
   double count = 0.0;
   double weights = 0.0;
@@ -112,8 +111,8 @@ double inflation_by_weights(const std::vector<Eigen::MatrixXd>& rows, const Eige
   return count * weights * squares / (slopes * slopes) / weighted_squares;
 }
 
-/// Which of some groups a reader may have switched on: all subsets of a few; of many what comes first, as they
-/// were found one after another. The empty one first, all of them last.
+/// Which of some groups a reader may have switched on: all subsets of a few; of many what comes first, as
+/// they were found one after another. The empty one first, all of them last.
 std::vector<std::vector<std::size_t>> subsets_of(const std::vector<std::size_t>& groups) {
   constexpr std::size_t few = 3;
   std::vector<std::vector<std::size_t>> subsets;
@@ -162,8 +161,8 @@ WhatIfFit::WhatIfFit(std::vector<FlightColumns> flights, std::vector<FlightColum
   for (const std::vector<std::size_t>& some : subsets_of(found)) settle(some, is_robust, residual_at);
 }
 
-/// Where slow noise makes the fit leave more than the coefficients that are given, it is no noise but what the
-/// model lacks, and the fit follows it, as a refit does.
+/// Where slow noise makes the fit leave more than the coefficients that are given, it is no noise but what
+/// the model lacks, and the fit follows it, as a refit does.
 void WhatIfFit::settle(const std::vector<std::size_t>& found, bool is_robust, const ResidualAt& residual_at) {
   constexpr double larger = 1.02;
   weights_.push_back({found, {}, 1.0});
@@ -183,7 +182,8 @@ std::vector<Eigen::Index> WhatIfFit::free_columns(const std::vector<std::size_t>
 }
 
 /// The residual at the start, such that a step by the derivatives leads to what it really is at `values`.
-std::vector<double> WhatIfFit::residual_for(const FlightColumns& flight, const std::vector<std::size_t>& groups,
+std::vector<double> WhatIfFit::residual_for(const FlightColumns& flight,
+                                            const std::vector<std::size_t>& groups,
                                             const Eigen::VectorXd& values,
                                             const ResidualAt& residual_at) const {
   const std::vector<double> there = residual_at(flight, groups, start_ + values);

@@ -12,8 +12,8 @@
 
 namespace pcor::internal {
 
-/// The residual of every record of a flight with some groups in the model, as a refit sees it, at values of all
-/// coefficients; empty where only its derivatives are known.
+/// The residual of every record of a flight with some groups in the model, as a refit sees it, at values of
+/// all coefficients; empty where only its derivatives are known.
 using ResidualAt = std::function<std::vector<double>(
     const FlightColumns& flight, const std::vector<std::size_t>& groups, const Eigen::VectorXd& values)>;
 

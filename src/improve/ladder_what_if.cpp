@@ -41,8 +41,8 @@ WhatIf what_if(const std::vector<std::filesystem::path>& flights, const Improvem
     const ImproveStep& step = improvement.steps[rung];
     const ModelEffect& effect = effect_of(improvement, step);
     const Finding* const finding = finding_of(improvement, rung);
-    candidates.push_back(
-        {step.added, fmt::format("rung {}", rung), effect, finding != nullptr && finding->is_alike, step.added});
+    candidates.push_back({step.added, fmt::format("rung {}", rung), effect,
+                          finding != nullptr && finding->is_alike, step.added});
     if (finding == nullptr) continue;
     for (const Alias& alias : finding->aliases)
       rivals.push_back(
@@ -55,9 +55,8 @@ WhatIf what_if(const std::vector<std::filesystem::path>& flights, const Improvem
   }
   constexpr std::size_t most = 12;
   for (WhatIfCandidate& rival : rivals) {
-    const bool is_new =
-        std::none_of(candidates.begin(), candidates.end(),
-                     [&rival](const WhatIfCandidate& each) { return each.id == rival.id; });
+    const bool is_new = std::none_of(candidates.begin(), candidates.end(),
+                                     [&rival](const WhatIfCandidate& each) { return each.id == rival.id; });
     if (is_new && candidates.size() < most) candidates.push_back(std::move(rival));
   }
   return what_if(flights, improvement.refitted, references, candidates, with);

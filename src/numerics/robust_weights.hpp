@@ -5,8 +5,9 @@
 
 namespace pcor::internal {
 
-// Losses of residuals in units of their robust deviation. Their widths have 95 % efficiency on normal noise (Huber
-// and Ronchetti 2009, Robust Statistics; Holland and Welsch 1977, Communications in Statistics A6, 813).
+// Losses of residuals in units of their robust deviation. Their widths have 95 % efficiency on normal noise
+// (Huber and Ronchetti 2009, Robust Statistics; Holland and Welsch 1977, Communications in Statistics A6,
+// 813).
 
 /// From here on Huber's loss is linear.
 inline constexpr double huber_width = 1.345;

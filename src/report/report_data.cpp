@@ -43,9 +43,9 @@ std::string base64(const std::vector<Unsigned>& numbers) {
   return text;
 }
 
-// Whole numbers that are near those before them, in few letters: by what each differs from the one before, the
-// sign as the last bit, in bytes of seven bits of which the last has no eighth; behind a difference of zero how
-// many more such follow; all in base64.
+// Whole numbers that are near those before them, in few letters: by what each differs from the one before,
+// the sign as the last bit, in bytes of seven bits of which the last has no eighth; behind a difference of
+// zero how many more such follow; all in base64.
 std::string packed(const std::vector<std::uint32_t>& numbers) {
   constexpr std::uint64_t seven_bits = 127;
   std::vector<std::uint8_t> bytes;
@@ -67,7 +67,7 @@ std::string packed(const std::vector<std::uint32_t>& numbers) {
   return base64(bytes);
 }
 
-constexpr double all_steps = 65534.0;     // between the least and the greatest value of a column
+constexpr double all_steps = 65534.0;   // between the least and the greatest value of a column
 constexpr double steps_along = 4094.0;  // of one that pictures have along their axes alone
 
 // 65535 is missing; any other number n is `least` + n * `step`.
@@ -123,8 +123,8 @@ class AlongAxes {
   std::set<std::string> up_{};
 };
 
-// Each flight with the time of its samples: `start` in seconds since 1970, the milliseconds from each sample to
-// the next, the first of them from the start to itself.
+// Each flight with the time of its samples: `start` in seconds since 1970, the milliseconds from each sample
+// to the next, the first of them from the start to itself.
 json flights(const Report& report) {
   constexpr double most = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::size_t> bounds = report.flight_starts;
@@ -174,8 +174,7 @@ json what_if_columns(const WhatIfPanel& panel, const Report& report) {
   std::vector<ScaledSeries> series;
   for (const WhatIfCoefficient& coefficient : panel.coefficients)
     series.push_back({&coefficient.column, coefficient.size});
-  const std::vector<std::size_t> points =
-      thinned(report.time, report.flight_starts, series, most, enough);
+  const std::vector<std::size_t> points = thinned(report.time, report.flight_starts, series, most, enough);
   json columns = json::array();
   for (const WhatIfCoefficient& coefficient : panel.coefficients) {
     ReportColumn column;
@@ -183,8 +182,7 @@ json what_if_columns(const WhatIfPanel& panel, const Report& report) {
     const json kept = quantised(column);
     columns.push_back({{"least", kept["least"]}, {"step", kept["step"]}, {"values", kept["values"]}});
   }
-  return {{"points", packed({points.begin(), points.end()})},
-          {"columns", std::move(columns)}};
+  return {{"points", packed({points.begin(), points.end()})}, {"columns", std::move(columns)}};
 }
 
 struct ItemJson {
@@ -287,7 +285,7 @@ struct ItemJson {
 }  // namespace
 
 const char* kind_of(const ReportItem& item) {
-  constexpr const char* kinds[] = {"time", "binned", "plane", "pair", "regimes",
+  constexpr const char* kinds[] = {"time", "binned", "plane",   "pair",  "regimes",
                                    "bars", "curves", "what-if", "table", "text"};
   static_assert(std::size(kinds) == std::variant_size_v<ReportItem>);
   return kinds[item.index()];

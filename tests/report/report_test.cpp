@@ -273,7 +273,8 @@ TEST(Report, RefusesAWhatIfThatCannotBeComputed) {
   EXPECT_THAT(reason_of([](WhatIfPanel& panel) { panel.effects.clear(); }), HasSubstr("no effect"));
   EXPECT_THAT(reason_of([](WhatIfPanel& panel) { panel.coefficients[1].column.pop_back(); }),
               HasSubstr("99 values for 100 samples"));
-  EXPECT_THAT(reason_of([](WhatIfPanel& panel) { panel.effects[0].count = 2; }), HasSubstr("first and count"));
+  EXPECT_THAT(reason_of([](WhatIfPanel& panel) { panel.effects[0].count = 2; }),
+              HasSubstr("first and count"));
   EXPECT_THAT(reason_of([](WhatIfPanel& panel) { panel.alike[0].products.pop_back(); }), HasSubstr("sums"));
   EXPECT_THAT(reason_of([](WhatIfPanel& panel) { panel.weights.clear(); }), HasSubstr("sums"));
   EXPECT_THAT(reason_of([](WhatIfPanel& panel) { panel.x_choices = {"absent"}; }), HasSubstr("'absent'"));

@@ -213,8 +213,8 @@ void run(const Options& options) {
   }
   OutputsTogether together;
   if (!options.common.report.empty())
-    write_report_of_run(diagnosis_report(diagnosis, model, &tried), {{options.model}, options.comparison.flights, {}},
-                        options.common.report);
+    write_report_of_run(diagnosis_report(diagnosis, model, &tried),
+                        {{options.model}, options.comparison.flights, {}}, options.common.report);
   json.write(as_json(diagnosis));
   together.appear();
   if (wants_text(options.common)) print(diagnosis, references, options);

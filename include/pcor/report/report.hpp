@@ -143,9 +143,9 @@ struct WhatIfEffect {
   std::optional<std::size_t> stands_for{};
   std::size_t first = 0;  ///< of its coefficients
   std::size_t count = 0;
-  std::string argument{};  ///< by which a command adds it, ready for a shell; empty where none can
-  bool is_formula = false;    ///< a command of its own adds it
-  std::string note{};      ///< what the reader should know of it; a sentence
+  std::string argument{};   ///< by which a command adds it, ready for a shell; empty where none can
+  bool is_formula = false;  ///< a command of its own adds it
+  std::string note{};       ///< what the reader should know of it; a sentence
 };
 
 /// Sums over samples of what coefficients and residual have in common: the lower triangle, row by row, of the
@@ -159,8 +159,8 @@ struct WhatIfSums {
 struct WhatIfWeights {
   std::vector<std::size_t> effects;
   std::vector<WhatIfSums> parts;  ///< of the flights, each of which is left out in turn
-  /// By how much the variance of a coefficient is larger than least squares of the weighted rows has it, since
-  /// the weights come from the residuals.
+  /// By how much the variance of a coefficient is larger than least squares of the weighted rows has it,
+  /// since the weights come from the residuals.
   double inflation = 1.0;
 };
 
@@ -193,7 +193,7 @@ struct WhatIfPanel {
   /// For fits: with no effect taken off first, with all that were found last.
   std::vector<WhatIfWeights> weights;
   std::vector<WhatIfSums> alike;  ///< of the same parts, of all samples alike but outliers, hPa
-  WhatIfSums outliers{};  ///< as `alike`
+  WhatIfSums outliers{};          ///< as `alike`
   WhatIfSums held_out{};  ///< as `alike`, of what took no part in any fit; empty where there is nothing
   double noise = 0.0;     ///< rms, hPa
   std::vector<WhatIfSeparation> separations{};
