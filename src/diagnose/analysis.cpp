@@ -27,8 +27,8 @@ std::vector<Value> part(const std::vector<Value>& all, std::size_t first, std::s
 }  // namespace
 
 std::size_t held_out_part(const FlightSamples& samples, double time) {
-  return static_cast<std::size_t>(
-      std::fmod(std::floor((time - samples.time.front()) / stretch_time), static_cast<double>(held_out_parts)));
+  return static_cast<std::size_t>(std::fmod(std::floor((time - samples.time.front()) / stretch_time),
+                                            static_cast<double>(held_out_parts)));
 }
 
 Analysis::Analysis(std::vector<FlightColumns> flights, std::vector<ColumnGroup> groups, std::uint64_t seed,
@@ -246,9 +246,7 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
   const std::vector<Eigen::MatrixXd> columns = all_columns_of(groups);
   const Eigen::Index width = columns.front().cols() + 1;
   std::vector<Eigen::MatrixXd> information(held_out_parts, Eigen::MatrixXd::Zero(width, width));
-  const auto part_of = [this](std::size_t f, double time) {
-    return held_out_part(*flight(f).samples, time);
-  };
+  const auto part_of = [this](std::size_t f, double time) { return held_out_part(*flight(f).samples, time); };
   std::vector<Eigen::MatrixXd> white;
   for (std::size_t f = 0; f < columns.size(); ++f) {
     Eigen::MatrixXd all(columns[f].rows(), width);

@@ -185,10 +185,10 @@ void DiagnosisPanels::add_what_if(const WhatIf& what_if, const std::string& resi
   panel.caption =
       "Switch an effect on, or move its coefficient: residual, table, ladder and figures follow, and the "
       "coefficients that were not moved by hand are fitted again. The fit takes the derivatives of the "
-      "residual where the model is now, in units of the noise that is left when all that was found is taken "
-      "off. That is what pcor refit finds where the residual is a straight line in the coefficients, and "
-      "nearly so elsewhere, as for a lag. The figures are of all samples; pictures and table take the "
-      "derivatives at some thousand samples, with straight lines between them.";
+      "residual where the model is now, in units of the noise that is left when what was found, and is "
+      "switched on, is taken off. That is what pcor refit finds where the residual is a straight line in the "
+      "coefficients, and nearly so elsewhere, as for a lag. The figures are of all samples; pictures and "
+      "table take the derivatives at no more than some thousand samples, with straight lines between them.";
   panel.residual = residual;
   panel.x_choices = choices({residual}, first);
   panel.samples_per_independent = memory_;

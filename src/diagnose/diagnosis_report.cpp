@@ -241,8 +241,8 @@ Report diagnosis_report(const Diagnosis& diagnosis, const ModelFile& model, cons
                         [&](const F& f) -> const Series& { return found ? f.after : f.before; });
   add_residual_panels(panels, residuals);
   if (what_if != nullptr) {
-    const std::vector<std::string> inputs = found ? inputs_of(diagnosis.findings.front().effect)
-                                                  : std::vector<std::string>{};
+    const std::vector<std::string> inputs =
+        found ? inputs_of(diagnosis.findings.front().effect) : std::vector<std::string>{};
     panels.add_what_if(*what_if, "before", inputs, diagnosis.noise_rms_with_findings);
   }
   if (found) {

@@ -78,12 +78,10 @@ Plan best_plan(const std::vector<Prospect>& prospects, const Rivalry& rivalry) {
   Plan best;
   for (int repeats = 1; repeats <= most_repeats && best.power < enough_power; ++repeats) {
     for (const Prospect& prospect : prospects) {
-      const Eigen::MatrixXd then =
-          rivalry.information + static_cast<double>(repeats) * prospect.information;
+      const Eigen::MatrixXd then = rivalry.information + static_cast<double>(repeats) * prospect.information;
       double power = 1.0;
       for (const std::vector<Eigen::Index>& rest : rivalry.rests)
-        power =
-            std::min(power, power_of(distinct(then, rest, rivalry.own, rivalry.size) / rivalry.variance));
+        power = std::min(power, power_of(distinct(then, rest, rivalry.own, rivalry.size) / rivalry.variance));
       if (power > best.power) best = {&prospect.manoeuvre, repeats, power};
     }
   }
@@ -108,8 +106,8 @@ std::string text_of(const Plan& plan, const std::string& id, const ModelEffect& 
   const std::string times = plan.repeats == 1 ? "" : fmt::format(" {} times", plan.repeats);
   return fmt::format(
       "fly this: {}{} ({}; {:.0f} min): it would tell {} from {} with a probability of {:.0f} %",
-      plan.manoeuvre->name, times, plan.manoeuvre->how,
-      std::max(1.0, plan.duration() / seconds_per_minute), id, names, std::min(99.0, 100.0 * plan.power));
+      plan.manoeuvre->name, times, plan.manoeuvre->how, std::max(1.0, plan.duration() / seconds_per_minute),
+      id, names, std::min(99.0, 100.0 * plan.power));
 }
 
 std::vector<Eigen::Index> places_of(const ColumnGroup& group, Eigen::Index base) {

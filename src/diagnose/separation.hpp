@@ -26,10 +26,10 @@ std::vector<Prospect> prospects_of(const std::vector<std::shared_ptr<const Fligh
 
 /// An effect of an estimated size, and what it is to be told from.
 struct Rivalry {
-  Eigen::MatrixXd information;     ///< of base and candidates, as the flights are
-  double variance = 1.0;           ///< of the whitened residuals
-  std::vector<Eigen::Index> own;   ///< the columns of the effect
-  Eigen::VectorXd size;            ///< its coefficients
+  Eigen::MatrixXd information;    ///< of base and candidates, as the flights are
+  double variance = 1.0;          ///< of the whitened residuals
+  std::vector<Eigen::Index> own;  ///< the columns of the effect
+  Eigen::VectorXd size;           ///< its coefficients
   /// For each rival the columns that may imitate the effect, those of base and rival among them.
   std::vector<std::vector<Eigen::Index>> rests;
 };

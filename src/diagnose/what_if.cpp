@@ -108,6 +108,72 @@ FlightColumns held_out(FlightColumns all, double used_share) {
   return all;
 }
 
+/// The residual with effects at coefficients that are not small: as a refit with them has it.
+class WithEffects {
+ public:
+  WithEffects(const ModelFile& model, const CandidateSet& set, const MaskOptions& mask)
+      : model_(model), set_(set), mask_(mask) {}
+
+  std::vector<double> operator()(const FlightColumns& flight, const std::vector<std::size_t>& groups,
+                                 const Eigen::VectorXd& values) const {
+    const Reference& reference = *set_.references[flight.reference];
+    if (!reference.is_of_one_sample()) return {};
+    ModelFile with = model_;
+    with.variables = set_.extended.variables;
+    with.units = set_.extended.units;
+    std::vector<std::size_t> wanted = free_parameters(model_);
+    const std::vector<std::size_t> own = wanted;
+    std::size_t place = 0;
+    for (const ModelEffect& effect : model_.model.effects) place += effect.parameters.size();
+    std::vector<std::pair<std::size_t, double>> added;
+    for (const std::size_t group : groups) {
+      const Candidate& candidate = set_.candidates[group];
+      if (candidate.is_shared || candidate.is_of_reference() || candidate.memory != 0.0) return {};
+      with.model.effects.push_back(candidate.effect);
+      const Eigen::Index first = as_index(set_.base.size() + columns_before(group));
+      for (std::size_t k = 0; k < candidate.tested.size(); ++k) {
+        added.emplace_back(place + candidate.tested[k].place, values[first + as_index(k)]);
+        wanted.push_back(added.back().first);
+      }
+      place += candidate.effect.parameters.size();
+    }
+    with.fits.resize(with.model.effects.size());
+    const Residuals residuals(flight.samples, with, reference, mask_);
+    std::vector<double> parameters = residuals.parameters();
+    for (std::size_t k = 0; k < own.size(); ++k) parameters[own[k]] = values[as_index(k)];
+    for (const auto& [parameter, value] : added) parameters[parameter] = value;
+    std::vector<std::size_t> records;
+    for (std::size_t i = 0; i < flight.given.size(); ++i) {
+      if (!std::isnan(flight.given[i])) records.push_back(i);
+    }
+    // What a refit takes: the residual itself where it is linear, else in the measure of the laser.
+    const bool is_linear =
+        reference.model() != nullptr || !reference.is_static_pressure() ||
+        std::all_of(wanted.begin(), wanted.end(), [&](std::size_t p) { return residuals.is_linear()[p]; });
+    std::vector<double> found(records.size());
+    if (is_linear)
+      residuals.evaluate(records.data(), records.size(), parameters.data(), {}, found.data(), nullptr);
+    else
+      residuals.evaluate_at_sensor(records.data(), records.size(), parameters.data(), {}, found.data(),
+                                   nullptr);
+    std::vector<double> result(flight.given.size(), nan);
+    for (std::size_t k = 0; k < records.size(); ++k) result[records[k]] = found[k];
+    if (std::any_of(found.begin(), found.end(), [](double x) { return !std::isfinite(x); })) return {};
+    return result;
+  }
+
+ private:
+  std::size_t columns_before(std::size_t group) const {
+    std::size_t count = 0;
+    for (std::size_t g = 0; g < group; ++g) count += set_.candidates[g].tested.size();
+    return count;
+  }
+
+  const ModelFile& model_;
+  const CandidateSet& set_;
+  const MaskOptions& mask_;
+};
+
 WhatIfSums as_sums(const SumOfProducts& sum) {
   WhatIfSums sums;
   sums.samples = sum.count;
@@ -154,19 +220,23 @@ void add_held_out(std::vector<WhatIfFlight>& flights, const FlightColumns& held_
   }
 }
 
-std::string note_of(const Candidate& candidate) {
+std::string note_of(const Candidate& candidate, const std::string& flaps_variable) {
   if (candidate.is_of_reference())
     return "It is of the system that the model is held against: the model is not to be changed for it.";
   if (candidate.is_shared)
     return "It is alike on the system that the model is held against, which no model file can hold: the "
            "command adds it without that.";
+  if (reads_flaps(candidate.effect, flaps_variable))
+    return "Here it is held against the samples with flaps in alone; a refit with it uses those with flaps "
+           "out "
+           "too.";
   return "";
 }
 
 /// What would tell each effect from each other, at the sizes that each has alone.
-std::vector<WhatIfSeparation> separations_of(const std::vector<FlightColumns>& flights,
-                                             const WhatIfFit& fit, const CandidateSet& set,
-                                             const ModelFile& model, const MaskOptions& mask) {
+std::vector<WhatIfSeparation> separations_of(const std::vector<FlightColumns>& flights, const WhatIfFit& fit,
+                                             const CandidateSet& set, const ModelFile& model,
+                                             const MaskOptions& mask) {
   std::vector<WhatIfSeparation> separations;
   if (set.candidates.size() < 2) return separations;
   std::vector<std::shared_ptr<const FlightSamples>> samples;
@@ -205,10 +275,10 @@ std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
     if (is_new && candidates.size() < most_effects) candidates.push_back(std::move(candidate));
   };
   for (const Finding& finding : diagnosis.findings)
-    add({finding.id(), "found", finding.effect, finding.is_alike, true});
+    add({finding.id(), "found", finding.effect, finding.is_alike, finding.id()});
   for (const Finding& finding : diagnosis.findings) {
     for (const Alias& alias : finding.aliases)
-      add({alias.effect, "instead of " + finding.id(), alias.correction, alias.is_alike});
+      add({alias.effect, "instead of " + finding.id(), alias.correction, alias.is_alike, finding.id()});
   }
   for (const ModelEffect& formula : formulas) add({formula.id, "your formula"});
   std::vector<std::string> flights;
@@ -218,7 +288,8 @@ std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
   for (const TracedVariable& variable : diagnosis.unexplained.variables) {
     if (variable.formula.empty() || traced == most_traced) continue;
     const ModelEffect effect = effect_of(variable, fmt::format("{}", fmt::join(flights, ", ")));
-    add({effect.id, "goes with " + variable.name, effect, false, traced++ == 0 && diagnosis.findings.empty()});
+    const bool counts = traced++ == 0 && diagnosis.findings.empty();
+    add({effect.id, "goes with " + variable.name, effect, false, counts ? effect.id : ""});
   }
   // What comes nearest: by its estimate in units of the error.
   constexpr std::size_t nearest = 4;
@@ -254,8 +325,7 @@ WhatIf what_if(const std::vector<std::filesystem::path>& paths, const ModelFile&
     if (each.effect && each.effect->is_formula() && std::none_of(formulas.begin(), formulas.end(), same))
       formulas.push_back(*each.effect);
   }
-  CandidateSet set =
-      find_candidates(model, formulas, flights, usable_references(all_references, notes));
+  CandidateSet set = find_candidates(model, formulas, flights, usable_references(all_references, notes));
   keep(set, wanted);
   const MaskOptions& mask = options.diagnose.mask;
   const double share = options.diagnose.training_share;
@@ -266,7 +336,8 @@ WhatIf what_if(const std::vector<std::filesystem::path>& paths, const ModelFile&
   drop_untestable(set, columns);
   std::vector<FlightColumns> others;
   for (const Flight& file : held_out_files) {
-    auto samples = std::make_shared<FlightSamples>(read_samples(file, set.extended, *set.references[0], mask));
+    auto samples =
+        std::make_shared<FlightSamples>(read_samples(file, set.extended, *set.references[0], mask));
     others.push_back(held_out(find_columns(std::move(samples), model, set, 0, mask, 1.0), 0.0));
   }
   for (std::size_t f = 0; f < fitted_flights && share < 1.0; ++f) {
@@ -282,9 +353,8 @@ WhatIf what_if(const std::vector<std::filesystem::path>& paths, const ModelFile&
   WhatIfPanel& panel = result.panel;
   panel.own = ordered.base.size();
   for (const BaseCoefficient& coefficient : ordered.base) {
-    const auto start = std::find_if(options.own.begin(), options.own.end(), [&](const Estimate& each) {
-      return each.name == coefficient.name;
-    });
+    const auto start = std::find_if(options.own.begin(), options.own.end(),
+                                    [&](const Estimate& each) { return each.name == coefficient.name; });
     panel.coefficients.push_back({coefficient.name, coefficient.unit, coefficient.value,
                                   start == options.own.end() ? coefficient.value : start->value,
                                   coefficient.bounds.lower, coefficient.bounds.upper,
@@ -294,22 +364,34 @@ WhatIf what_if(const std::vector<std::filesystem::path>& paths, const ModelFile&
   for (std::size_t e = 0; e < found.size(); ++e) {
     const Candidate& candidate = ordered.candidates[e];
     result.effects.push_back(candidate.effect);
-    panel.effects.push_back({found[e].id, candidate.title, found[e].why, panel.coefficients.size(),
-                             candidate.tested.size(), "", candidate.effect.is_formula(),
-                             note_of(candidate)});
+    const auto stands_for = std::find_if(found.begin(), found.end(), [&](const WhatIfCandidate& each) {
+      return each.id == found[e].stands_for;
+    });
+    panel.effects.push_back({found[e].id,
+                             candidate.title,
+                             found[e].why,
+                             {},
+                             panel.coefficients.size(),
+                             candidate.tested.size(),
+                             "",
+                             candidate.effect.is_formula(),
+                             note_of(candidate, columns.front().samples->flaps_variable)});
+    if (stands_for != found.end())
+      panel.effects.back().stands_for = static_cast<std::size_t>(stands_for - found.begin());
     for (const CandidateParameter& tested : candidate.tested) {
       const double neutral = candidate.effect.parameters[tested.place];
-      panel.coefficients.push_back({tested.name, tested.unit, neutral, neutral,
-                                    neutral + tested.bounds.lower, neutral + tested.bounds.upper});
+      panel.coefficients.push_back({tested.name, tested.unit, neutral, neutral, neutral + tested.bounds.lower,
+                                    neutral + tested.bounds.upper});
     }
-    if (found[e].is_found) are_found.push_back(e);
+    if (found[e].stands_for == found[e].id) are_found.push_back(e);
   }
   const WhatIfFit fit(std::move(columns), std::move(others), panel.coefficients,
-                      groups_of(model, ordered.candidates), are_found, options.is_robust);
+                      groups_of(model, ordered.candidates), are_found, options.is_robust,
+                      WithEffects(model, ordered, mask));
   fit.describe(panel.coefficients);
-  panel.weighted = as_sums(fit.weighted());
+  for (const WhatIfFit::Weights& each : fit.weights())
+    panel.weights.push_back({each.found, as_sums(each.parts), each.inflation});
   panel.alike = as_sums(fit.alike());
-  panel.inflation = fit.inflation();
   panel.outliers = as_sums(fit.outliers());
   if (fit.held_out().count > 0.0) panel.held_out = as_sums(fit.held_out());
   for (const FlightColumns& flight : fit.flights()) {

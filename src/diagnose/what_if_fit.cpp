@@ -11,36 +11,39 @@
 #include "diagnose/separation.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
+#include "numerics/robust_weights.hpp"
 #include "numerics/spikes.hpp"
 #include "numerics/triangular_factor.hpp"
-#include "numerics/tukey.hpp"
 
 namespace pcor::internal {
 namespace {
 
-constexpr int rounds = 3;  // of noise and coefficients in turn
+// Of noise and coefficients in turn, as in a refit: the noise without slow parts and a loss of which the
+// minimum is unique come first.
+constexpr int rounds = 2;
 constexpr double least_eigenvalue = 1e-11;
 
 using Places = std::vector<Eigen::Index>;
 
-/// What base and candidates, with changes of their coefficients, leave of the residual of a record.
-double left_at(const FlightColumns& flight, Eigen::Index record, const Eigen::VectorXd& values) {
-  return flight.given[static_cast<std::size_t>(record)] -
-         flight.base.row(record).cast<double>().dot(values.head(flight.base.cols())) -
-         flight.candidates.row(record).cast<double>().dot(values.tail(flight.candidates.cols()));
+/// What changes of the coefficients of base and candidates take off the residual of a record.
+double taken_off(const FlightColumns& flight, std::size_t record, const Eigen::VectorXd& values) {
+  const Eigen::Index row = as_index(record);
+  return flight.base.row(row).cast<double>().dot(values.head(flight.base.cols())) +
+         flight.candidates.row(row).cast<double>().dot(values.tail(flight.candidates.cols()));
 }
 
-/// The residual of a flight without its outliers: samples that depart from those around them.
-std::vector<double> calm(const FlightColumns& flight, const Eigen::VectorXd& values) {
-  std::vector<double> left(flight.given.size(), nan);
+/// A residual of a flight without its outliers: samples that depart from those around them.
+std::vector<double> calm(const FlightColumns& flight, const std::vector<double>& residual,
+                         const Eigen::VectorXd& values) {
+  std::vector<double> left(residual.size(), nan);
   for (std::size_t i = 0; i < left.size(); ++i) {
-    if (!std::isnan(flight.given[i])) left[i] = left_at(flight, as_index(i), values);
+    if (!std::isnan(residual[i])) left[i] = residual[i] - taken_off(flight, i, values);
   }
   const std::vector<double> nothing(left.size(), 0.0);
   std::size_t count = 0;
   const std::vector<double> without =
       without_outliers(left, nothing, flight.samples->time, flight.samples->step, count);
-  std::vector<double> result = flight.given;
+  std::vector<double> result = residual;
   for (std::size_t i = 0; i < left.size(); ++i) {
     if (!(without[i] == left[i])) result[i] = nan;
   }
@@ -51,54 +54,80 @@ std::vector<double> calm(const FlightColumns& flight, const Eigen::VectorXd& val
 Eigen::VectorXd solved(const Eigen::MatrixXd& sum, const Places& free, Eigen::VectorXd values) {
   values(free).setZero();
   const Eigen::Index width = values.size();
-  const Eigen::VectorXd right =
-      sum.col(width).head(width) - sum.topLeftCorner(width, width) * values;
+  const Eigen::VectorXd right = sum.col(width).head(width) - sum.topLeftCorner(width, width) * values;
   values(free) = pseudo_solution(sum(free, free), right(free), least_eigenvalue);
   return values;
 }
 
-/// Gives the rows the weights of Tukey's loss at its minimum, which `values` become; and says by how much the
-/// variances are larger than those of least squares of weighted rows (Huber and Ronchetti 2009, Robust
-/// Statistics, section 7.6).
-double weigh(Scores& scores, const Places& free, Eigen::VectorXd& values) {
+/// What is left of whitened residuals, in units of its robust deviation.
+std::vector<Eigen::VectorXd> in_deviations(const std::vector<Eigen::MatrixXd>& rows,
+                                           const Eigen::VectorXd& values) {
+  std::vector<Eigen::VectorXd> left;
+  std::vector<double> all;
+  for (const Eigen::MatrixXd& part : rows) {
+    left.emplace_back(part.rightCols(1) - part.leftCols(values.size()) * values);
+    all.insert(all.end(), left.back().begin(), left.back().end());
+  }
+  const double deviation = std::max(robust_deviation(std::move(all)), 1e-300);
+  for (Eigen::VectorXd& part : left) part /= deviation;
+  return left;
+}
+
+/// Gives the rows the weights of a loss at its minimum, which `values` become.
+void weigh(Scores& scores, const Places& free, Eigen::VectorXd& values, double (*weight)(double)) {
   constexpr int most_steps = 50;
   constexpr double enough = 1e-3;  // of what the flights leave open
   const std::vector<Eigen::MatrixXd> rows = scores.rows;
   for (int step = 0; step < most_steps; ++step) {
-    std::vector<Eigen::VectorXd> left;
-    for (const Eigen::MatrixXd& part : rows)
-      left.emplace_back(part.rightCols(1) - part.leftCols(values.size()) * values);
-    std::vector<double> all;
-    for (const Eigen::VectorXd& part : left) all.insert(all.end(), part.begin(), part.end());
-    const double deviation = robust_deviation(std::move(all));
-    if (!(deviation > 0.0)) return 1.0;
-    double weights = 0.0;
-    double slopes = 0.0;
-    double squares = 0.0;
-    double weighted_squares = 0.0;
-    for (std::size_t f = 0; f < rows.size(); ++f) {
-      Eigen::VectorXd root(left[f].size());
-      for (Eigen::Index i = 0; i < root.size(); ++i) {
-        const double ratio = left[f][i] / deviation;
-        const double weight = tukey_weight(ratio);
-        weights += weight;
-        slopes += tukey_slope(ratio);
-        squares += weight * weight * ratio * ratio;
-        weighted_squares += weight * ratio * ratio;
-        root[i] = std::sqrt(weight);
-      }
-      scores.rows[f] = root.asDiagonal() * rows[f];
-    }
+    const std::vector<Eigen::VectorXd> ratios = in_deviations(rows, values);
+    for (std::size_t f = 0; f < rows.size(); ++f)
+      scores.rows[f] = ratios[f].unaryExpr(weight).cwiseSqrt().asDiagonal() * rows[f];
     sum_up(scores);
     const Eigen::VectorXd before = values;
     values = solved(scores.information, free, values);
     const Eigen::VectorXd length = scores.information.diagonal().head(values.size()).cwiseSqrt();
-    if (step + 1 < most_steps && length.cwiseProduct(values - before).cwiseAbs().maxCoeff() > enough)
-      continue;
-    const auto count = static_cast<double>(scores.row_count());
-    return count * weights * squares / (slopes * slopes) / weighted_squares;
+    if (length.cwiseProduct(values - before).cwiseAbs().maxCoeff() < enough) return;
   }
-  return 1.0;
+}
+
+/// By how much the variances of a fit with Tukey's loss are larger than those of least squares of the rows
+/// with its weights (Huber and Ronchetti 2009, Robust Statistics, section 7.6). @param rows without weights
+double inflation_by_weights(const std::vector<Eigen::MatrixXd>& rows, const Eigen::VectorXd& values) {
+  double count = 0.0;
+  double weights = 0.0;
+  double slopes = 0.0;
+  double squares = 0.0;
+  double weighted_squares = 0.0;
+  for (const Eigen::VectorXd& ratios : in_deviations(rows, values)) {
+    for (const double ratio : ratios) {
+      const double weight = tukey_weight(ratio);
+      count += 1.0;
+      weights += weight;
+      slopes += tukey_slope(ratio);
+      squares += weight * weight * ratio * ratio;
+      weighted_squares += weight * ratio * ratio;
+    }
+  }
+  return count * weights * squares / (slopes * slopes) / weighted_squares;
+}
+
+/// Which of some groups a reader may have switched on: all subsets of a few; of many what comes first, as
+/// they were found one after another. The empty one first, all of them last.
+std::vector<std::vector<std::size_t>> subsets_of(const std::vector<std::size_t>& groups) {
+  constexpr std::size_t few = 3;
+  std::vector<std::vector<std::size_t>> subsets;
+  if (groups.size() > few) {
+    for (std::size_t count = 0; count <= groups.size(); ++count)
+      subsets.emplace_back(groups.begin(), groups.begin() + static_cast<std::ptrdiff_t>(count));
+    return subsets;
+  }
+  for (std::size_t bits = 0; bits < std::size_t{1} << groups.size(); ++bits) {
+    std::vector<std::size_t>& subset = subsets.emplace_back();
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+      if ((bits >> i & 1U) != 0U) subset.push_back(groups[i]);
+    }
+  }
+  return subsets;
 }
 
 void add(SumOfProducts& sum, const Eigen::VectorXd& row) {
@@ -111,12 +140,14 @@ void add(SumOfProducts& sum, const Eigen::VectorXd& row) {
 
 WhatIfFit::WhatIfFit(std::vector<FlightColumns> flights, std::vector<FlightColumns> others,
                      const std::vector<WhatIfCoefficient>& coefficients, std::vector<ColumnGroup> groups,
-                     const std::vector<std::size_t>& found, bool is_robust)
+                     const std::vector<std::size_t>& found, bool is_robust, const ResidualAt& residual_at)
     : flights_(std::move(flights)), others_(std::move(others)), groups_(std::move(groups)) {
   base_ = flights_.front().base.cols();
   given_.resize(as_index(coefficients.size()));
+  start_.resize(given_.size());
   for (Eigen::Index c = 0; c < given_.size(); ++c) {
     const WhatIfCoefficient& coefficient = coefficients[static_cast<std::size_t>(c)];
+    start_[c] = coefficient.start;
     given_[c] = coefficient.given - coefficient.start;
     if (c < base_ && !coefficient.fixed) own_.push_back(c);
   }
@@ -127,14 +158,21 @@ WhatIfFit::WhatIfFit(std::vector<FlightColumns> flights, std::vector<FlightColum
     }
   }
   for (const ColumnGroup& group : groups_) told_.push_back(places_of(group, base_));
-  // Where slow noise makes the fit leave more than the coefficients that are given, it is no noise but what
-  // the model lacks, and the fit follows it, as a refit does.
+  for (const std::vector<std::size_t>& some : subsets_of(found)) settle(some, is_robust, residual_at);
+}
+
+/// Where slow noise makes the fit leave more than the coefficients that are given, it is no noise but what
+/// the model lacks, and the fit follows it, as a refit does.
+void WhatIfFit::settle(const std::vector<std::size_t>& found, bool is_robust, const ResidualAt& residual_at) {
   constexpr double larger = 1.02;
-  const Eigen::VectorXd with_drift = find_sums(found, is_robust, true);
+  weights_.push_back({found, {}, 1.0});
+  const Eigen::VectorXd with_drift = find_sums(found, is_robust, true, residual_at);
   sum_records();
-  if (!(rms_of(with_drift) > larger * rms_of(given_))) return;
-  find_sums(found, is_robust, false);
-  sum_records();
+  if (rms_of(with_drift) > larger * rms_of(given_)) {
+    find_sums(found, is_robust, false, residual_at);
+    sum_records();
+  }
+  weights_.back().inflation = inflation_;
 }
 
 std::vector<Eigen::Index> WhatIfFit::free_columns(const std::vector<std::size_t>& groups) const {
@@ -143,7 +181,22 @@ std::vector<Eigen::Index> WhatIfFit::free_columns(const std::vector<std::size_t>
   return free;
 }
 
-Eigen::VectorXd WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool is_robust, bool drifts) {
+/// The residual at the start, such that a step by the derivatives leads to what it really is at `values`.
+std::vector<double> WhatIfFit::residual_for(const FlightColumns& flight,
+                                            const std::vector<std::size_t>& groups,
+                                            const Eigen::VectorXd& values,
+                                            const ResidualAt& residual_at) const {
+  const std::vector<double> there = residual_at(flight, groups, start_ + values);
+  if (there.empty()) return flight.given;
+  std::vector<double> residual = flight.given;
+  for (std::size_t i = 0; i < residual.size(); ++i) {
+    if (!std::isnan(residual[i])) residual[i] = there[i] + taken_off(flight, i, values);
+  }
+  return residual;
+}
+
+Eigen::VectorXd WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool is_robust, bool drifts,
+                                     const ResidualAt& residual_at) {
   Eigen::VectorXd values = given_;
   Scores scores;
   std::vector<NoiseModel> noise;
@@ -152,7 +205,9 @@ Eigen::VectorXd WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool
     std::vector<Eigen::MatrixXd> columns;
     std::vector<Eigen::VectorXd> residuals;
     for (const FlightColumns& flight : flights_) {
-      const std::vector<double> series = is_robust && round > 0 ? calm(flight, values) : flight.given;
+      std::vector<double> series =
+          round > 0 ? residual_for(flight, found, values, residual_at) : flight.given;
+      if (is_robust && round > 0) series = calm(flight, series, values);
       bins_.emplace_back(series, flight.samples->time, flight.samples->step,
                          std::max(flight.window, Binning::usual_width));
       columns.push_back(binned_columns(flight, bins_.back()));
@@ -179,7 +234,7 @@ Eigen::VectorXd WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool
         left.emplace_back(residuals[last] - columns[last] * values);
       }
       const NoiseModel model =
-          drifts ? find_noise(bins, fitted, left).model : estimate_noise(bins, left);
+          drifts && round == rounds ? find_noise(bins, fitted, left).model : estimate_noise(bins, left);
       if (first == 0) noise_ = model;
       for (; first < last; ++first) {
         noise[first] = model;
@@ -193,16 +248,20 @@ Eigen::VectorXd WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool
       for (const Eigen::Index column : search.told(g)) told_[g].push_back(base_ + groups_[g].first + column);
     }
     values = solved(scores.information, free_columns(found), values);
-    if (is_robust) inflation_ = weigh(scores, free_columns(found), values);
+    if (!is_robust) continue;
+    const std::vector<Eigen::MatrixXd> rows = scores.rows;
+    weigh(scores, free_columns(found), values, round < rounds ? huber_weight : tukey_weight);
+    inflation_ = inflation_by_weights(rows, values);
   }
-  weighted_.assign(held_out_parts, {});
+  std::vector<SumOfProducts>& parts = weights_.back().parts;
+  parts.assign(held_out_parts, {});
   for (std::size_t f = 0; f < flights_.size(); ++f) {
     for (std::size_t i = 0; i < bins_[f].size(); ++i) {
       const std::size_t part = held_out_part(*flights_[f].samples, bins_[f].time()[i]);
-      add(weighted_[part], scores.rows[f].row(as_index(i)).transpose());
+      add(parts[part], scores.rows[f].row(as_index(i)).transpose());
     }
   }
-  for (SumOfProducts& part : weighted_) {
+  for (SumOfProducts& part : parts) {
     if (part.count == 0.0) part.products = Eigen::MatrixXd::Zero(given_.size() + 1, given_.size() + 1);
     part.products = part.products.selfadjointView<Eigen::Lower>();
   }

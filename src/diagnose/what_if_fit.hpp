@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include <pcor/report/report.hpp>
@@ -11,6 +12,11 @@
 
 namespace pcor::internal {
 
+/// The residual of every record of a flight with some groups in the model, as a refit sees it, at values of
+/// all coefficients; empty where only its derivatives are known.
+using ResidualAt = std::function<std::vector<double>(
+    const FlightColumns& flight, const std::vector<std::size_t>& groups, const Eigen::VectorXd& values)>;
+
 /// Products of (columns, residual) with themselves, summed over so many samples.
 struct SumOfProducts {
   Eigen::MatrixXd products{};
@@ -18,16 +24,16 @@ struct SumOfProducts {
 };
 
 /// What a what-if fits: columns and residual of some flights in units of the noise, weighted as a refit with
-/// the effects that were found weights them.
+/// the effects that were found weights them; unless said otherwise with all of these.
 class WhatIfFit {
  public:
   /// @param others samples that take no part
   /// @param coefficients of all columns: the residual is taken at their start, those that are fixed have the
   /// value that is given
-  /// @param found the groups with which the noise is found
+  /// @param found the groups with which the noise is found, and with some of them
   WhatIfFit(std::vector<FlightColumns> flights, std::vector<FlightColumns> others,
             const std::vector<WhatIfCoefficient>& coefficients, std::vector<ColumnGroup> groups,
-            const std::vector<std::size_t>& found, bool is_robust);
+            const std::vector<std::size_t>& found, bool is_robust, const ResidualAt& residual_at);
 
   const std::vector<FlightColumns>& flights() const { return flights_; }
   const std::vector<FlightColumns>& others() const { return others_; }
@@ -38,9 +44,16 @@ class WhatIfFit {
   /// Of the flights against the first reference.
   const NoiseModel& noise() const { return noise_; }
 
-  const std::vector<SumOfProducts>& weighted() const { return weighted_; }
+  /// Sums of the parts of the flights, as a refit with some of the effects that were found weights them.
+  struct Weights {
+    std::vector<std::size_t> found;
+    std::vector<SumOfProducts> parts;
+    double inflation = 1.0;  ///< of variances, by weights that come from the residuals
+  };
+
+  /// With none of what was found first, with all of it last.
+  const std::vector<Weights>& weights() const { return weights_; }
   const std::vector<SumOfProducts>& alike() const { return alike_; }
-  double inflation() const { return inflation_; }
   const SumOfProducts& outliers() const { return outliers_; }
   const SumOfProducts& held_out() const { return held_out_; }
 
@@ -64,8 +77,12 @@ class WhatIfFit {
 
  private:
   std::vector<Eigen::Index> free_columns(const std::vector<std::size_t>& groups) const;
+  void settle(const std::vector<std::size_t>& found, bool is_robust, const ResidualAt& residual_at);
   /// Gives the coefficients with the groups that were found.
-  Eigen::VectorXd find_sums(const std::vector<std::size_t>& found, bool is_robust, bool drifts);
+  Eigen::VectorXd find_sums(const std::vector<std::size_t>& found, bool is_robust, bool drifts,
+                            const ResidualAt& residual_at);
+  std::vector<double> residual_for(const FlightColumns& flight, const std::vector<std::size_t>& groups,
+                                   const Eigen::VectorXd& values, const ResidualAt& residual_at) const;
   double rms_of(const Eigen::VectorXd& values) const;
   void sum_records();
 
@@ -75,10 +92,11 @@ class WhatIfFit {
   std::vector<std::vector<Eigen::Index>> told_{};  // columns of each group
   Eigen::Index base_ = 0;
   std::vector<Eigen::Index> own_{};
+  Eigen::VectorXd start_{};
   Eigen::VectorXd given_{};  // changes from the start to what is given
   std::vector<Binning> bins_{};
   NoiseModel noise_{};
-  std::vector<SumOfProducts> weighted_{};
+  std::vector<Weights> weights_{};
   SumOfProducts whole_{};
   double inflation_ = 1.0;
   std::vector<SumOfProducts> alike_{};

@@ -16,13 +16,12 @@ struct LossFacts {
   Function (*function)(double deviation);
 };
 
-// The widths have 95 % efficiency on normal noise, in robust deviations (Huber and Ronchetti 2009, Robust
-// Statistics; Holland and Welsch 1977).
+// The widths have 95 % efficiency on normal noise, in robust deviations.
 constexpr std::array<LossFacts, 5> losses{
     {{Loss::tukey, "tukey",
       [](double d) -> Function { return std::make_unique<ceres::TukeyLoss>(internal::tukey_width * d); }},
      {Loss::huber, "huber",
-      [](double d) -> Function { return std::make_unique<ceres::HuberLoss>(1.345 * d); }},
+      [](double d) -> Function { return std::make_unique<ceres::HuberLoss>(internal::huber_width * d); }},
      {Loss::soft_l1, "soft-l1",
       [](double d) -> Function { return std::make_unique<ceres::SoftLOneLoss>(d); }},
      {Loss::cauchy, "cauchy",

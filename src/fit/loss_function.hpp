@@ -5,7 +5,7 @@
 #include <memory>
 
 #include <pcor/fit/loss.hpp>
-#include "numerics/tukey.hpp"
+#include "numerics/robust_weights.hpp"
 
 namespace pcor::internal {
 

@@ -198,8 +198,8 @@ Report improvement_report(const Improvement& improvement, const ModelFile& start
   add_ladder_in_time(panels, improvement);
   if (what_if != nullptr) {
     const ModelEffect& last = improvement.fit.model.model.effects.back();
-    panels.add_what_if(*what_if, "ladder-refitted",
-                       added > 0 ? inputs_of(last) : std::vector<std::string>{}, steps.back().noise_rms);
+    panels.add_what_if(*what_if, "ladder-refitted", added > 0 ? inputs_of(last) : std::vector<std::string>{},
+                       steps.back().noise_rms);
   }
   add_residual_panels(panels, rungs.size() < 2 ? rungs : std::vector{rungs.front(), rungs.back()});
   for (std::size_t i = 1; i < steps.size(); ++i) add_rung(panels, improvement, i);

@@ -41,22 +41,22 @@ WhatIf what_if(const std::vector<std::filesystem::path>& flights, const Improvem
     const ImproveStep& step = improvement.steps[rung];
     const ModelEffect& effect = effect_of(improvement, step);
     const Finding* const finding = finding_of(improvement, rung);
-    candidates.push_back(
-        {step.added, fmt::format("rung {}", rung), effect, finding != nullptr && finding->is_alike, true});
+    candidates.push_back({step.added, fmt::format("rung {}", rung), effect,
+                          finding != nullptr && finding->is_alike, step.added});
     if (finding == nullptr) continue;
     for (const Alias& alias : finding->aliases)
-      rivals.push_back({alias.effect, "instead of " + step.added, alias.correction, alias.is_alike});
+      rivals.push_back(
+          {alias.effect, "instead of " + step.added, alias.correction, alias.is_alike, step.added});
   }
   // What the top of the ladder says is missing, or nearly so, is not part of it.
   for (WhatIfCandidate& left : what_if_candidates(improvement.steps.back().diagnosis, options.formulas)) {
-    left.is_found = false;
+    left.stands_for.clear();
     rivals.push_back(std::move(left));
   }
   constexpr std::size_t most = 12;
   for (WhatIfCandidate& rival : rivals) {
-    const bool is_new =
-        std::none_of(candidates.begin(), candidates.end(),
-                     [&rival](const WhatIfCandidate& each) { return each.id == rival.id; });
+    const bool is_new = std::none_of(candidates.begin(), candidates.end(),
+                                     [&rival](const WhatIfCandidate& each) { return each.id == rival.id; });
     if (is_new && candidates.size() < most) candidates.push_back(std::move(rival));
   }
   return what_if(flights, improvement.refitted, references, candidates, with);

@@ -9,9 +9,27 @@ function decode(text, Numbers) {
   return new Numbers(bytes.buffer);
 }
 
+// Whole numbers, each told by what it differs from the one before; behind a difference of zero how many more follow.
+function unpacked(text) {
+  const bytes = decode(text, Uint8Array), numbers = [];
+  let at = 0, value = 0;
+  const next = () => {
+    let number = 0, factor = 1;
+    for (; bytes[at] > 127; factor *= 128) number += (bytes[at++] - 128) * factor;
+    return number + bytes[at++] * factor;
+  };
+  while (at < bytes.length) {
+    const told = next();
+    value += told % 2 ? -(told + 1) / 2 : told / 2;
+    numbers.push(value);
+    if (told === 0) for (let more = next(); more > 0; --more) numbers.push(value);
+  }
+  return numbers;
+}
+
 function decodeColumn({name, title, unit, least, step, values}) {
   const missing = 65535;
-  const quantised = decode(values, Uint16Array);
+  const quantised = unpacked(values);
   const numbers = new Float64Array(quantised.length);
   for (let i = 0; i < numbers.length; ++i) numbers[i] = quantised[i] === missing ? NaN : least + quantised[i] * step;
   return {name, title, values: numbers, label: unit ? `${title} (${unit})` : title, unit};
@@ -26,7 +44,10 @@ class Samples {
   constructor(data) {
     this.columns = new Map(data.columns.map((column) => [column.name, decodeColumn(column)]));
     this.flights = [];
-    const times = data.flights.map((flight) => decode(flight.milliseconds, Uint32Array));
+    const times = data.flights.map((flight) => {
+      let sum = 0;
+      return Float64Array.from(unpacked(flight.milliseconds), (step) => sum += step);
+    });
     this.count = times.reduce((sum, flight) => sum + flight.length, 0);
     this.time = new Float64Array(this.count);
     this.position = new Float64Array(this.count);

@@ -149,15 +149,22 @@ struct CheckItem {
         fail("effect '" + effect.id + "' of panel '" + panel.title +
              "' has coefficients that are not in the panel; correct its first and count");
     const std::size_t width = panel.coefficients.size() + 1;
-    std::vector<WhatIfSums> all = panel.weighted;
-    all.insert(all.end(), panel.alike.begin(), panel.alike.end());
+    std::vector<WhatIfSums> all = panel.alike;
+    for (const WhatIfWeights& each : panel.weights)
+      all.insert(all.end(), each.parts.begin(), each.parts.end());
     all.push_back(panel.outliers);
     if (!panel.held_out.products.empty()) all.push_back(panel.held_out);
-    if (panel.weighted.empty() || panel.weighted.size() != panel.alike.size() ||
-        std::any_of(all.begin(), all.end(),
-                    [width](const WhatIfSums& sums) { return sums.products.size() != width * (width + 1) / 2; }))
+    if (panel.weights.empty() || !panel.weights.front().effects.empty() ||
+        std::any_of(
+            panel.weights.begin(), panel.weights.end(),
+            [&panel](const WhatIfWeights& each) { return each.parts.size() != panel.alike.size(); }) ||
+        std::any_of(all.begin(), all.end(), [width](const WhatIfSums& sums) {
+          return sums.products.size() != width * (width + 1) / 2;
+        }))
       fail("panel '" + panel.title + "' has sums that are not of its " +
-           std::to_string(panel.coefficients.size()) + " coefficients and the residual; give all of them");
+           std::to_string(panel.coefficients.size()) +
+           " coefficients and the residual, or not for all parts, or none without an effect; give all of "
+           "them");
     for (const std::string& x : panel.x_choices)
       if (!columns.meet(panel.title, {x, panel.residual})) fail_empty(panel.title);
   }

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <utility>
 #include <variant>
@@ -42,10 +43,36 @@ std::string base64(const std::vector<Unsigned>& numbers) {
   return text;
 }
 
+// Whole numbers that are near those before them, in few letters: by what each differs from the one before,
+// the sign as the last bit, in bytes of seven bits of which the last has no eighth; behind a difference of
+// zero how many more such follow; all in base64.
+std::string packed(const std::vector<std::uint32_t>& numbers) {
+  constexpr std::uint64_t seven_bits = 127;
+  std::vector<std::uint8_t> bytes;
+  const auto put = [&bytes](std::uint64_t number) {
+    for (; number > seven_bits; number >>= 7U)
+      bytes.push_back(static_cast<std::uint8_t>((number & seven_bits) | 128U));
+    bytes.push_back(static_cast<std::uint8_t>(number));
+  };
+  std::uint32_t before = 0;
+  for (std::size_t i = 0; i < numbers.size();) {
+    const std::uint32_t number = numbers[i];
+    put(number >= before ? 2 * std::uint64_t{number - before} : 2 * std::uint64_t{before - number} - 1);
+    const bool is_same = number == before;
+    before = number;
+    const std::size_t next = ++i;
+    while (is_same && i < numbers.size() && numbers[i] == number) ++i;
+    if (is_same) put(i - next);
+  }
+  return base64(bytes);
+}
+
+constexpr double all_steps = 65534.0;   // between the least and the greatest value of a column
+constexpr double steps_along = 4094.0;  // of one that pictures have along their axes alone
+
 // 65535 is missing; any other number n is `least` + n * `step`.
-json quantised(const ReportColumn& column) {
-  constexpr std::uint16_t missing = 65535;
-  constexpr double most = 65534.0;
+json quantised(const ReportColumn& column, double most = all_steps) {
+  constexpr std::uint32_t missing = 65535;
   double least = std::numeric_limits<double>::infinity(), greatest = -least;
   for (const double value : column.values)
     if (std::isfinite(value)) {
@@ -54,17 +81,50 @@ json quantised(const ReportColumn& column) {
     }
   if (least > greatest) least = greatest = 0.0;
   const double step = greatest > least ? (greatest - least) / most : 1.0;
-  std::vector<std::uint16_t> numbers;
+  std::vector<std::uint32_t> numbers;
   numbers.reserve(column.values.size());
   for (const double value : column.values)
-    numbers.push_back(std::isfinite(value) ? static_cast<std::uint16_t>(std::lround((value - least) / step))
+    numbers.push_back(std::isfinite(value) ? static_cast<std::uint32_t>(std::lround((value - least) / step))
                                            : missing);
   return {{"name", column.name}, {"title", column.title.empty() ? column.name : column.title},
           {"unit", column.unit}, {"least", least},
-          {"step", step},        {"values", base64(numbers)}};
+          {"step", step},        {"values", packed(numbers)}};
 }
 
-// Each flight with the time of its samples: `start` in seconds since 1970 and milliseconds after it.
+// Which columns are only along the axes of pictures, where no more can be seen than a pixel.
+class AlongAxes {
+ public:
+  explicit AlongAxes(const Report& report) {
+    for (const ReportItem& item : report.items) std::visit(*this, item);
+  }
+
+  bool has(const std::string& name) const { return along_.count(name) > 0 && up_.count(name) == 0; }
+
+  void operator()(const TimePanel& panel) { up_.insert(panel.columns.begin(), panel.columns.end()); }
+  void operator()(const BinnedPanel& panel) {
+    along_.insert(panel.x_choices.begin(), panel.x_choices.end());
+    up_.insert(panel.y.begin(), panel.y.end());
+  }
+  void operator()(const PlanePanel& panel) {
+    along_.insert({panel.x, panel.y});
+    up_.insert(panel.colour);
+  }
+  void operator()(const PairPanel& panel) { up_.insert({panel.x, panel.y}); }
+  void operator()(const RegimeTable& table) { up_.insert(table.columns.begin(), table.columns.end()); }
+  void operator()(const WhatIfPanel& panel) {
+    along_.insert(panel.x_choices.begin(), panel.x_choices.end());
+    up_.insert(panel.residual);
+  }
+  template <class Other>
+  void operator()(const Other&) {}
+
+ private:
+  std::set<std::string> along_{};
+  std::set<std::string> up_{};
+};
+
+// Each flight with the time of its samples: `start` in seconds since 1970, the milliseconds from each sample
+// to the next, the first of them from the start to itself.
 json flights(const Report& report) {
   constexpr double most = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::size_t> bounds = report.flight_starts;
@@ -73,17 +133,19 @@ json flights(const Report& report) {
   json all = json::array();
   for (std::size_t flight = 0; flight + 1 < bounds.size(); ++flight) {
     const double start = report.time[bounds[flight]];
-    std::vector<std::uint32_t> after;
+    std::vector<std::uint32_t> steps;
+    double before = 0.0;
     for (std::size_t i = bounds[flight]; i < bounds[flight + 1]; ++i) {
       const double milliseconds = std::round((report.time[i] - start) * 1000.0);
       if (milliseconds > most)
         throw Error("report: flight " + std::to_string(flight + 1) +
                     " lasts over 49 days; begin a new flight in flight_starts");
-      after.push_back(static_cast<std::uint32_t>(milliseconds));
+      steps.push_back(static_cast<std::uint32_t>(milliseconds - before));
+      before = milliseconds;
     }
     all.push_back({{"name", report.flight_names.empty() ? "" : report.flight_names[flight]},
                    {"start", start},
-                   {"milliseconds", base64(after)}});
+                   {"milliseconds", packed(steps)}});
   }
   return all;
 }
@@ -128,8 +190,7 @@ json what_if_columns(const WhatIfPanel& panel, const Report& report) {
     const json kept = quantised(column);
     columns.push_back({{"least", kept["least"]}, {"step", kept["step"]}, {"values", kept["values"]}});
   }
-  return {{"points", base64(std::vector<std::uint32_t>(points.begin(), points.end()))},
-          {"columns", std::move(columns)}};
+  return {{"points", packed({points.begin(), points.end()})}, {"columns", std::move(columns)}};
 }
 
 struct ItemJson {
@@ -222,11 +283,16 @@ struct ItemJson {
       effects.push_back({{"id", each.id},
                          {"title", each.title},
                          {"why", each.why},
+                         {"standsFor", each.stands_for ? json(*each.stands_for) : json()},
                          {"first", each.first},
                          {"count", each.count},
                          {"argument", each.argument},
                          {"isFormula", each.is_formula},
                          {"note", each.note}});
+    json weights = json::array();
+    for (const WhatIfWeights& each : panel.weights)
+      weights.push_back(
+          {{"effects", each.effects}, {"parts", sums_json(each.parts)}, {"inflation", each.inflation}});
     json separations = json::array();
     for (const WhatIfSeparation& each : panel.separations)
       separations.push_back({{"effect", each.effect}, {"rival", each.rival}, {"text", each.text}});
@@ -237,9 +303,8 @@ struct ItemJson {
               {"effects", std::move(effects)},
               {"choices", panel.x_choices},
               {"samplesPerIndependent", panel.samples_per_independent},
-              {"weighted", sums_json(panel.weighted)},
+              {"weights", std::move(weights)},
               {"alike", sums_json(panel.alike)},
-              {"inflation", panel.inflation},
               {"outliers", sums_json(panel.outliers)},
               {"heldOut", sums_json(panel.held_out)},
               {"noise", panel.noise},
@@ -271,7 +336,9 @@ std::string data_json(const Report& report) {
             {"columns", json::array()},
             {"intervals", json::array()},
             {"items", json::array()}};
-  for (const ReportColumn& column : report.columns) data["columns"].push_back(quantised(column));
+  const AlongAxes along(report);
+  for (const ReportColumn& column : report.columns)
+    data["columns"].push_back(quantised(column, along.has(column.name) ? steps_along : all_steps));
   for (const ReportInterval& interval : report.intervals)
     data["intervals"].push_back({{"name", interval.name}, {"begin", interval.begin}, {"end", interval.end}});
   for (const ReportItem& item : report.items) {

@@ -31,7 +31,7 @@ class WhatIf {
   // The columns at some samples, and where each sample of the report lies between those.
   readColumns() {
     const {item, samples} = this;
-    const points = decode(item.points, Uint32Array);
+    const points = unpacked(item.points);
     this.columns = item.columns.map((column) => decodeColumn({...column, name: '', title: '', unit: ''}).values);
     this.before = new Int32Array(samples.count).fill(-1);
     this.part = new Float64Array(samples.count);
@@ -74,7 +74,7 @@ class WhatIf {
   makeControls() {
     const {item} = this;
     const text = (words, attributes = {}) => make('span', attributes, words);
-    this.figures = make('table', {class: 'what-if-figures'});
+    this.figures = make('table', {'aria-label': 'Figures'});
     this.ownSwitch = make('input', {type: 'checkbox', role: 'switch', onchange: () => {
       this.own = this.ownSwitch.checked;
       this.changed();
@@ -84,7 +84,7 @@ class WhatIf {
       this.changed();
     }}, 'Reset');
     this.rows = item.effects.map((effect, e) => this.effectRow(effect, e));
-    this.command = make('code', {tabindex: '0', 'aria-label': 'Command that adds the effects'});
+    this.command = make('code');
     this.copy = make('button', {type: 'button', onclick: () => this.copyCommand()}, 'Copy');
     this.commandPart = make('div', {class: 'what-if-command'}, make('p', {}, 'To add what is switched on, and refit'), this.copy, this.command);
     this.coefficients = make('table');
@@ -120,7 +120,7 @@ class WhatIf {
   // A slider and a number for coefficient `c` of effect `e`; where they reach stays as it is.
   slider(c, e) {
     const {name, unit, given, start, least, greatest} = this.item.coefficients[c];
-    const {values, errors} = this.fit.fit([e], new Map(), true, false);
+    const {values, errors} = this.fit.fit([e], new Map(), true, this.fit.weightsOf([e]), false);
     const estimate = start + values[c], reach = 0.75 * Math.max(Math.abs(values[c]), 4 * errors[c]);
     const from = Math.max(Math.min(given, estimate) - reach, least ?? -Infinity);
     const to = Math.min(Math.max(given, estimate) + reach, greatest ?? Infinity);
@@ -176,8 +176,8 @@ class WhatIf {
     this.panels.push(add(this.ladder, this.fit.heldOut
       ? 'On what is held out, effect by effect as they were switched on.'
       : 'On parts of the flights that were left out of the fit in turn, without outliers, effect by effect as they were switched on.'));
-    const regimes = {title: 'What if: by regime', columns};
-    this.regimes = new Regimes(regimes, part('regimes', regimes.title, 'Bias and rms of the residual of the selected samples.'), report);
+    const regimes = {title: 'Bias and rms by regime, what if', columns};
+    this.regimes = new Regimes(regimes, part('regimes', 'What if: by regime', 'Bias and rms of the residual of the selected samples.'), report);
     report.tables.push(this.regimes);
     if (item.choices.length)
       this.panels.push(add({kind: 'binned', title: 'What if: residual against a variable', columns, choices: item.choices, bins: 12,
@@ -197,7 +197,7 @@ class WhatIf {
       return select;
     });
     const labels = ['One', 'The other'].map((words, side) => make('label', {class: 'choice'}, words, this.selects[side]));
-    this.pairWords = make('div', {class: 'what-if-words', role: 'status'});
+    this.pairWords = make('div', {class: 'what-if-words'});
     this.pairTable = make('table', {class: 'regime-table'});
     this.pairPanel = add({kind: 'time', title: 'Two effects side by side', columns: this.sides.map(({name}) => name), axis: 'taken off the residual'},
       'What each would take off the residual were it alone added and the model fitted again: where the two curves differ, these flights can tell them apart.',
@@ -273,6 +273,12 @@ class WhatIf {
     for (let i = 0; i < values.length; ++i) values[i] = this.residual.values[i] - values[i];
   }
 
+  // By how much chi2 falls from the model fitted again to what is shown now.
+  get fallOfNow() {
+    const {weights, squares, variance} = this.now;
+    return (this.fit.fit([], new Map(), true, weights).squares - squares) / variance;
+  }
+
   showFigures() {
     const {fit, nothing, now, item} = this;
     const given = fit.fit([], new Map(), false);
@@ -282,7 +288,7 @@ class WhatIf {
       headers: ['hPa', 'as given', 'fitted again', 'what if'],
       rows: [three('rms', ({rms}) => rms), three(this.heldOutWords, (each) => fit.heldOutRms(each)),
              ['noise', '', '', number(item.noise, 1e-4)],
-             ['χ² falls by', '', '', this.isChanged ? number((nothing.squares - now.squares) / now.variance, 0.1) : '–']],
+             ['χ² falls by', '', '', this.isChanged ? number(this.fallOfNow, 0.1) : '–']],
     });
   }
 
@@ -291,9 +297,8 @@ class WhatIf {
     const isOn = this.on.has(e);
     box.checked = isOn;
     const others = [...this.on].filter((other) => other !== e);
-    const without = isOn ? fit.fit(others, this.byHand, this.own) : this.now;
     const ifOn = isOn ? this.now : fit.fit([...others, e], this.byHand, this.own);
-    const fall = (without.squares - ifOn.squares) / ifOn.variance;
+    const fall = fit.fall(others, [...others, e], this.byHand, this.own);
     gain.textContent = `χ² ${number(-fall, fall < 10 ? 0.1 : 1)}`;
     gain.title = isOn ? 'By how much chi2 falls with it, beside the others that are on' : 'By how much chi2 would fall with it, beside those that are on';
     for (const slider of sliders) this.showSlider(slider, e, isOn, ifOn);
@@ -330,7 +335,7 @@ class WhatIf {
       .filter(({c}) => c < item.own || this.on.has(item.effects.indexOf(owner(c))))
       .map(({c, name, unit, given}) => [`${c < item.own ? '' : `${owner(c).id}.`}${name}`, brief(given),
                                         c < item.own ? shown(nothing, c) : '–', this.isChanged ? shown(now, c) : '–', unit]);
-    fillTable(this.coefficients, {headers: ['', 'given', 'fitted again', 'what if', 'unit'], rows});
+    fillTable(this.coefficients, {headers: ['Coefficient', 'given', 'fitted again', 'what if', 'unit'], rows});
   }
 
   // The command that adds the effects that are on: one for all of the catalogue, one for each formula.

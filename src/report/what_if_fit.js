@@ -63,14 +63,24 @@ function squaresLeft({matrix}, values) {
 const rmsLeft = (sums, values) => Math.sqrt(Math.max(squaresLeft(sums, values), 0) / sums.samples);
 
 class WhatIfFit {
-  constructor({coefficients, own, effects, weighted, alike, inflation, outliers, heldOut}) {
-    Object.assign(this, {coefficients, own, effects, inflation});
+  constructor({coefficients, own, effects, weights, alike, outliers, heldOut}) {
+    Object.assign(this, {coefficients, own, effects});
     const width = coefficients.length + 1;
-    this.weighted = weighted.map((sums) => wholeSums(sums, width));
+    this.weights = weights.map(({effects: taken, parts, inflation}) => {
+      const each = parts.map((sums) => wholeSums(sums, width));
+      return {taken, inflation, parts: each, whole: each.reduce((a, b) => combined(a, b))};
+    });
     this.alike = alike.map((sums) => wholeSums(sums, width));
-    this.whole = this.weighted.reduce((a, b) => combined(a, b));
     this.all = [...this.alike, wholeSums(outliers, width)].reduce((a, b) => combined(a, b));
     this.heldOut = heldOut.samples ? wholeSums(heldOut, width) : null;
+  }
+
+  // The weights of the noise that is left with these effects in the model: of what was found and is among them, or
+  // has another in its place, as many as there are weights for.
+  weightsOf(on) {
+    const taken = new Set([...on].map((effect) => this.effects[effect].standsFor).filter((effect) => effect !== null));
+    const fitting = this.weights.filter((each) => each.taken.every((effect) => taken.has(effect)));
+    return fitting.reduce((a, b) => b.taken.length > a.taken.length ? b : a);
   }
 
   // The numbers of the coefficients of an effect that the flights tell.
@@ -91,8 +101,9 @@ class WhatIfFit {
   }
 
   // Fits with some effects in the model. @param byHand a Map of coefficients to values that are held
-  // @param own the model's own coefficients are fitted again; @param bounded only to values that physics allows
-  fit(on, byHand = new Map(), own = true, bounded = true) {
+  // @param own the model's own coefficients are fitted again; @param weights as of `weightsOf`
+  // @param bounded only to values that physics allows
+  fit(on, byHand = new Map(), own = true, weights = this.weightsOf(on), bounded = true) {
     const {coefficients} = this;
     const values = Float64Array.from(coefficients, ({given, start}) => given - start);
     const free = [];
@@ -105,22 +116,22 @@ class WhatIfFit {
     // A coefficient that would go beyond its bound stays there, until the others let it go.
     const atBound = [];
     for (let step = 0;; ++step) {
-      const {values: found, factor} = this.solved(this.whole, free, values);
+      const {values: found, factor} = this.solved(weights.whole, free, values);
       const beyond = bounded ? free.find((c) => found[c] < this.least(c) || found[c] > this.greatest(c)) : undefined;
       if (beyond !== undefined) {
         values[beyond] = found[beyond] < this.least(beyond) ? this.least(beyond) : this.greatest(beyond);
         atBound.push(...free.splice(free.indexOf(beyond), 1));
         continue;
       }
-      const freed = atBound.find((c) => this.slope(c, found) * (found[c] === this.least(c) ? 1 : -1) < 0);
-      if (freed === undefined || step > 4 * this.coefficients.length) return this.told(found, free, factor);
+      const freed = atBound.find((c) => this.slope(weights, c, found) * (found[c] === this.least(c) ? 1 : -1) < 0);
+      if (freed === undefined || step > 4 * this.coefficients.length) return this.told(found, free, factor, weights);
       free.push(...atBound.splice(atBound.indexOf(freed), 1));
     }
   }
 
   // Half of what the squares grow by with a coefficient.
-  slope(c, values) {
-    const row = this.whole.matrix[c];
+  slope({whole}, c, values) {
+    const row = whole.matrix[c];
     return values.reduce((sum, value, j) => sum + row[j] * value, -row[values.length]);
   }
 
@@ -128,31 +139,39 @@ class WhatIfFit {
 
   greatest(c) { return (this.coefficients[c].greatest ?? Infinity) - this.coefficients[c].start; }
 
-  told(values, free, factor) {
-    const squares = squaresLeft(this.whole, values);
-    const variance = this.inflation * squares / Math.max(this.whole.samples - free.length, 1);
+  told(values, free, factor, weights) {
+    const squares = squaresLeft(weights.whole, values);
+    const variance = weights.inflation * squares / Math.max(weights.whole.samples - free.length, 1);
     const errors = new Float64Array(values.length);
     factor.variances.forEach((one, k) => { errors[free[k]] = Math.sqrt(variance * Math.max(one, 0)); });
-    return {values, errors, free, squares, variance, rms: rmsLeft(this.all, values)};
+    return {values, errors, free, weights, squares, variance, rms: rmsLeft(this.all, values)};
   }
 
   // The rms on what took no part: on what is held out, else on parts of the flights left out in turn.
-  heldOutRms({values, free}) {
+  heldOutRms({values, free, weights}) {
     if (this.heldOut) return rmsLeft(this.heldOut, values);
     let squares = 0, samples = 0;
-    this.weighted.forEach((part, k) => {
+    weights.parts.forEach((part, k) => {
       if (!this.alike[k].samples) return;
-      const {values: found} = this.solved(combined(this.whole, part, -1), free, values);
+      const {values: found} = this.solved(combined(weights.whole, part, -1), free, values);
       squares += squaresLeft(this.alike[k], found);
       samples += this.alike[k].samples;
     });
     return Math.sqrt(Math.max(squares, 0) / samples);
   }
 
-  // How alike two changes are in units of the noise, -1 to 1.
+  // By how much chi2 falls with some effects more, in units of the noise that is left with all of them.
+  fall(before, after, byHand, own) {
+    const weights = this.weightsOf(after);
+    const without = this.fit(before, byHand, own, weights), now = this.fit(after, byHand, own, weights);
+    return (without.squares - now.squares) / now.variance;
+  }
+
+  // How alike two changes are in units of the noise that is left with all that was found, -1 to 1.
   correlation(a, b) {
+    const {matrix} = this.weights.at(-1).whole;
     const product = (x, y) => x.reduce((sum, value, i) =>
-      sum + value * y.reduce((inner, other, j) => inner + this.whole.matrix[i][j] * other, 0), 0);
+      sum + value * y.reduce((inner, other, j) => inner + matrix[i][j] * other, 0), 0);
     return product(a, b) / Math.sqrt(product(a, a) * product(b, b));
   }
 }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -59,14 +60,34 @@ std::vector<std::uint8_t> from_base64(const std::string& text) {
   return bytes;
 }
 
-std::vector<double> values_of(const nlohmann::json& column) {
-  const auto bytes = from_base64(column["values"]);
-  std::vector<double> values;
-  for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) {
-    const int number = bytes[i] | bytes[i + 1] << 8;
-    values.push_back(number == 65535 ? nan
-                                     : column["least"].get<double>() + number * column["step"].get<double>());
+// Whole numbers by what each differs from the one before, with runs of those that do not.
+std::vector<std::int64_t> unpacked(const std::string& text) {
+  const std::vector<std::uint8_t> bytes = from_base64(text);
+  std::size_t at = 0;
+  const auto next = [&] {
+    std::int64_t number = 0;
+    for (int shift = 0;; shift += 7) {
+      number |= std::int64_t{bytes[at] & 127} << shift;
+      if (bytes[at++] < 128) return number;
+    }
+  };
+  std::vector<std::int64_t> numbers;
+  std::int64_t value = 0;
+  while (at < bytes.size()) {
+    const std::int64_t told = next();
+    value += told % 2 == 0 ? told / 2 : -(told + 1) / 2;
+    numbers.push_back(value);
+    if (told == 0) numbers.insert(numbers.end(), static_cast<std::size_t>(next()), value);
   }
+  return numbers;
+}
+
+std::vector<double> values_of(const nlohmann::json& column) {
+  std::vector<double> values;
+  for (const std::int64_t number : unpacked(column["values"]))
+    values.push_back(number == 65535 ? nan
+                                     : column["least"].get<double>() +
+                                           static_cast<double>(number) * column["step"].get<double>());
   return values;
 }
 
@@ -104,6 +125,16 @@ TEST(Report, KeepsTheValuesToHalfAStep) {
       EXPECT_LE(std::abs(kept[i] - report.columns[0].values[i]), 0.5000001 * column["step"].get<double>());
 }
 
+TEST(Report, KeepsWhatIsAlongAnAxisAloneToTwelveBits) {
+  Report report = report_of(1000, 2);
+  report.items = {BinnedPanel{"Bins", "", {"c0"}, {"c1"}}};
+  const auto columns = data_of(report_html(report))["columns"];
+  EXPECT_NEAR(columns[0]["step"].get<double>(), 2000.0 / 65534, 1e-4);
+  EXPECT_NEAR(columns[1]["step"].get<double>(), 2000.0 / 4094, 1e-3);
+  report.items.emplace_back(TimePanel{"Lines", "", {"c1"}});
+  EXPECT_NEAR(data_of(report_html(report))["columns"][1]["step"].get<double>(), 2000.0 / 65534, 1e-4);
+}
+
 TEST(Report, KeepsAConstantColumnExactly) {
   Report report = report_of(3, 1);
   report.columns[0].values.assign(3, 0.1);
@@ -118,8 +149,8 @@ TEST(Report, KeepsTheTimeOfEachFlightToAMillisecond) {
   const auto flights = data_of(report_html(report))["flights"];
   ASSERT_EQ(flights.size(), 2U);
   EXPECT_EQ(flights[1]["start"], start + 9e6);
-  EXPECT_EQ(from_base64(flights[0]["milliseconds"]), (std::vector<std::uint8_t>{0, 0, 0, 0, 40, 0, 0, 0}));
-  EXPECT_EQ(from_base64(flights[1]["milliseconds"]), (std::vector<std::uint8_t>{0, 0, 0, 0, 220, 5, 0, 0}));
+  EXPECT_EQ(unpacked(flights[0]["milliseconds"]), (std::vector<std::int64_t>{0, 40}));
+  EXPECT_EQ(unpacked(flights[1]["milliseconds"]), (std::vector<std::int64_t>{0, 1500}));
 }
 
 TEST(Report, EscapesEveryText) {
@@ -206,6 +237,58 @@ TEST(Report, RefusesARowWithDotsMissing) {
   Report report = report_of(3, 1);
   report.items = {DotPanel{"Dots", "", {"one", "two"}, {{"a", {{1.0, 0.1}}}}, "x"}};
   EXPECT_THAT(reason(report), HasSubstr("row 'a' of panel 'Dots' has 1 dots for 2 series"));
+}
+
+// One effect on a model of one coefficient, with sums of the right size.
+WhatIfPanel what_if_of(std::size_t samples) {
+  WhatIfPanel panel;
+  panel.title = "What if";
+  panel.residual = "c0";
+  panel.coefficients = {{"static-constant.a0", "1"}, {"tau", "s"}};
+  for (WhatIfCoefficient& coefficient : panel.coefficients) {
+    coefficient.size = 1.0;
+    for (std::size_t i = 0; i < samples; ++i) coefficient.column.push_back(0.5 * static_cast<double>(i));
+  }
+  panel.own = 1;
+  panel.effects = {{"static-lag", "a lag", "found", 0, 1, 1}};
+  const WhatIfSums sums{{2.0, 1.0, 3.0, 0.5, 0.25, 4.0}, 10.0};
+  panel.weights = {{{}, {sums}, 1.0}};
+  panel.alike = {sums};
+  panel.outliers = sums;
+  return panel;
+}
+
+TEST(Report, KeepsTheSumsOfAWhatIfToTheLastBit) {
+  Report report = report_of(100, 1);
+  report.items = {what_if_of(100)};
+  const auto item = data_of(report_html(report))["items"][0];
+  const std::vector<std::uint8_t> bytes = from_base64(item["weights"][0]["parts"][0]["products"]);
+  std::vector<double> products(6);
+  ASSERT_EQ(bytes.size(), products.size() * sizeof(double));
+  std::memcpy(products.data(), bytes.data(), bytes.size());
+  EXPECT_EQ(products, (std::vector<double>{2.0, 1.0, 3.0, 0.5, 0.25, 4.0}));
+  EXPECT_EQ(unpacked(item["points"]), (std::vector<std::int64_t>{0, 99}));  // the columns are straight lines
+  EXPECT_THAT(values_of(item["columns"][1]), testing::ElementsAre(0.0, testing::DoubleNear(49.5, 1e-9)));
+}
+
+TEST(Report, RefusesAWhatIfThatCannotBeComputed) {
+  Report report = report_of(100, 1);
+  const auto reason_of = [&report](const auto& change) {
+    WhatIfPanel panel = what_if_of(100);
+    change(panel);
+    report.items = {panel};
+    return reason(report);
+  };
+  EXPECT_EQ(reason_of([](WhatIfPanel&) {}), "");
+  EXPECT_THAT(reason_of([](WhatIfPanel& panel) { panel.residual = "absent"; }), HasSubstr("'absent'"));
+  EXPECT_THAT(reason_of([](WhatIfPanel& panel) { panel.effects.clear(); }), HasSubstr("no effect"));
+  EXPECT_THAT(reason_of([](WhatIfPanel& panel) { panel.coefficients[1].column.pop_back(); }),
+              HasSubstr("99 values for 100 samples"));
+  EXPECT_THAT(reason_of([](WhatIfPanel& panel) { panel.effects[0].count = 2; }),
+              HasSubstr("first and count"));
+  EXPECT_THAT(reason_of([](WhatIfPanel& panel) { panel.alike[0].products.pop_back(); }), HasSubstr("sums"));
+  EXPECT_THAT(reason_of([](WhatIfPanel& panel) { panel.weights.clear(); }), HasSubstr("sums"));
+  EXPECT_THAT(reason_of([](WhatIfPanel& panel) { panel.x_choices = {"absent"}; }), HasSubstr("'absent'"));
 }
 
 TEST(Report, RefusesATableWithCellsMissing) {

@@ -62,7 +62,8 @@ TEST(Thinned, StandsForAWaveAsWellAsIsAskedFor) {
   for (std::size_t k = 0; k + 1 < kept.size(); ++k) {
     for (std::size_t i = kept[k]; i <= kept[k + 1]; ++i) {
       const double part = (time[i] - time[kept[k]]) / (time[kept[k + 1]] - time[kept[k]]);
-      EXPECT_LE(std::abs(wave[i] - wave[kept[k]] - part * (wave[kept[k + 1]] - wave[kept[k]])), enough * 1.0001);
+      EXPECT_LE(std::abs(wave[i] - wave[kept[k]] - part * (wave[kept[k + 1]] - wave[kept[k]])),
+                enough * 1.0001);
     }
   }
 }

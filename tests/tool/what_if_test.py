@@ -26,13 +26,14 @@ from browser import Browser  # noqa: E402
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 
 LAG = with_effect('id = "static-lag"\ntau = 1.0\n')(comparison_test.SCENARIO)
-SIDESLIP = with_effect('id = "static-beta-even"\non = "PSFD"\nb2 = 0.08\n')(LAG)
-FIRST, SECOND, BOTH = (FLIGHTS / name for name in ("lag-one.nc", "lag-two.nc", "both.nc"))
+SIDESLIP = with_effect('id = "static-beta-even"\non = "PSFD"\nb2 = 0.0002\n')(LAG)
+FIRST, SECOND, BOTH, BOTH_TOO = (FLIGHTS / name for name in ("lag-one.nc", "lag-two.nc", "both.nc", "both-too.nc"))
 
 
 def setUpModule():
     scenario = FLIGHTS / "scenario.toml"
-    for output, text, seed in ((FIRST, LAG, 31), (SECOND, LAG, 32), (BOTH, SIDESLIP, 33)):
+    for output, text, seed in ((FIRST, LAG, 31), (SECOND, LAG, 32), (BOTH, SIDESLIP, 33),
+                               (BOTH_TOO, SIDESLIP, 34)):
         scenario.write_text(text)
         subprocess.run([TOOL, "simulate", scenario, "-o", output, "--seed", str(seed), "--quiet"], check=True)
 
@@ -237,10 +238,14 @@ class OneEffect(WhatIfTest):
 
 
 class TwoEffects(WhatIfTest):
-    def test_both_are_what_the_refit_finds(self):
-        self.diagnosed(BOTH)
+    def test_each_and_both_are_what_the_refit_finds(self):
+        self.diagnosed(BOTH, BOTH_TOO)
         found = [finding["effect"] for finding in self.diagnosis["findings"]]
         self.assertEqual(len(found), 2, found)
+        for effect in found:
+            self.switch(effect)
+            self.assert_same(self.told(), self.as_copied(), {effect})
+            self.switch(effect)
         for effect in found:
             self.switch(effect)
         self.assert_same(self.told(), self.as_copied(), set(found))

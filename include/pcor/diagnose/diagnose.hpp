@@ -232,8 +232,8 @@ struct Diagnosis {
   std::vector<AbsorbedEffect> absorbed{};
   std::vector<UpperLimit> limits{};  ///< the effect that could be largest first
   std::vector<NotTestable> not_testable{};
-  /// The model's own free coefficients fitted again, as `residual_rms` has them, by names like "static-qp.a2";
-  /// behind them those of the models of the references.
+  /// The model's own free coefficients fitted again, as `residual_rms` has them, by names like
+  /// "static-qp.a2"; behind them those of the models of the references.
   std::vector<Estimate> own{};
   std::size_t candidates = 0;  ///< effects that were tested
   double threshold = 0.0;      ///< chi2 that an effect had to exceed

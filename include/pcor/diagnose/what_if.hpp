@@ -17,7 +17,7 @@ struct WhatIfCandidate {
   std::string why;                      ///< it is in the list, e.g. "found", "instead of static-lag"
   std::optional<ModelEffect> effect{};  ///< with its shape; without, the shape is that of the catalogue
   bool is_alike = false;                ///< as `Finding::is_alike`
-  bool is_found = false;                ///< the noise is what is left when it is taken off
+  std::string stands_for{};  ///< the effect that was found in whose place it stands, itself or another
 };
 
 struct WhatIfOptions {

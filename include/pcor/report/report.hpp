@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -11,7 +12,8 @@
 namespace pcor {
 
 /// A quantity that the pictures of a report show, one value per sample, NaN where missing. A report keeps
-/// 16 bits of a value: it is off by at most half of (greatest - least) / 65534.
+/// 16 bits of a value: it is off by at most half of (greatest - least) / 65534; of a quantity that pictures
+/// have along their axes alone 12 bits, half of (greatest - least) / 4094.
 struct ReportColumn {
   std::string name;   ///< by which panels name it; unique in a report
   std::string title;  ///< on axes and in legends, e.g. "Mach number"; the name if empty
@@ -205,7 +207,9 @@ struct WhatIfCoefficient {
 struct WhatIfEffect {
   std::string id;
   std::string title;
-  std::string why{};      ///< it is in the list, e.g. "found", "instead of static-lag"
+  std::string why{};  ///< it is in the list, e.g. "found", "instead of static-lag"
+  /// The number of the effect of `WhatIfWeights` that it stands for, itself or another; nothing for none.
+  std::optional<std::size_t> stands_for{};
   std::size_t first = 0;  ///< of its coefficients
   std::size_t count = 0;
   std::string argument{};   ///< by which a command adds it, ready for a shell; empty where none can
@@ -218,6 +222,15 @@ struct WhatIfEffect {
 struct WhatIfSums {
   std::vector<double> products;
   double samples = 0.0;
+};
+
+/// Sums in units of the noise that is left when some effects are taken off.
+struct WhatIfWeights {
+  std::vector<std::size_t> effects;
+  std::vector<WhatIfSums> parts;  ///< of the flights, each of which is left out in turn
+  /// By how much the variance of a coefficient is larger than least squares of the weighted rows has it,
+  /// since the weights come from the residuals.
+  double inflation = 1.0;
 };
 
 /// What two effects are told apart by, as a sentence.
@@ -246,14 +259,10 @@ struct WhatIfPanel {
   std::vector<WhatIfEffect> effects;
   std::vector<std::string> x_choices{};  ///< columns that the residual is shown against
   double samples_per_independent = 1.0;  ///< as of `BinnedPanel`
-  /// Of parts of the flights, each of which is left out in turn: of rows in units of the noise, for a fit;
-  /// and of all samples alike but outliers, hPa.
-  std::vector<WhatIfSums> weighted;
-  std::vector<WhatIfSums> alike;
-  /// By how much the variance of a coefficient is larger than least squares of the weighted rows has it,
-  /// since the weights come from the residuals.
-  double inflation = 1.0;
-  WhatIfSums outliers{};  ///< as `alike`
+  /// For fits: with no effect taken off first, with all that were found last.
+  std::vector<WhatIfWeights> weights;
+  std::vector<WhatIfSums> alike;  ///< of the same parts, of all samples alike but outliers, hPa
+  WhatIfSums outliers{};          ///< as `alike`
   WhatIfSums held_out{};  ///< as `alike`, of what took no part in any fit; empty where there is nothing
   double noise = 0.0;     ///< rms, hPa
   std::vector<WhatIfSeparation> separations{};
