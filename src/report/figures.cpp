@@ -80,18 +80,19 @@ std::string file_address(const fs::path& path) {
 
 // A new folder for the page and what the browser keeps.
 fs::path make_work_folder() {
-  std::string name = (fs::temp_directory_path() / "pcor-figures-XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr)
-    throw Error(Error::Code::output, "figures: nothing can be written in " +
-                                         fs::temp_directory_path().string() +
+  std::error_code code;
+  const fs::path temporary = fs::absolute(fs::temp_directory_path(code), code);
+  std::string name = (temporary / "pcor-figures-XXXXXX").string();
+  if (code || ::mkdtemp(name.data()) == nullptr)
+    throw Error(Error::Code::output, "figures: nothing can be written in the folder for temporary files " +
+                                         temporary.string() +
                                          "; check the space there, or set TMPDIR to another folder");
   return name;
 }
 
-// What the page leaves in place of itself: lines "NAME BASE64". A shell starts the browser and removes the
-// folder whatever happens, also where this program is stopped.
-std::string exported(const std::string& program, const std::string& html, FigureUse use) {
-  constexpr std::array<const char*, 3> words{"page", "column", "slide"};
+// What a page leaves in place of itself. A shell starts the browser and removes the folder, also where this
+// program is stopped; a browser that hangs is ended.
+std::string dumped(const std::string& program, const std::string& html, const std::string& wish) {
   const fs::path folder = make_work_folder();
   const fs::path page = folder / "page.html";
   std::ofstream stream(page, std::ios::binary);
@@ -99,15 +100,21 @@ std::string exported(const std::string& program, const std::string& html, Figure
   stream.close();
   const bool is_root = ::geteuid() == 0;  // for whom Chromium has no sandbox
   const std::string command = fmt::format(
-      "trap 'rm -rf '{0} EXIT; trap 'exit 1' INT TERM HUP PIPE\n"
-      "{1} --headless=new {2} --disable-gpu --user-data-dir={0}/profile --dump-dom {3} 2> {0}/messages ||\n"
-      "{{ tail -n 1 {0}/messages; exit 1; }}\n",
+      "folder={0}\n"
+      "trap 'rm -rf -- \"$folder\"' EXIT; trap 'exit 1' INT TERM HUP PIPE\n"
+      "timeout --kill-after=5 120 {1} --headless=new {2} --disable-gpu --user-data-dir=\"$folder/profile\" "
+      "--dump-dom {3} 2> \"$folder/messages\" && exit\n"
+      "[ $? -eq 124 ] && echo 'it was not done after two minutes' && exit 1\n"
+      "tail -n 1 \"$folder/messages\"; exit 1\n",
       shell_word(folder.string()), shell_word(program), is_root ? "--no-sandbox" : "",
-      shell_word(file_address(page) + "#export+for=" + words.at(static_cast<std::size_t>(use))));
-  std::FILE* const pipe = ::popen(command.c_str(), "r");
+      shell_word(file_address(page) + wish));
+  std::FILE* const pipe = stream ? ::popen(command.c_str(), "r") : nullptr;
   if (pipe == nullptr) {
-    fs::remove_all(folder);
-    throw Error("figures: no shell can be started; close other programs, and try again");
+    std::error_code ignored;
+    fs::remove_all(folder, ignored);
+    throw Error(Error::Code::output, "figures: the page for the browser cannot be written in " +
+                                         folder.parent_path().string() +
+                                         "; check the space there, or set TMPDIR to another folder");
   }
   std::string text;
   std::array<char, 65536> buffer{};
@@ -119,6 +126,12 @@ std::string exported(const std::string& program, const std::string& html, Figure
                             program, text.substr(text.rfind('\n') + 1)));
   }
   return text;
+}
+
+// Lines "NAME BASE64".
+std::string exported(const std::string& program, const std::string& html, FigureUse use) {
+  constexpr std::array<const char*, 3> words{"page", "column", "slide"};
+  return dumped(program, html, std::string("#export+for=") + words.at(static_cast<std::size_t>(use)));
 }
 
 std::string decoded(const std::string& base64) {
@@ -162,29 +175,6 @@ std::vector<fs::path> earlier_pictures(const fs::path& folder) {
   return all;
 }
 
-// A folder that is there, and is no more when it goes unless something was put into it.
-class Folder {
- public:
-  explicit Folder(const fs::path& path) : path_(path) {
-    std::error_code code;
-    is_new_ = fs::create_directories(path, code);
-    if (!fs::is_directory(path))
-      throw Error(Error::Code::output,
-                  fmt::format("{} cannot be a folder of figures: {}; choose another", path.string(),
-                              code ? code.message() : "there is something else of that name"));
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  ~Folder() {
-    std::error_code ignored;
-    if (is_new_ && fs::is_empty(path_, ignored)) fs::remove(path_, ignored);
-  }
-
- private:
-  fs::path path_;
-  bool is_new_ = false;
-};
-
 void write_file(const fs::path& path, const std::string& bytes) {
   ReplacementFile file(path);
   std::ofstream stream(file.path(), std::ios::binary);
@@ -199,28 +189,36 @@ void write_file(const fs::path& path, const std::string& bytes) {
 }  // namespace
 
 void require_figures(const fs::path& folder) {
-  browser();
-  const Folder there(folder);
+  constexpr const char* sign = "drawn";
+  const std::string program = browser();
+  OutputsTogether none;
+  none.make_folder(folder);
   const ReplacementFile probe(folder / captions);
+  // Some start and see nothing: one in a container of its own does not read the folder of temporary files.
+  if (dumped(program, fmt::format("<!DOCTYPE html><title>figures</title><p>{}", sign), "").find(sign) ==
+      std::string::npos)
+    throw Error(
+        fmt::format("figures: {} shows nothing of a page in {}; set TMPDIR to a folder that it reads, "
+                    "or CHROMIUM to another browser",
+                    program, fs::temp_directory_path().string()));
 }
 
 std::vector<std::string> write_figures(const Report& report, const fs::path& folder, FigureUse use) {
   const std::string program = browser();
   const Files files = files_of(exported(program, report_html(report), use));
   if (files.size() < 2) throw Error(fmt::format("figures: {} shows no pictures of this report", program));
-  const Folder there(folder);
   std::vector<std::string> names;
   for (const auto& [name, bytes] : files) {
     if (bytes.empty()) throw Error(fmt::format("figures: {} drew nothing for {}", program, name));
     names.push_back(name);
   }
-  const std::vector<fs::path> earlier = earlier_pictures(folder);
-  for (const auto& [name, bytes] : files) write_file(folder / name, bytes);
-  for (const fs::path& path : earlier) {
-    std::error_code ignored;
-    if (std::find(names.begin(), names.end(), path.filename().string()) == names.end())
-      fs::remove(path, ignored);
+  OutputsTogether together;
+  together.make_folder(folder);
+  for (const fs::path& path : earlier_pictures(folder)) {
+    if (std::find(names.begin(), names.end(), path.filename().string()) == names.end()) together.remove(path);
   }
+  for (const auto& [name, bytes] : files) write_file(folder / name, bytes);
+  together.appear();
   return names;
 }
 

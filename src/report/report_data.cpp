@@ -115,8 +115,19 @@ class AlongAxes {
     along_.insert(panel.x_choices.begin(), panel.x_choices.end());
     up_.insert(panel.residual);
   }
-  template <class Other>
-  void operator()(const Other&) {}
+  void operator()(const TrackPanel& panel) {
+    along_.insert({panel.latitude, panel.longitude});
+    up_.insert(panel.colour);
+  }
+  void operator()(const StripPanel& panel) { up_.insert(panel.columns.begin(), panel.columns.end()); }
+  void operator()(const RegimePanel& panel) { up_.insert(panel.columns.begin(), panel.columns.end()); }
+  void operator()(const QuantilePanel& panel) { up_.insert(panel.columns.begin(), panel.columns.end()); }
+  // What has no columns.
+  void operator()(const BarPanel&) {}
+  void operator()(const CurvePanel&) {}
+  void operator()(const DotPanel&) {}
+  void operator()(const ReportTable&) {}
+  void operator()(const ReportText&) {}
 
  private:
   std::set<std::string> along_{};

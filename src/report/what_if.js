@@ -144,7 +144,7 @@ class WhatIf {
     zero.style.left = this.place(given, from, to);
     const element = make('div', {class: 'coefficient'},
       make('div', {class: 'words-of'}, make('span', {class: 'name'}, name), told, fitted),
-      make('span', {class: 'track'}, band, zero, range), number, make('span', {class: 'unit'}, unit === '1' ? '' : unit));
+      make('span', {class: 'slider-track'}, band, zero, range), number, make('span', {class: 'unit'}, unit === '1' ? '' : unit));
     return {c, element, range, number, band, told, fitted, from, to, step, unit};
   }
 
@@ -201,7 +201,7 @@ class WhatIf {
     this.pairTable = make('table', {class: 'regime-table'});
     this.pairPanel = add({kind: 'time', title: 'Two effects side by side', columns: this.sides.map(({name}) => name), axis: 'taken off the residual'},
       'What each would take off the residual were it alone added and the model fitted again: where the two curves differ, these flights can tell them apart.',
-      make('div', {class: 'pair'}, ...labels));
+      make('div', {class: 'what-if-pair'}, ...labels));
     this.panels.push(this.pairPanel);
     const scroll = {class: 'scroll', tabindex: '0', role: 'region', 'aria-label': 'Two effects by regime'};
     part('table', 'Where the two differ', 'Rms of what each takes off the residual, and of the difference, over the selected samples; the correlation is that over these samples.',

@@ -1,6 +1,7 @@
 #include <pcor/words/replacement_file.hpp>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 #include <pcor/words/error.hpp>
 
@@ -184,6 +185,8 @@ void remove_unfinished_files() noexcept {
   const int before = errno;
   for (const Unfinished& entry : unfinished_files)
     if (entry.state == Unfinished::listed) ::unlink(entry.path);
+  for (const Unfinished& entry : unfinished_files)
+    if (entry.state == Unfinished::listed) ::rmdir(entry.path);
   errno = before;
 }
 
@@ -238,16 +241,41 @@ void ReplacementFile::commit() {
   committed_ = true;
 }
 
-OutputsTogether::OutputsTogether() { outputs_together = this; }
+OutputsTogether::OutputsTogether() : whole_(outputs_together != nullptr ? outputs_together : this) {
+  outputs_together = whole_;
+}
 
 OutputsTogether::~OutputsTogether() {
+  if (whole_ != this) return;
   outputs_together = nullptr;
   std::error_code ignored;
   for (const Waiting& file : waiting_) {
     fs::remove(file.path, ignored);
     take_from_list(file.path.string());
   }
+  for (auto folder = folders_.rbegin(); folder != folders_.rend(); ++folder) {
+    ::rmdir(folder->c_str());
+    take_from_list(folder->string());
+  }
 }
+
+void OutputsTogether::make_folder(const fs::path& folder) {
+  std::error_code code;
+  if (fs::is_directory(folder, code)) return;
+  const fs::path path = fs::absolute(folder, code).lexically_normal();
+  if (path.has_relative_path() && !fs::is_directory(path.parent_path(), code))
+    make_folder(path.parent_path());
+  list_as_unfinished(path.string());
+  if (!fs::create_directory(path, code) && !fs::is_directory(path)) {
+    take_from_list(path.string());
+    throw Error(Error::Code::output,
+                fmt::format("{} cannot be a folder of outputs: {}; choose another", folder.string(),
+                            code ? code.message() : "there is something else of that name"));
+  }
+  whole_->folders_.push_back(path);
+}
+
+void OutputsTogether::remove(const fs::path& earlier) { whole_->earlier_.push_back(earlier); }
 
 fs::path readable_output(const fs::path& target) {
   if (outputs_together != nullptr) {
@@ -258,6 +286,7 @@ fs::path readable_output(const fs::path& target) {
 }
 
 void OutputsTogether::appear() {
+  if (whole_ != this) return;
   SpaceKept replaced;
   for (const Waiting& file : waiting_) replaced.keep(file.target);
   const SignalsWait signals_wait;
@@ -266,6 +295,10 @@ void OutputsTogether::appear() {
     put_in_place(file.shown, file.target, file.path);
     waiting_.erase(waiting_.begin());
   }
+  for (const fs::path& folder : folders_) take_from_list(folder.string());
+  folders_.clear();
+  std::error_code ignored;
+  for (const fs::path& path : earlier_) fs::remove(path, ignored);
 }
 
 }  // namespace pcor

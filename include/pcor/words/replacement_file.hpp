@@ -33,8 +33,8 @@ class ReplacementFile {
 
 /// While one lives, files that are committed wait beside their targets, whole and on the disk. They appear
 /// together: one right after the other, while signals wait; none does if it goes before. So only a SIGKILL or
-/// a failure of the machine within the microseconds between can part them. There is one at a time, and it is
-/// for the files of one thread.
+/// a failure of the machine within the microseconds between can part them. It is for the files of one thread;
+/// one that is made while another lives is a part of that.
 class OutputsTogether {
  public:
   OutputsTogether();
@@ -42,6 +42,13 @@ class OutputsTogether {
 
   OutputsTogether(const OutputsTogether&) = delete;
   OutputsTogether& operator=(const OutputsTogether&) = delete;
+
+  /// Makes a folder for outputs, and those above it. What is new of them goes again if nothing appears, also
+  /// where a signal ends the program. @throws Error if it cannot be there.
+  void make_folder(const std::filesystem::path& folder);
+
+  /// Has a file of an earlier run go when the outputs have appeared.
+  void remove(const std::filesystem::path& earlier);
 
   /// @throws Error if a file cannot be put in its place; those before it are.
   void appear();
@@ -53,14 +60,17 @@ class OutputsTogether {
   struct Waiting {
     std::filesystem::path shown, target, path;
   };
+  OutputsTogether* whole_;  // itself, or the one that it is a part of
   std::vector<Waiting> waiting_;
+  std::vector<std::filesystem::path> folders_;  // that were made, each behind the one that it is in
+  std::vector<std::filesystem::path> earlier_;
 };
 
 /// Where a file that was committed to `target` can be read: there, or beside it while it waits for others.
 std::filesystem::path readable_output(const std::filesystem::path& target);
 
-/// Removes the hidden files of all that is being written in this process, at most 16; for a signal handler
-/// that then ends the process, as SIGINT would: it only unlinks.
+/// Removes the hidden files of all that is being written in this process, at most 128, and the
+/// folders that were made for them; for a signal handler that then ends the process, as SIGINT would.
 void remove_unfinished_files() noexcept;
 
 }  // namespace pcor
