@@ -233,7 +233,8 @@ class Panel {
 
   get fileName() {
     const words = this.item.title.toLowerCase().replace(/[^a-z0-9]+/g, '-').replace(/^-|-$/g, '').slice(0, 60);
-    return `${String(this.report.panels.indexOf(this) + 1).padStart(2, '0')}-${words || this.item.kind}`;
+    const number = this.report.figures.indexOf(this) + 1;
+    return `${number ? `${String(number).padStart(2, '0')}-` : ''}${words || this.item.kind}`;
   }
 
   save(kind) {

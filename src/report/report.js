@@ -203,15 +203,18 @@ class ReportPage {
   // The picture of a panel, counted from 0, as the text of an SVG file.
   svg(panel) { return this.panels[panel].svg(); }
 
-  // Every picture, and what each shows, as lines "NAME BASE64".
+  // The pictures that do not hang on what the reader tries.
+  get figures() { return this.panels.filter(({item}) => !item.isLive); }
+
+  // Every figure, and what it shows, as lines "NAME BASE64".
   exportText() {
     const letters = (bytes) => bytes.reduce((text, byte) => text + String.fromCharCode(byte), '');
     const base64 = (text) => btoa(letters(new TextEncoder().encode(text)));
-    const pictures = this.panels.flatMap((panel) => [
+    const pictures = this.figures.flatMap((panel) => [
       `${panel.fileName}.svg ${base64(panel.svg())}`,
       `${panel.fileName}.png ${panel.png().split(',')[1]}`,
     ]);
-    const captions = this.panels.map((panel) => `${panel.fileName}: ${panel.item.title}. ${panel.description}\n`);
+    const captions = this.figures.map((panel) => `${panel.fileName}: ${panel.item.title}. ${panel.description}\n`);
     return [...pictures, `captions.txt ${base64(captions.join('\n'))}`].join('\n');
   }
 }

@@ -288,7 +288,8 @@ struct ItemJson {
                               {"start", each.start},
                               {"least", each.least},
                               {"greatest", each.greatest},
-                              {"fixed", each.fixed}});
+                              {"fixed", each.fixed},
+                              {"argument", each.argument}});
     json effects = json::array();
     for (const WhatIfEffect& each : panel.effects)
       effects.push_back({{"id", each.id},
@@ -324,7 +325,8 @@ struct ItemJson {
                {{"add", panel.commands.add},
                 {"model", panel.commands.model},
                 {"with", panel.commands.with},
-                {"refit", panel.commands.refit}}}};
+                {"refit", panel.commands.refit},
+                {"stem", panel.commands.stem}}}};
     item.update(what_if_columns(panel, report));
     return item;
   }

@@ -65,7 +65,7 @@ std::vector<std::size_t> thinned(const std::vector<double>& time, const std::vec
   }
   for (std::size_t count = 0; count < most && !lines.empty(); ++count) {
     const Line worst = lines.top();
-    if (!(worst.error > enough)) break;
+    if (worst.error <= enough || worst.error == 0.0) break;
     lines.pop();
     kept.push_back(known[worst.worst]);
     lines.push(line(worst.first, worst.worst));

@@ -166,6 +166,7 @@ class WhatIf {
     };
     const columns = [item.residual, 'what-if'];
     const add = (own, caption, ...more) => {
+      own.isLive = true;
       const panel = new Panel(own, part(own.kind, own.title, caption, ...more), report);
       report.panels.push(panel);
       return panel;
@@ -345,12 +346,12 @@ class WhatIf {
     if (!on.length || !commands.add) return '';
     const catalogue = on.filter(({isFormula}) => !isFormula).map(({argument}) => argument).join(' ');
     const added = [...(catalogue ? [catalogue] : []), ...on.filter(({isFormula}) => isFormula).map(({argument}) => argument)];
-    const name = (n) => n + 1 === added.length ? 'extended.toml' : `extended-${n + 1}.toml`;
+    const name = (n) => `${commands.stem}-extended${n + 1 === added.length ? '' : `-${n + 1}`}.toml`;
     const lines = added.map((argument, n) =>
       `${commands.add} ${argument} -m ${n ? name(n - 1) : commands.model} ${commands.with} -o ${name(n)}`);
-    const held = on.flatMap(({id, first, count}) => coefficients.slice(first, first + count)
-      .filter(({fixed}) => fixed).map((coefficient) => ` --fix ${id}.${coefficient.name}`)).join('');
-    return [...lines, `${commands.refit} -m extended.toml${held} -o extended-fitted.toml`].join(' && \\\n  ');
+    const held = on.flatMap(({first, count}) => coefficients.slice(first, first + count)
+      .filter(({fixed}) => fixed).map(({argument}) => ` --fix ${argument}`)).join('');
+    return [...lines, `${commands.refit} -m ${name(added.length - 1)}${held} -o ${commands.stem}-refitted.toml`].join(' && \\\n  ');
   }
 
   showCommand() {

@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
+#include <filesystem>
 
 #include <pcor/flight/flight.hpp>
 #include <pcor/model/formula.hpp>
@@ -120,6 +122,17 @@ std::string option(const char* name, const std::string& value) {
   return fmt::format(" {} {}", name, quoted(value));
 }
 
+/// What a model's file is called, in letters that mean nothing to a shell.
+std::string plain_stem(const std::string& model) {
+  std::string stem = std::filesystem::path(model).stem().string();
+  for (char& letter : stem) {
+    const bool is_plain =
+        std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '.' || letter == '_';
+    if (!is_plain) letter = '-';
+  }
+  return stem.empty() || stem.front() == '-' ? "model" + stem : stem;
+}
+
 }  // namespace
 
 void add_candidate_options(CLI::App& command, CandidateOptions& options) {
@@ -215,9 +228,15 @@ void add_commands(WhatIf& what_if, const std::string& model, const std::string& 
       shown.argument = fmt::format("{} --formula {} --where {}", quoted(effect.id), quoted(effect.formula),
                                    facts_of(effect.where).name);
   }
+  for (const WhatIfEffect& shown : what_if.panel.effects) {
+    for (std::size_t c = shown.first; c < shown.first + shown.count; ++c) {
+      WhatIfCoefficient& coefficient = what_if.panel.coefficients[c];
+      coefficient.argument = quoted(shown.id + "." + coefficient.name);
+    }
+  }
   what_if.panel.commands = {fmt::format("{} add", program()), quoted(model),
                             fmt::format("--flight {}", quoted(first_flight)),
-                            fmt::format("{} refit {}", program(), fit)};
+                            fmt::format("{} refit {}", program(), fit), plain_stem(model)};
 }
 
 std::string probability(double p) { return p < 0.001 ? "< 0.001" : fmt::format("{:.3f}", p); }

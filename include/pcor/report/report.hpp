@@ -196,8 +196,9 @@ struct WhatIfCoefficient {
   double start = 0.0;  ///< at which the residual is as its column has it
   double least = -std::numeric_limits<double>::infinity();  ///< that physics allows
   double greatest = std::numeric_limits<double>::infinity();
-  bool fixed = false;  ///< keeps the value that is given
-  double size = 0.0;   ///< of its changes: pictures are right where it moves by so much
+  bool fixed = false;      ///< keeps the value that is given
+  std::string argument{};  ///< that names it in a command, as a shell reads it
+  double size = 0.0;       ///< of its changes: pictures are right where it moves by so much
   /// What a unit of it takes off the residual, one value per sample; NaN where not known. Reports keep the
   /// samples between which a straight line will not do, a few thousand at most.
   std::vector<double> column{};
@@ -246,6 +247,7 @@ struct WhatIfCommands {
   std::string model;  ///< the file to begin with
   std::string with;   ///< behind the model, e.g. "--flight rf01.nc"
   std::string refit;  ///< up to the model, e.g. "pcor refit rf01.nc rf02.nc"
+  std::string stem;  ///< with which the names of new models begin, of letters, digits, ".", "_" and "-" alone
 };
 
 /// Effects that the reader adds to the model by switches, with their coefficients on sliders: what the
