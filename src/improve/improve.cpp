@@ -272,7 +272,7 @@ class Climb {
       used.insert(used.end(), flight.held_out.begin(), flight.held_out.end());
       const auto shown = [&](std::size_t model) { return only_at(flight.residuals[model], used); };
       result_.flights.push_back(
-          {flight.samples, flight.fitted.empty() || !flight.held_out.empty(), shown(0), shown(1), shown(2)});
+          {flight.samples, flight.fitted.size(), flight.held_out.size(), shown(0), shown(1), shown(2)});
     }
   }
 

@@ -20,12 +20,11 @@ namespace {
 double independent_samples(const Improvement& improvement, bool held_out) {
   double independent = 0.0;
   for (const ImprovedFlight& flight : improvement.flights) {
-    if (flight.held_out != held_out || flight.samples == nullptr) continue;
+    const std::size_t count = held_out ? flight.held_out : flight.fitted;
+    if (count == 0 || flight.samples == nullptr) continue;
     const double step = flight.samples->step;
     const NoiseFloor noise =
         noise_floor(flight.best, stretches_of(flight.best, flight.samples->time, step), step);
-    const auto count =
-        std::count_if(flight.best.begin(), flight.best.end(), [](double x) { return std::isfinite(x); });
     independent += static_cast<double>(count) / noise.samples_per_independent;
   }
   return independent;
@@ -35,7 +34,8 @@ std::string held_out_series(const Improvement& improvement) {
   if (!improvement.holdout_is_flights) return "not in the fit, five parts in turn";
   std::vector<std::string> names;
   for (const ImprovedFlight& flight : improvement.flights) {
-    if (flight.held_out) names.push_back(flight.samples->name);
+    if (flight.held_out > 0)
+      names.push_back((flight.fitted > 0 ? "the last part of " : "") + flight.samples->name);
   }
   return "held out: " + list_text(names);
 }
@@ -99,9 +99,9 @@ std::optional<DotPanel> coefficients_picture(const Improvement& improvement, con
 
 void name_held_out(Report& report, const Improvement& improvement) {
   for (const ImprovedFlight& flight : improvement.flights) {
-    if (!flight.held_out || flight.samples == nullptr) continue;
+    if (flight.held_out == 0 || flight.samples == nullptr) continue;
     const auto is_fitted = [&](const ImprovedFlight& other) {
-      return !other.held_out && other.samples != nullptr && other.samples->name == flight.samples->name;
+      return other.fitted > 0 && other.samples != nullptr && other.samples->name == flight.samples->name;
     };
     if (std::any_of(improvement.flights.begin(), improvement.flights.end(), is_fitted)) continue;
     const auto name = std::find(report.flight_names.begin(), report.flight_names.end(), flight.samples->name);

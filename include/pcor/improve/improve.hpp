@@ -56,7 +56,8 @@ struct ImproveStep {
 /// The residuals of a flight with the first reference, of all samples, hPa; NaN where they do not count.
 struct ImprovedFlight {
   std::shared_ptr<const FlightSamples> samples{};
-  bool held_out = false;        ///< as a whole, or its last part
+  std::size_t fitted = 0;       ///< samples in the fit
+  std::size_t held_out = 0;     ///< samples that were held out, of the whole flight or its last part
   std::vector<double> given{};  ///< with the model as it came
   std::vector<double> refitted{};
   std::vector<double> best{};  ///< with the model that is delivered
