@@ -32,12 +32,7 @@ double independent_samples(const Improvement& improvement, bool held_out) {
 
 std::string held_out_series(const Improvement& improvement) {
   if (!improvement.holdout_is_flights) return "not in the fit, five parts in turn";
-  std::vector<std::string> names;
-  for (const ImprovedFlight& flight : improvement.flights) {
-    if (flight.held_out > 0)
-      names.push_back((flight.fitted > 0 ? "the last part of " : "") + flight.samples->name);
-  }
-  return "held out: " + list_text(names);
+  return "held out: " + list_text(held_out_names(improvement));
 }
 
 /// The coefficient that is called so, like "static-qp.a2"; NaN where the model does not have it.
@@ -52,6 +47,15 @@ double value_in(const ModelFile& model, const std::string& name) {
 }
 
 }  // namespace
+
+std::vector<std::string> held_out_names(const Improvement& improvement) {
+  std::vector<std::string> names;
+  for (const ImprovedFlight& flight : improvement.flights) {
+    if (flight.held_out > 0)
+      names.push_back((flight.fitted > 0 ? "the last part of " : "") + flight.samples->name);
+  }
+  return names;
+}
 
 std::string rung_name(const ImproveStep& step) { return step.added.empty() ? "refitted" : "+ " + step.added; }
 

@@ -1,11 +1,16 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <pcor/improve/improve.hpp>
 #include <pcor/report/report.hpp>
 
 namespace pcor::internal::report {
+
+/// What took no part in the fit: "rf03.nc", "the last part of rf01.nc".
+std::vector<std::string> held_out_names(const Improvement& improvement);
 
 /// What a rung is called: "refitted", "+ static-lag".
 std::string rung_name(const ImproveStep& step);

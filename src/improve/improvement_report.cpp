@@ -56,16 +56,9 @@ void add_ladder_in_time(DiagnosisPanels& panels, const Improvement& improvement)
   add("ladder-refitted", "residual, refitted", &ImprovedFlight::refitted);
   add("ladder-best", "residual, as delivered", &ImprovedFlight::best);
   if (columns.empty()) return;
-  std::string held_out = "No flight was held out as a whole.";
-  std::vector<std::string> names;
-  for (const ImprovedFlight& flight : improvement.flights) {
-    if (flight.held_out) names.push_back(flight.samples->name);
-  }
-  if (!names.empty()) {
-    held_out = fmt::format("Held out{}: {}.",
-                           improvement.flights.size() == names.size() ? ", the last part of each" : "",
-                           list_text(names));
-  }
+  std::string held_out = "Nothing was held out.";
+  const std::vector<std::string> names = held_out_names(improvement);
+  if (!names.empty()) held_out = fmt::format("Held out: {}.", list_text(names));
   panels.add_time("The ladder in time", held_out, columns, "residual");
 }
 

@@ -58,7 +58,7 @@ TEST(Thinned, StandsForAWaveAsWellAsIsAskedFor) {
   for (const double t : time) wave.push_back(std::sin(0.02 * t));
   constexpr double enough = 1e-3;
   const std::vector<std::size_t> kept = thinned(time, {0}, {{&wave, 1.0}}, count, enough);
-  EXPECT_LT(kept.size(), count / 5);
+  EXPECT_LT(kept.size(), count / 3);  // lines of 4.5 s would do, were they all as long
   for (std::size_t k = 0; k + 1 < kept.size(); ++k) {
     for (std::size_t i = kept[k]; i <= kept[k + 1]; ++i) {
       const double part = (time[i] - time[kept[k]]) / (time[kept[k + 1]] - time[kept[k]]);
