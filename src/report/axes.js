@@ -115,9 +115,16 @@ const day = (time) => new Date(time * 1000).toISOString().slice(0, 10);
 
 const timeSteps = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 10800, 21600, 43200, 86400];
 
-// Round times of day on the time axis, flight by flight.
+// Round times of day on the time axis, flight by flight; short flights beside others may need more of them.
 function timeTicks(samples, [from, to], about) {
-  const step = timeSteps.find((one) => one * about >= to - from) ?? 86400;
+  let place = timeSteps.findIndex((one) => one * about >= to - from);
+  if (place < 0) place = timeSteps.length - 1;
+  let all = timesOfDay(samples, from, to, timeSteps[place]);
+  while (all.length < 2 && place > 0) all = timesOfDay(samples, from, to, timeSteps[--place]);
+  return all;
+}
+
+function timesOfDay(samples, from, to, step) {
   const all = [];
   for (const {start, offset, duration} of samples.flights) {
     const end = start + duration;

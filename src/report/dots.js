@@ -22,7 +22,7 @@ const tones = {
 const markHeight = 17;  // of a series in a row
 
 function dotsHeight(rows, series) {
-  return 76 + rows * Math.max(24, 8 + markHeight * series);
+  return 76 + rows * Math.max(30, 8 + markHeight * series);
 }
 
 // Rows {label, dots: [{value, error}, ...], text, tone, mark}: an axis below, a band of what is small, and lines.
@@ -34,10 +34,12 @@ function drawRows(pen, width, height, {rows, series, lines = [], band = null, ax
   const top = keysAbove(pen, [...keys, ...lines.map(({label}) => ({label, colour: theme.ink, dash: [5, 3]})),
     ...(band ? [{label: band.label, colour: theme.frame, wide: true}] : [])], width - 14, theme);
   const swatch = rows.some(({mark}) => mark) ? 22 : 0;
-  const longest = Math.max(...rows.map(({label}) => textWidth(label, fontSize))) + swatch;
-  const left = Math.min(longest + 22, 0.36 * width);
   const words = Math.max(0, ...rows.map(({text}) => textWidth(text ?? '', fontSize)));
-  const right = Math.min(words + 20, 0.34 * width);
+  const below = words > 0.3 * width;  // what has no room at the right stands below the names
+  const longest = Math.max(...rows.map(({label, text}) =>
+    Math.max(textWidth(label, fontSize), below ? textWidth(text ?? '', smallSize) : 0))) + swatch;
+  const left = Math.min(longest + 22, (below ? 0.55 : 0.36) * width);
+  const right = below ? 14 : words + 20;
   const box = plotBox(width, height, {left, right, top});
   const finite = rows.flatMap(({dots}) => dots.filter(({value}) => Number.isFinite(value)));
   const range = limits(finite.map(({value}) => value),
@@ -57,8 +59,11 @@ function drawRows(pen, width, height, {rows, series, lines = [], band = null, ax
     const middle = box.y + (r + 0.5) * room;
     if (r) pen.lines([[box.x, middle - room / 2, box.x + box.width, middle - room / 2]], theme.grid);
     if (mark) pen.lines([[8, middle, 24, middle]], mark.colour, 4, mark.dash ?? []);
-    pen.text(box.x - 9, middle + 4, shortened(label, left - 18 - swatch, fontSize), {...small(theme, 'end'), fill: theme.ink});
-    if (text) pen.text(box.x + box.width + 9, middle + 4, shortened(text, right - 12, fontSize), small(theme));
+    pen.text(box.x - 9, middle + (below && text ? -2 : 4), shortened(label, left - 18 - swatch, fontSize),
+      {...small(theme, 'end'), fill: theme.ink});
+    if (text && below)
+      pen.text(box.x - 9, middle + 11, shortened(text, left - 18 - swatch, smallSize), {...small(theme, 'end'), size: smallSize});
+    else if (text) pen.text(box.x + box.width + 9, middle + 4, text, small(theme));
     dots.forEach(({value, error}, s) => {
       if (!Number.isFinite(value)) return;
       const y = middle + (s - (dots.length - 1) / 2) * Math.min(markHeight, room / dots.length);

@@ -106,7 +106,7 @@ class Panel {
 
   get height() {
     const own = heights[this.item.kind];
-    if (own) return own(this.item, this.report.samples);
+    if (own) return own(this.item, this.report.samples, this.width);
     const {screen, print} = this.item.kind === 'time' ? {screen: 280, print: 200} : {screen: 380, print: 300};
     return this.report.printing ? print : screen;
   }
@@ -115,12 +115,12 @@ class Panel {
     const {samples, theme, sharpness} = this.report;
     // A sheet of paper is as wide as 680 dots; what is drawn wider is made smaller, letters and all.
     const width = this.report.printing ? 680 : Math.max(Math.round(this.picture.clientWidth), 280);
+    this.width = width;
     this.canvas.width = width * sharpness;
     this.canvas.height = this.height * sharpness;
     this.canvas.style.aspectRatio = `${width} / ${this.height}`;
     const context = this.canvas.getContext('2d');
     context.scale(sharpness, sharpness);
-    this.width = width;
     const named = this.switches.length > 0 && !this.report.printing;
     this.drawn = pictures[this.item.kind](new CanvasPen(context), width, this.height, this.item, samples, {...theme, named});
     const {alternative, points, table} = this.drawn;
@@ -191,7 +191,7 @@ class Panel {
     const {drawn, shown} = uses[this.report.use];
     const half = this.item.kind === 'time' ? 0.4 : 0.6;
     const own = heights[this.item.kind];
-    const height = own ? own(this.item, this.report.samples) : Math.max(Math.round(half * drawn), 240);
+    const height = own ? own(this.item, this.report.samples, drawn) : Math.max(Math.round(half * drawn), 240);
     return {width: drawn, height, shown};
   }
 

@@ -60,4 +60,4 @@ function drawStrip(pen, width, height, item, samples, theme) {
 }
 
 pictures.strip = drawStrip;
-heights.strip = ({columns}, samples) => 62 + 108 * columns.length + lane * samples.regimes.size;
+heights.strip = ({columns}, samples) => 62 + 128 * columns.length + lane * samples.regimes.size;

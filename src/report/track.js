@@ -50,20 +50,33 @@ function barb(pen, x, y, east, north, colour) {
   pen.lines(paths, colour, 1.25);
 }
 
+// Where the samples of a track are, in kilometres from its middle, and how far it reaches; found once.
+function placesOf(item, samples) {
+  return item.places ??= (() => {
+    const [lat, lon] = columnsOf(samples, [item.latitude, item.longitude]);
+    const places = samples.indices([lat, lon], samples.every);
+    const middle = middleOf(places, lat.values, lon.values);
+    const project = projectionAbout(...middle);
+    const at = new Map(places.map((i) => [i, project(lat.values[i], lon.values[i])]));
+    const ends = (axis) => [...at.values()].reduce(([least, greatest], place) =>
+      [Math.min(least, place[axis]), Math.max(greatest, place[axis])], [Infinity, -Infinity]);
+    return {middle, project, at, east: ends(0), north: ends(1)};
+  })();
+}
+
+const trackMargins = {left: 58, right: 84, top: 12, bottom: 44};
+
+const trackRoom = 18;  // pixels about the track
+
 function drawTrack(pen, width, height, item, samples, theme) {
   const [lat, lon, shade] = columnsOf(samples, [item.latitude, item.longitude, item.colour]);
   const places = samples.indices([lat, lon], samples.every);
   const found = samples.indices([lat, lon, shade]);
   cover(pen, width, height, theme);
-  const box = plotBox(width, height, {left: 58, right: 84, top: 12});
-  const [middleLat, middleLon] = middleOf(places, lat.values, lon.values);
-  const project = projectionAbout(middleLat, middleLon);
-  const at = new Map(places.map((i) => [i, project(lat.values[i], lon.values[i])]));
-  const ends = (axis) => [...at.values()].reduce(([least, greatest], place) =>
-    [Math.min(least, place[axis]), Math.max(greatest, place[axis])], [Infinity, -Infinity]);
-  const [east, north] = [ends(0), ends(1)];
+  const box = plotBox(width, height, trackMargins);
+  const {middle: [middleLat, middleLon], project, at, east, north} = placesOf(item, samples);
   const centre = [(east[0] + east[1]) / 2, (north[0] + north[1]) / 2];
-  const perPixel = Math.max((east[1] - east[0]) / (box.width - 36), (north[1] - north[0]) / (box.height - 36), 1e-3);
+  const perPixel = Math.max((east[1] - east[0]) / (box.width - 2 * trackRoom), (north[1] - north[0]) / (box.height - 2 * trackRoom), 1e-3);
   const x = (place) => box.x + box.width / 2 + (place[0] - centre[0]) / perPixel;
   const y = (place) => box.y + box.height / 2 - (place[1] - centre[1]) / perPixel;
 
@@ -116,6 +129,7 @@ function drawTrack(pen, width, height, item, samples, theme) {
     pen.dots(places.flatMap((i) => [x(at.get(i)), y(at.get(i))]), 1.5, theme.frame, 0.6);
     for (const l of order) pen.dots(dots[l], 3.5, mixed(colours, l / (levels - 1)));
     if (item.barbs) drawBarbs();
+    const named = [];
     for (const flight of samples.flights) {
       const first = places.find((i) => i >= flight.first && i < flight.end);
       if (first === undefined) continue;
@@ -123,7 +137,10 @@ function drawTrack(pen, width, height, item, samples, theme) {
       pen.lines([[px - 5, py - 5, px + 5, py - 5, px + 5, py + 5, px - 5, py + 5, px - 5, py - 5]], theme.ink, 1.5);
       const words = `${flight.name} ${clock(samples.time[first], false)}`.trim();
       const fits = px + 9 + textWidth(words, fontSize) < box.x + box.width;
-      pen.text(fits ? px + 9 : px - 9, py + 4, words, {...small(theme, fits ? 'start' : 'end'), fill: theme.ink});
+      let line = py + 4;
+      while (named.some(([x, y]) => Math.abs(x - px) < 100 && Math.abs(y - line) < 13)) line += 13;
+      named.push([px, line]);
+      pen.text(fits ? px + 9 : px - 9, line, words, {...small(theme, fits ? 'start' : 'end'), fill: theme.ink});
     }
   });
   // No barb so close to another that they meet.
@@ -158,4 +175,11 @@ function drawTrack(pen, width, height, item, samples, theme) {
 }
 
 pictures.track = drawTrack;
-heights.track = () => 430;
+// As high as the track asks for at this width.
+heights.track = (item, samples, width) => {
+  const {left, right, top, bottom} = trackMargins;
+  const {east, north} = placesOf(item, samples);
+  const shape = (north[1] - north[0]) / Math.max(east[1] - east[0], 1e-3);
+  const wanted = shape * (width - left - right - 2 * trackRoom) + top + bottom + 2 * trackRoom;
+  return Math.round(Math.min(Math.max(wanted, 220), Math.max(430, 0.5 * width)));
+};
