@@ -11,6 +11,7 @@ fails if PCOR_REQUIRE_CHROMIUM is set; without axe-core or Firefox its part of i
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -175,6 +176,33 @@ class Figures(unittest.TestCase):
             self.assertEqual(found.stderr.count("\n"), 1)
             self.assertFalse((FOLDER / "none.toml").exists() or (FOLDER / "figures2").exists())
 
+    def test_a_run_that_fails_later_leaves_what_was_there(self):
+        run(TOOL, "inspect", "one.nc", "--figures", "kept")
+        before = {each.name: each.read_bytes() for each in (FOLDER / "kept").iterdir()}
+        # The folder of the table goes while figures are drawn, so that it cannot be written.
+        gone = FOLDER / "gone"
+        slow = FOLDER / "removes"
+        slow.write_text(f"#!/bin/sh\nrm -rf '{gone}'\nexec '{CHROMIUM}' \"$@\"\n")
+        slow.chmod(0o755)
+        for folder in ("kept", "new/of/new"):
+            gone.mkdir()
+            words = [TOOL, "inspect", "one.nc", "--quiet", "--json", "gone/out.json", "--figures", folder]
+            found = subprocess.run(words, cwd=FOLDER, env={**os.environ, "CHROMIUM": str(slow)}, capture_output=True, text=True)
+            self.assertEqual(found.returncode, 1, found.stderr)
+        self.assertEqual({each.name: each.read_bytes() for each in (FOLDER / "kept").iterdir()}, before)
+        self.assertFalse((FOLDER / "new").exists())
+
+    def test_the_folder_of_temporary_files_may_be_called_anything(self):
+        temporary = FOLDER / "it's my $HOME"
+        beside = FOLDER / "it's"
+        temporary.mkdir()
+        beside.mkdir()
+        found = subprocess.run([TOOL, "inspect", "one.nc", "--figures", "quoted", "--quiet"], cwd=FOLDER,
+                               env={**os.environ, "TMPDIR": str(temporary)}, capture_output=True, text=True)
+        self.assertEqual(found.returncode, 0, found.stderr)
+        self.assertEqual(list(temporary.iterdir()), [])
+        self.assertTrue(beside.exists())
+
     def test_a_stopped_run_leaves_nothing(self):
         temporary = FOLDER / "temporary"
         temporary.mkdir()
@@ -187,8 +215,9 @@ class Figures(unittest.TestCase):
         while not list(temporary.iterdir()) and end:
             end -= 1
             subprocess.run(["sleep", "0.1"], check=True)
+        self.assertGreater(end, 0, "the browser was not started")
         child.terminate()
-        child.wait()
+        self.assertEqual(child.wait(), -signal.SIGTERM)
         subprocess.run(["sleep", "3"], check=True)
         self.assertEqual(list(temporary.iterdir()), [])
         self.assertFalse((FOLDER / "stopped").exists())

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <pcor/words/error.hpp>
 
 #include <filesystem>
 #include <fstream>
@@ -50,6 +51,61 @@ TEST(OutputsTogether, DoNotAppearAfterAFailure) {
   EXPECT_THAT(names_in(directory), IsEmpty());
   write(directory / "model");
   EXPECT_THAT(names_in(directory), UnorderedElementsAre("model"));
+}
+
+TEST(OutputsTogether, OneWithinAnotherIsAPartOfIt) {
+  const test::TemporaryDirectory directory;
+  OutputsTogether whole;
+  {
+    OutputsTogether part;
+    write(directory / "figure");
+    part.appear();
+  }
+  write(directory / "model");
+  EXPECT_FALSE(std::filesystem::exists(directory / "figure"));
+  whole.appear();
+  EXPECT_THAT(names_in(directory), UnorderedElementsAre("figure", "model"));
+}
+
+TEST(OutputsTogether, FoldersThatWereMadeGoAgainAfterAFailure) {
+  const test::TemporaryDirectory directory;
+  std::filesystem::create_directory(directory / "old");
+  {
+    OutputsTogether together;
+    together.make_folder(directory / "old");
+    together.make_folder(directory / "new" / "of" / "new");
+    write(directory / "new" / "of" / "new" / "figure");
+  }
+  EXPECT_THAT(names_in(directory), UnorderedElementsAre("old"));
+  OutputsTogether together;
+  together.make_folder(directory / "new" / "of");
+  write(directory / "new" / "of" / "figure");
+  together.appear();
+  EXPECT_TRUE(std::filesystem::exists(directory / "new" / "of" / "figure"));
+}
+
+TEST(OutputsTogether, AFolderCannotBeWhereAFileIs) {
+  const test::TemporaryDirectory directory;
+  write(directory / "file");
+  OutputsTogether together;
+  EXPECT_THAT([&] { together.make_folder(directory / "file" / "new"); },
+              testing::ThrowsMessage<Error>(testing::HasSubstr("cannot be a folder of outputs")));
+}
+
+TEST(OutputsTogether, EarlierFilesGoWhenTheNewOnesAreThere) {
+  const test::TemporaryDirectory directory;
+  write(directory / "earlier");
+  {
+    OutputsTogether together;
+    together.remove(directory / "earlier");
+    write(directory / "new");
+  }
+  EXPECT_THAT(names_in(directory), UnorderedElementsAre("earlier"));
+  OutputsTogether together;
+  together.remove(directory / "earlier");
+  write(directory / "new");
+  together.appear();
+  EXPECT_THAT(names_in(directory), UnorderedElementsAre("new"));
 }
 
 }  // namespace
