@@ -25,8 +25,9 @@ function dotsHeight(rows, series) {
   return 76 + rows * Math.max(30, 8 + markHeight * series);
 }
 
-// Rows {label, dots: [{value, error}, ...], text, tone, mark}: an axis below, a band of what is small, and lines.
-function drawRows(pen, width, height, {rows, series, lines = [], band = null, axis}, theme) {
+// Rows {label, dots: [{value, error}, ...], text, tone, mark}: an axis below that covers `reach`, or else all dots with
+// their bars, a band of what is small, and lines.
+function drawRows(pen, width, height, {rows, series, lines = [], band = null, axis, reach}, theme) {
   cover(pen, width, height, theme);
   const colours = series.map((label, s) => theme.series[s % theme.series.length]);
   const keys = series.length > 1
@@ -42,8 +43,8 @@ function drawRows(pen, width, height, {rows, series, lines = [], band = null, ax
   const right = below ? 14 : words + 20;
   const box = plotBox(width, height, {left, right, top});
   const finite = rows.flatMap(({dots}) => dots.filter(({value}) => Number.isFinite(value)));
-  const range = limits(finite.map(({value}) => value),
-    [...finite.flatMap(({value, error}) => [value - error, value + error]), ...lines.map(({value}) => value),
+  const range = limits(reach ?? finite.map(({value}) => value),
+    [...(reach ?? finite.flatMap(({value, error}) => [value - error, value + error])), ...lines.map(({value}) => value),
       ...(band ? [band.from, band.to] : [])].filter(Number.isFinite));
   if (range.from > 0 && range.from < 0.5 * range.to) range.from = 0;
   const x = scale(range.from, range.to, box.x, box.x + box.width);
@@ -123,19 +124,25 @@ function drawRegimes(pen, width, height, item, samples, theme) {
   const columns = columnsOf(samples, item.columns);
   const names = [...samples.regimes.keys()];
   const all = [...names.map((name) => [name, samples.regimes.get(name)]), ['All', samples.every]];
+  const scatter = ({mean, rms}) => Math.sqrt(Math.max(rms * rms - mean * mean, 0));
+  // That of all samples, twice as far as they scatter, so that the axis stays where some are selected.
+  const reach = all.flatMap(([, inside]) => columns.flatMap((column) => {
+    const found = statistics(column.values, samples.indices([column], inside));
+    return [found.mean - 2 * scatter(found), found.mean + 2 * scatter(found)];
+  })).filter(Number.isFinite);
   const rows = all.map(([label, inside]) => {
     const found = columns.map((column) =>
       statistics(column.values, samples.indices([column], samples.selected.map((one, i) => one & inside[i]))));
     return {
       label,
       mark: names.includes(label) ? regimeMark(label, names, theme) : null,
-      dots: found.map(({mean, rms}) => ({value: mean, error: Math.sqrt(Math.max(rms * rms - mean * mean, 0))})),
+      dots: found.map((one) => ({value: one.mean, error: scatter(one)})),
       text: `rms ${found.map(({rms}) => number(rms, 1e-3)).join(' → ')}`,
       found,
     };
   });
   const {box} = drawRows(pen, width, height,
-    {rows, series: columns.map(({title}) => title), axis: sharedLabel(columns, item.axis)}, theme);
+    {rows, series: columns.map(({title}) => title), axis: sharedLabel(columns, item.axis), reach}, theme);
   return {
     points: columns.reduce((sum, column) => sum + samples.indices([column]).length, 0),
     plot: box,

@@ -277,7 +277,7 @@ class WhatIf {
   // By how much chi2 falls from the model fitted again to what is shown now.
   get fallOfNow() {
     const {weights, squares, variance} = this.now;
-    return (this.fit.fit([], new Map(), true, weights).squares - squares) / variance;
+    return (this.fit.fit([], new Map(), this.own, weights).squares - squares) / variance;
   }
 
   showFigures() {
@@ -320,7 +320,7 @@ class WhatIf {
     band.hidden = !(error > 0);
     band.style.left = this.place(estimate - error, from, to);
     band.style.right = `calc(100% - ${this.place(estimate + error, from, to)})`;
-    told.textContent = error > 0 ? withError(estimate, error) : 'at its bound';
+    told.textContent = error > 0 ? withError(estimate, error) : this.fit.isAtBound(c, values) ? 'at its bound' : 'not told from the others';
     told.title = 'What the fit finds, with its standard error';
     fitted.hidden = !byHand;
   }
@@ -380,7 +380,7 @@ class WhatIf {
     const {fit, item, nothing} = this;
     const changes = this.pair.map((e, side) => {
       this.selects[side].value = e;
-      const {values} = fit.fit([e], this.byHand);
+      const {values} = fit.fit([e]);
       const change = values.map((value, c) => value - nothing.values[c]);
       this.takenOff(change, this.sides[side].values);
       const column = this.sides[side];
@@ -437,7 +437,7 @@ class WhatIf {
     for (const e of this.on)
       for (const c of this.fit.coefficientsOf(e)) {
         const value = state?.by?.[`${item.effects[e].id}.${item.coefficients[c].name}`];
-        if (Number.isFinite(value)) this.byHand.set(c, value);
+        if (Number.isFinite(value)) this.byHand.set(c, this.fit.possible(c, value));
       }
     this.own = state?.own !== false;
     const pair = known(state?.pair);

@@ -139,6 +139,14 @@ class WhatIfFit {
 
   greatest(c) { return (this.coefficients[c].greatest ?? Infinity) - this.coefficients[c].start; }
 
+  isAtBound(c, values) { return values[c] <= this.least(c) || values[c] >= this.greatest(c); }
+
+  // A value of a coefficient, or the bound of physics that it is beyond.
+  possible(c, value) {
+    const {least, greatest} = this.coefficients[c];
+    return Math.min(Math.max(value, least ?? -Infinity), greatest ?? Infinity);
+  }
+
   told(values, free, factor, weights) {
     const squares = squaresLeft(weights.whole, values);
     const variance = weights.inflation * squares / Math.max(weights.whole.samples - free.length, 1);
@@ -150,6 +158,7 @@ class WhatIfFit {
   // The rms on what took no part: on what is held out, else on parts of the flights left out in turn.
   heldOutRms({values, free, weights}) {
     if (this.heldOut) return rmsLeft(this.heldOut, values);
+    if (this.alike.filter(({samples}) => samples).length < 2) return NaN;  // what is left out would be all
     let squares = 0, samples = 0;
     weights.parts.forEach((part, k) => {
       if (!this.alike[k].samples) return;
