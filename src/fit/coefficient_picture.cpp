@@ -26,16 +26,17 @@ std::optional<DotPanel> coefficient_picture(const std::vector<FittedParameter>& 
   for (const FittedParameter& p : parameters) {
     if (!p.fitted || !std::isfinite(p.value)) continue;
     const double percent = 100.0 / std::abs(p.start);
-    const bool compares = std::isfinite(percent);  // with a value that was there and not zero
+    const bool is_told = std::isfinite(p.standard_error);
+    // With a value that was there, and that is more than the error: a change from next to nothing is no part.
+    const bool compares = std::isfinite(percent) && !(is_told && std::abs(p.start) < p.standard_error);
+    const std::string error = is_told ? fmt::format(" ± {:.2g}", p.standard_error) : "";
     const std::string unit = p.unit.empty() || p.unit == "1" ? "" : " " + p.unit;
     panel.rows.push_back(
         {p.name,
-         {compares ? ReportDot{percent * (p.value - p.start),
-                               std::isfinite(p.standard_error) ? percent * p.standard_error : 0.0}
+         {compares ? ReportDot{percent * (p.value - p.start), is_told ? percent * p.standard_error : 0.0}
                    : ReportDot{nan, 0.0}},
-         fmt::format("{} → {:.4g} ± {:.2g}{}",
-                     std::isfinite(p.start) ? fmt::format("{:.4g}", p.start) : "new", p.value,
-                     p.standard_error, unit)});
+         fmt::format("{} → {:.4g}{}{}{}", std::isfinite(p.start) ? fmt::format("{:.4g}", p.start) : "new",
+                     p.value, error, unit, is_told ? "" : ", error unknown")});
   }
   if (std::none_of(panel.rows.begin(), panel.rows.end(),
                    [](const ReportDotRow& row) { return std::isfinite(row.dots.front().value); }))
