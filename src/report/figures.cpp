@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <optional>
 #include <regex>
 #include <sstream>
 #include <string>
@@ -207,7 +208,7 @@ void require_figures(const fs::path& folder) {
 std::vector<std::string> write_figures(const Report& report, const fs::path& folder, FigureUse use) {
   const std::string program = browser();
   const Files files = files_of(exported(program, report_html(report), use));
-  if (files.size() < 2) throw Error(fmt::format("figures: {} shows no pictures of this report", program));
+  if (files.empty()) throw Error(fmt::format("figures: {} shows no pictures of this report", program));
   const Folder there(folder);
   std::vector<std::string> names;
   for (const auto& [name, bytes] : files) {
@@ -215,12 +216,15 @@ std::vector<std::string> write_figures(const Report& report, const fs::path& fol
     names.push_back(name);
   }
   const std::vector<fs::path> earlier = earlier_pictures(folder);
+  std::optional<OutputsTogether> together;  // with the other results of a command, or by themselves
+  if (!OutputsTogether::is_there()) together.emplace();
   for (const auto& [name, bytes] : files) write_file(folder / name, bytes);
   for (const fs::path& path : earlier) {
     std::error_code ignored;
     if (std::find(names.begin(), names.end(), path.filename().string()) == names.end())
       fs::remove(path, ignored);
   }
+  if (together) together->appear();
   return names;
 }
 

@@ -209,7 +209,7 @@ class ReportPage {
       `${panel.fileName}.png ${panel.png().split(',')[1]}`,
     ]);
     const captions = this.panels.map((panel) => `${panel.fileName}: ${panel.item.title}. ${panel.description}\n`);
-    return [...pictures, `captions.txt ${base64(captions.join('\n'))}`].join('\n');
+    return [...pictures, `captions.txt ${base64(captions.join('\n') || 'This report has no pictures.\n')}`].join('\n');
   }
 }
 

@@ -210,6 +210,8 @@ OutputsTogether::~OutputsTogether() {
   }
 }
 
+bool OutputsTogether::is_there() { return outputs_together != nullptr; }
+
 fs::path readable_output(const fs::path& target) {
   if (outputs_together != nullptr) {
     for (const OutputsTogether::Waiting& file : outputs_together->waiting_)

@@ -42,6 +42,9 @@ class OutputsTogether {
   OutputsTogether(const OutputsTogether&) = delete;
   OutputsTogether& operator=(const OutputsTogether&) = delete;
 
+  /// Whether one lives.
+  static bool is_there();
+
   /// @throws Error if a file cannot be put in its place; those before it are.
   void appear();
 
