@@ -206,7 +206,7 @@ void require_figures(const fs::path& folder) {
 std::vector<std::string> write_figures(const Report& report, const fs::path& folder, FigureUse use) {
   const std::string program = browser();
   const Files files = files_of(exported(program, report_html(report), use));
-  if (files.size() < 2) throw Error(fmt::format("figures: {} shows no pictures of this report", program));
+  if (files.empty()) throw Error(fmt::format("figures: {} shows no pictures of this report", program));
   std::vector<std::string> names;
   for (const auto& [name, bytes] : files) {
     if (bytes.empty()) throw Error(fmt::format("figures: {} drew nothing for {}", program, name));

@@ -215,7 +215,7 @@ class ReportPage {
       `${panel.fileName}.png ${panel.png().split(',')[1]}`,
     ]);
     const captions = this.figures.map((panel) => `${panel.fileName}: ${panel.item.title}. ${panel.description}\n`);
-    return [...pictures, `captions.txt ${base64(captions.join('\n'))}`].join('\n');
+    return [...pictures, `captions.txt ${base64(captions.join('\n') || 'This report has no pictures.\n')}`].join('\n');
   }
 }
 

@@ -262,7 +262,8 @@ OutputsTogether::~OutputsTogether() {
 void OutputsTogether::make_folder(const fs::path& folder) {
   std::error_code code;
   if (fs::is_directory(folder, code)) return;
-  const fs::path path = fs::absolute(folder, code).lexically_normal();
+  fs::path path = fs::absolute(folder, code).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();  // of "figures/"
   if (path.has_relative_path() && !fs::is_directory(path.parent_path(), code))
     make_folder(path.parent_path());
   list_as_unfinished(path.string());

@@ -23,7 +23,7 @@ void require_figures(const std::filesystem::path& folder);
 /// folder's captions name from before go, other files stay.
 ///
 /// @returns the names of the files
-/// @throws Error as `report_html` and `require_figures`, if the report has no pictures, or if the browser or
+/// @throws Error as `report_html` and `require_figures`, or if the browser or
 /// the writing fails.
 std::vector<std::string> write_figures(const Report& report, const std::filesystem::path& folder,
                                        FigureUse use = FigureUse::page);
