@@ -316,7 +316,7 @@ class WhatIf {
     const value = byHand ? this.byHand.get(c) : estimate;
     range.value = Math.round((value - from) / (to - from) * sliderSteps);
     range.setAttribute('aria-valuetext', `${number(value, step)} ${unit === '1' ? '' : unit}`.trim());
-    if (document.activeElement !== input || Number(input.value) !== value) input.value = Number(value.toPrecision(6));
+    if (document.activeElement !== input || Number(input.value) !== value) input.value = Number(value.toPrecision(5));
     band.hidden = !(error > 0);
     band.style.left = this.place(estimate - error, from, to);
     band.style.right = `calc(100% - ${this.place(estimate + error, from, to)})`;
