@@ -457,12 +457,13 @@ TEST(ImprovementReport, BeginsWithTheModelAsItCameAndShowsHeldOutFlights) {
   rung.share = 0.4;
   rung.spread = 0.12;
   for (const FlightDiagnosis& one : made.steps[0].diagnosis.flights) {
-    if (one.samples) made.flights.push_back({one.samples, false, one.before, one.before, one.before});
+    if (one.samples)
+      made.flights.push_back({one.samples, one.before.size(), 0, one.before, one.before, one.before});
   }
   auto later = std::make_shared<FlightSamples>(*made.flights.front().samples);
   later->name = "later.nc";
-  made.flights.push_back(
-      {later, true, made.flights.front().given, made.flights.front().given, made.flights.front().given});
+  const std::vector<double> residual = made.flights.front().given;
+  made.flights.push_back({later, 0, residual.size(), residual, residual, residual});
   const Report report = improvement_report(made, model());
   const auto* ladder = item<DotPanel>(report, "The ladder");
   ASSERT_NE(ladder, nullptr);
@@ -478,6 +479,24 @@ TEST(ImprovementReport, BeginsWithTheModelAsItCameAndShowsHeldOutFlights) {
   EXPECT_EQ(time->caption, "Held out: later.nc.");
   EXPECT_THAT(time->columns, ElementsAre("ladder-given", "ladder-refitted", "ladder-best"));
   words_of(report);
+}
+
+TEST(ImprovementReport, TellsAPartThatWasHeldOutFromAFlight) {
+  Improvement made = improvement();
+  made.holdout_is_flights = true;
+  for (const FlightDiagnosis& one : made.steps[0].diagnosis.flights) {
+    const std::size_t half = one.before.size() / 2;
+    if (one.samples)
+      made.flights.push_back(
+          {one.samples, half, one.before.size() - half, one.before, one.before, one.before});
+  }
+  const std::string name = made.flights.front().samples->name;
+  const Report report = improvement_report(made, model());
+  EXPECT_THAT(report.flight_names, Not(Contains(HasSubstr("held out"))));
+  const auto* ladder = item<DotPanel>(report, "The ladder");
+  ASSERT_NE(ladder, nullptr);
+  EXPECT_THAT(ladder->series.back(), HasSubstr("the last part of " + name));
+  EXPECT_GT(ladder->rows[0].dots[0].error, 0.0);
 }
 
 TEST(ImprovementReport, HasAPageAndPicturesForEveryRung) {
