@@ -60,7 +60,7 @@ class WhatIfFit {
   /// Of all columns.
   Eigen::MatrixXd information() const;
 
-  /// Changes of all coefficients from the start, and their covariance.
+  /// Changes of all coefficients from the start, and their standard errors.
   struct Fitted {
     Eigen::VectorXd values;
     Eigen::VectorXd errors;

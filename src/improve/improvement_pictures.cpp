@@ -70,7 +70,8 @@ DotPanel ladder_picture(const Improvement& improvement) {
   panel.caption =
       "Rms residual after each effect that was added. Bars are standard errors, as many independent samples "
       "as the "
-      "memory of the residual leaves; the dashed line is the noise, below which no model comes.";
+      "memory of the residual leaves; the dashed line is the noise, below which no model comes. "
+      "All are of the same samples: a step may be sure though bars overlap.";
   panel.axis = "rms residual";
   panel.unit = "hPa";
   panel.series = {"in the fit", held_out_series(improvement)};

@@ -3,16 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 namespace pcor {
 namespace {
 
-/// The effect of the best model that a rung added.
-const ModelEffect& effect_of(const Improvement& improvement, const ImproveStep& step) {
-  const std::vector<ModelEffect>& effects = improvement.fit.model.model.effects;
-  return *std::find_if(effects.begin(), effects.end(),
-                       [&step](const ModelEffect& effect) { return effect.id == step.added; });
+/// The effect of the best model that a rung added; nothing where that model lacks it.
+std::optional<ModelEffect> effect_of(const Improvement& improvement, const ImproveStep& step) {
+  for (const ModelEffect& effect : improvement.fit.model.model.effects) {
+    if (effect.id == step.added) return effect;
+  }
+  return std::nullopt;
 }
 
 /// The finding that a rung follows; null where it follows none.
@@ -39,9 +41,8 @@ WhatIf what_if(const std::vector<std::filesystem::path>& flights, const Improvem
   std::vector<WhatIfCandidate> rivals;
   for (std::size_t rung = 1; rung < improvement.steps.size(); ++rung) {
     const ImproveStep& step = improvement.steps[rung];
-    const ModelEffect& effect = effect_of(improvement, step);
     const Finding* const finding = finding_of(improvement, rung);
-    candidates.push_back({step.added, fmt::format("rung {}", rung), effect,
+    candidates.push_back({step.added, fmt::format("rung {}", rung), effect_of(improvement, step),
                           finding != nullptr && finding->is_alike, step.added});
     if (finding == nullptr) continue;
     for (const Alias& alias : finding->aliases)
@@ -59,7 +60,9 @@ WhatIf what_if(const std::vector<std::filesystem::path>& flights, const Improvem
                                      [&rival](const WhatIfCandidate& each) { return each.id == rival.id; });
     if (is_new && candidates.size() < most) candidates.push_back(std::move(rival));
   }
-  return what_if(flights, improvement.refitted, references, candidates, with);
+  WhatIf tried = what_if(flights, improvement.refitted, references, candidates, with);
+  tried.panel.start = "refitted";
+  return tried;
 }
 
 }  // namespace pcor

@@ -6,7 +6,7 @@ namespace pcor::internal {
 
 /// How much of a series lies at which period.
 struct OctaveSpectrum {
-  std::vector<double> period{};  ///< s, longest first: the middles of bands of a third of an octave or more
+  std::vector<double> period{};  ///< s, longest first: the middles of bands of a fifth of an octave or more
   std::vector<double> rms{};     ///< of the part within an octave about the period, in the unit of the series
   std::vector<double> error{};   ///< its standard error
 };

@@ -310,6 +310,7 @@ struct ItemJson {
       separations.push_back({{"effect", each.effect}, {"rival", each.rival}, {"text", each.text}});
     json item{{"title", panel.title},
               {"residual", panel.residual},
+              {"start", panel.start},
               {"coefficients", std::move(coefficients)},
               {"own", panel.own},
               {"effects", std::move(effects)},

@@ -210,10 +210,10 @@ class WhatIf {
     this.report.tables.push({draw: () => this.fillPairTable(), table: this.pairTable});
   }
 
-  // The ladder: with the coefficients as given, with the model's own fitted, and with one effect after another.
+  // The ladder: with the coefficients of the start, with the model's own fitted, and with one effect after another.
   rungs() {
     const {fit, item} = this;
-    const bars = [{label: 'as given', value: fit.heldOutRms(fit.fit([], new Map(), false))}];
+    const bars = [{label: item.start, value: fit.heldOutRms(fit.fit([], new Map(), false))}];
     const on = [...this.on];
     for (let rung = this.own ? 0 : 1; rung <= on.length; ++rung)
       bars.push({label: rung ? `+ ${item.effects[on[rung - 1]].id}` : 'fitted again',
@@ -286,7 +286,7 @@ class WhatIf {
     const three = (words, of, digits = 4) => [words, ...[given, nothing, now].map((each, i) =>
       i === 2 && !this.isChanged ? '–' : number(of(each), 10 ** -digits))];
     fillTable(this.figures, {
-      headers: ['hPa', 'as given', 'fitted again', 'what if'],
+      headers: ['hPa', item.start, 'fitted again', 'what if'],
       rows: [three('rms', ({rms}) => rms), three(this.heldOutWords, (each) => fit.heldOutRms(each)),
              ['noise', '', '', number(item.noise, 1e-4)],
              ['χ² falls by', '', '', this.isChanged ? number(this.fallOfNow, 0.1) : '–']],

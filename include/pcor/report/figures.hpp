@@ -9,7 +9,7 @@
 namespace pcor {
 
 /// What figures are for, by which they have their width: a page of paper of 180 mm, a column of 86 mm, or a
-/// slide of 1280 dots. Letters have 8.6 points on paper.
+/// slide of 1280 dots. Letters have at least 8 points on paper.
 enum class FigureUse { page, column, slide };
 
 /// Makes sure, before the work, that figures can be drawn and put into a folder.

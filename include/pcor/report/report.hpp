@@ -256,6 +256,7 @@ struct WhatIfPanel {
   std::string title;
   std::string caption;
   std::string residual;                         ///< the column that it starts from
+  std::string start = "as given";               ///< what the model is called with which it starts
   std::vector<WhatIfCoefficient> coefficients;  ///< the model's own, then those of the effects
   std::size_t own = 0;                          ///< how many are the model's own
   std::vector<WhatIfEffect> effects;
