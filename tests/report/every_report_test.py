@@ -3,8 +3,9 @@
 
     every_report_test.py TOOL SOURCE_DIRECTORY BUILD_DIRECTORY
 
-Each page tests itself (each panel has data, a text alternative and numbers), wide and narrow, and axe-core, which is
-fetched from npm into the build directory, finds no violation. Without Chromium the test is skipped (status 77), or
+Each picture has a text alternative and numbers. The pages of improve and check, or of all commands where
+PCOR_EVERY_REPORT is set, test themselves, wide and narrow, and axe-core, which is fetched from npm into the build
+directory, finds no violation in them. Without Chromium the test is skipped (status 77), or
 fails if PCOR_REQUIRE_CHROMIUM is set; without axe-core or Firefox its part of it is.
 """
 
@@ -24,8 +25,8 @@ from firefox import Firefox
 TOOL, SOURCE, BUILD = (Path(word).resolve() for word in sys.argv[1:4])
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 FIREFOX = shutil.which("firefox-esr") or shutil.which("firefox")
-# Those with most kinds of pictures, which stand for all where each takes long.
-RICHEST = ("improve", "check")
+# What takes long is for those with most kinds of pictures, and for all of them in the long tests.
+EVERY_REPORT = os.environ.get("PCOR_EVERY_REPORT")
 AXE_VERSION = "4.14.1"
 MADE = tempfile.TemporaryDirectory()
 FOLDER = Path(MADE.name)
@@ -40,6 +41,7 @@ COMMANDS = {
     "process": ("three.nc", "-m", "fitted.toml", "-o", "corrected.nc"),
     "temperature": ("climbs.nc", "-m", "model.toml", "-o", "calibrated.toml", "--force"),
 }
+LOOKED_AT = COMMANDS if EVERY_REPORT else ("improve", "check")
 
 
 def run(*words, **more):
@@ -88,8 +90,8 @@ class EveryReport(unittest.TestCase):
         self.browser.ask("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
 
     def test_every_panel_has_data_wide_and_narrow(self):
-        for width, commands in ((1400, COMMANDS), (420, RICHEST)):
-            for command in commands:
+        for command in LOOKED_AT:
+            for width in (1400, 420):
                 with self.subTest(command=command, width=width):
                     self.resize(width)
                     self.browser.errors.clear()
@@ -104,7 +106,7 @@ class EveryReport(unittest.TestCase):
         if not axe:
             self.skipTest("axe-core cannot be had from npm")
         self.resize(1400)
-        for command in COMMANDS:
+        for command in LOOKED_AT:
             for theme in ("light", "dark"):
                 with self.subTest(command=command, theme=theme):
                     self.browser.open(f"{page(command)}#{theme}")
@@ -136,7 +138,7 @@ class InFirefox(unittest.TestCase):
         cls.browser.close()
 
     def test_every_panel_has_data(self):
-        for command in RICHEST:
+        for command in LOOKED_AT:
             with self.subTest(command=command):
                 self.browser.open(page(command) + "#selftest")
                 result = json.loads(self.browser.value("document.getElementById('selftest').textContent"))
