@@ -78,7 +78,7 @@ ComparisonPanels::ComparisonPanels(const Comparison& comparison) : comparison_(c
     std::vector<double> values = joined(comparison_, series);
     if (!has_value(values)) return;
     report_.columns.push_back({name, title, unit, std::move(values)});
-    variables_.push_back(name);
+    variables_.emplace_back(name);
   };
   using F = FlightResiduals;
   using V = std::vector<double>;
