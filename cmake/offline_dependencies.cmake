@@ -4,6 +4,7 @@ find_package(PkgConfig REQUIRED)
 pkg_check_modules(netcdf_cxx4 REQUIRED IMPORTED_TARGET netcdf-cxx4)
 pkg_check_modules(netcdf REQUIRED IMPORTED_TARGET netcdf)
 find_package(nlohmann_json REQUIRED)
+find_package(cereal REQUIRED) # what processes of a team send each other
 find_package(Boost REQUIRED) # headers: the distributions of Boost.Math, the random numbers of Boost.Random
 find_package(OpenSSL REQUIRED) # libcrypto: the SHA-256 of what an output was made of
 find_package(Eigen3 REQUIRED)

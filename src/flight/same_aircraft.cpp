@@ -1,6 +1,9 @@
 #include <pcor/flight/same_aircraft.hpp>
 
 #include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <set>
 
 #include <pcor/words/error.hpp>
 
@@ -19,15 +22,15 @@ void require_one_aircraft(const std::vector<std::pair<std::string, std::string>>
 }
 
 void require_each_once(const std::vector<std::filesystem::path>& paths) {
-  for (std::size_t i = 0; i < paths.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      std::error_code ignored;
-      if (std::filesystem::equivalent(paths[i], paths[j], ignored)) {
-        throw Error(fmt::format(
-            "{} is given twice: its samples are not new ones; give every flight once, to the fit or to "
-            "--holdout",
-            paths[i].string()));
-      }
+  std::set<std::pair<dev_t, ino_t>> files;
+  for (const std::filesystem::path& path : paths) {
+    struct stat status {};
+    if (stat(path.c_str(), &status) != 0) continue;  // for who opens it to say
+    if (!files.emplace(status.st_dev, status.st_ino).second) {
+      throw Error(fmt::format(
+          "{} is given twice: its samples are not new ones; give every flight once, to the fit or to "
+          "--holdout",
+          path.string()));
     }
   }
 }

@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
-#include <optional>
 #include <string_view>
 
 #include <pcor/flight/flight.hpp>
@@ -10,15 +8,13 @@
 #include <pcor/words/error.hpp>
 #include "residuals/ground_velocity.hpp"
 #include "roles/recorded_series.hpp"
+#include "team/flight_share.hpp"
 
 namespace pcor {
 
 using namespace internal;
 
 namespace {
-
-/// Why some flight does not allow a reference; empty where all do.
-using WhyNot = std::function<std::string(const Flight& flight)>;
 
 bool names_temperature(const ModelFile& model) {
   return model.variables.count(Quantity::recovery_temperature) != 0 ||
@@ -46,75 +42,81 @@ std::string why_no_wind(const Flight& flight, const ModelFile& model) {
   return "";
 }
 
-/// A reference that may stand beside LAMS, and why not: the first flight that does not allow it.
-struct Candidate {
-  std::string text;
-  std::function<std::string(const Flight& flight)> why_not;
-  std::string reason{};
+/// What a flight allows beside LAMS, and why not. Empty reasons: it does.
+struct Allowed {
+  bool laser = false;
+  std::vector<std::pair<std::string, std::string>> pairs{};  ///< of pressures, in the order of preference
+  std::string no_height{};
+  std::string no_wind{};
 
-  void look_at(const Flight& flight) {
-    if (!reason.empty()) return;
-    const std::string why = why_not(flight);
-    if (!why.empty()) reason = fmt::format("{}: {} in {}", text, why, flight.path().filename().string());
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(laser, pairs, no_height, no_wind);
   }
 };
 
-/// The choice where the user names none: LAMS, and what else all flights allow. They are looked at one after
-/// the other, however many there are.
-class Choice {
- public:
-  explicit Choice(const ModelFile& model) : model_(model) { use("lams"); }
-
-  void look_at(const Flight& flight) {
-    has_laser_ = has_laser_ && flight.has(model_.variables.at(Quantity::lams_airspeed));
-    if (!pairs_) pairs_ = family_of(model_, flight).measured;
-    const auto unfit = [&](const PressurePair& pair) {
-      return pair.static_pressure == filtered_and_late || !has_other_pair(flight, model_, pair);
-    };
-    pairs_->erase(std::remove_if(pairs_->begin(), pairs_->end(), unfit), pairs_->end());
-    for (Candidate* const each : {&height_, &wind_}) each->look_at(flight);
+Allowed allowed_by(const Flight& flight, const ModelFile& model) {
+  constexpr std::string_view filtered_and_late = "PS_A";  // of the avionics
+  Allowed allowed;
+  allowed.laser = flight.has(model.variables.at(Quantity::lams_airspeed));
+  for (const PressurePair& pair : family_of(model, flight).measured) {
+    if (pair.static_pressure != filtered_and_late && has_other_pair(flight, model, pair))
+      allowed.pairs.emplace_back(pair.static_pressure, pair.dynamic_pressure);
   }
+  const auto in_flight = [&flight](const std::string& why) {
+    return why.empty() ? why : fmt::format("{} in {}", why, flight.path().filename().string());
+  };
+  allowed.no_height = in_flight(why_no_height(flight, model));
+  allowed.no_wind = in_flight(why_no_wind(flight, model));
+  return allowed;
+}
 
-  ChosenReferences finish() {
-    if (!has_laser_ || !pairs_) return std::move(chosen_);
-    if (pairs_->empty()) {
-      chosen_.not_used.emplace_back("total: there is no second pair of pressures of a usual name");
-    } else {
-      use("total:" + pairs_->front().static_pressure + "+" + pairs_->front().dynamic_pressure);
-    }
-    for (const Candidate* const each : {&height_, &wind_}) {
-      if (each->reason.empty()) {
-        use(each->text);
-      } else {
-        chosen_.not_used.push_back(each->reason);
-      }
-    }
-    return std::move(chosen_);
+/// What all flights allow; of what they do not, why the first does not.
+Allowed allowed_by_all(const std::vector<Allowed>& flights) {
+  Allowed all = flights.front();
+  for (const Allowed& flight : flights) {
+    all.laser = all.laser && flight.laser;
+    all.pairs.erase(std::remove_if(all.pairs.begin(), all.pairs.end(),
+                                   [&](const auto& pair) {
+                                     return std::find(flight.pairs.begin(), flight.pairs.end(), pair) ==
+                                            flight.pairs.end();
+                                   }),
+                    all.pairs.end());
+    if (all.no_height.empty()) all.no_height = flight.no_height;
+    if (all.no_wind.empty()) all.no_wind = flight.no_wind;
   }
-
- private:
-  static constexpr std::string_view filtered_and_late = "PS_A";  // of the avionics
-
-  void use(const std::string& text) { chosen_.used.push_back(read_reference(text, model_)); }
-
-  const ModelFile& model_;
-  ChosenReferences chosen_;
-  bool has_laser_ = true;
-  std::optional<std::vector<PressurePair>> pairs_;  // that all flights have
-  Candidate height_{"height", [this](const Flight& flight) { return why_no_height(flight, model_); }};
-  Candidate wind_{"wind", [this](const Flight& flight) { return why_no_wind(flight, model_); }};
-};
+  return all;
+}
 
 }  // namespace
 
 ChosenReferences read_references(const std::vector<std::string>& texts, const ModelFile& model,
-                                 const std::vector<std::filesystem::path>& flights) {
-  ChosenReferences named;
-  for (const std::string& text : texts) named.used.push_back(read_reference(text, model));
-  if (!texts.empty()) return named;
-  Choice choice(model);
-  for (const std::filesystem::path& flight : flights) choice.look_at(Flight(flight));
-  return choice.finish();
+                                 const std::vector<std::filesystem::path>& flights, Team& team) {
+  ChosenReferences chosen;
+  const auto use = [&](const std::string& text) { chosen.used.push_back(read_reference(text, model)); };
+  for (const std::string& text : texts) use(text);
+  if (!texts.empty()) return chosen;
+  use("lams");
+  if (flights.empty()) return chosen;
+  const FlightShare share = share_of_flights(team, flights);
+  const Allowed allowed = allowed_by_all(share.of_each_flight<Allowed>(
+      [&](std::size_t number) { return allowed_by(Flight(flights[number]), model); }));
+  if (!allowed.laser) return chosen;
+  if (allowed.pairs.empty()) {
+    chosen.not_used.emplace_back("total: there is no second pair of pressures of a usual name");
+  } else {
+    use("total:" + allowed.pairs.front().first + "+" + allowed.pairs.front().second);
+  }
+  const auto use_unless = [&](const std::string& text, const std::string& why_not) {
+    if (why_not.empty()) {
+      use(text);
+    } else {
+      chosen.not_used.push_back(fmt::format("{}: {}", text, why_not));
+    }
+  };
+  use_unless("height", allowed.no_height);
+  use_unless("wind", allowed.no_wind);
+  return chosen;
 }
 
 }  // namespace pcor

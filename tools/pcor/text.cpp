@@ -11,6 +11,7 @@
 #include <utility>
 
 #include <pcor/words/message.hpp>
+#include "team.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -152,6 +153,7 @@ std::string coloured(std::string line) {
 }  // namespace
 
 void tell(const std::string& message) {
+  if (!is_speaker()) return;
   const std::string line = message_line(message) + "\n";
   std::fwrite(line.data(), 1, line.size(), stderr);
 }

@@ -29,7 +29,8 @@ void say(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   say_text(fmt::format(format, std::forward<Arguments>(arguments)...));
 }
 
-/// Says on standard error, in one line, what is wrong. Where that takes nothing, it is not said.
+/// Says on standard error, in one line, what is wrong; of a team the first member does. Where standard error
+/// takes nothing, it is not said.
 void tell(const std::string& message);
 
 /// Prints what `say` keeps of a line that has no end yet.

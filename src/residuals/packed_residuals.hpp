@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cereal/types/bitset.hpp>
+#include <memory>
+
+#include <pcor/residuals/samples.hpp>
+#include <pcor/residuals/statistics.hpp>
+#include "residuals/residual_sums.hpp"
+#include "team/packed.hpp"
+
+/// How what is known of flights is packed for the other members of a team.
+namespace pcor {
+
+template <class Archive>
+void serialize(Archive& archive, Statistics& statistics) {
+  archive(statistics.samples, statistics.bias, statistics.bias_error, statistics.rms, statistics.noise_rms);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Interval& interval) {
+  archive(interval.regime, interval.begin, interval.end, interval.pair, interval.note, interval.by_user);
+}
+
+template <class Archive>
+void serialize(Archive& archive, FlightMotion& motion) {
+  archive(motion.time, motion.airspeed, motion.altitude, motion.vertical_speed, motion.roll, motion.pitch,
+          motion.heading, motion.attack, motion.sideslip, motion.ground_speed, motion.ground_track,
+          motion.liquid_water);
+}
+
+template <class Archive>
+void serialize(Archive& archive, FrozenSpan& span) {
+  archive(span.quantity, span.first, span.count);
+}
+
+template <class Archive>
+void serialize(Archive& archive, MovingColumn& column) {
+  archive(column.quantity, column.effect, column.parameter, column.at, column.slope);
+}
+
+template <class Archive>
+void serialize(Archive& archive, FastSeries& series) {
+  archive(series.values, series.in_record, series.shortest_period);
+}
+
+template <class Archive>
+void serialize(Archive& archive, ModelSamples& samples) {
+  archive(samples.roles, samples.columns, samples.variables, samples.frozen, samples.moving,
+          samples.along_beam);
+}
+
+template <class Archive>
+void serialize(Archive& archive, FlightSamples& samples) {
+  archive(samples.name, samples.aircraft, samples.step, samples.time, samples.latitude, samples.longitude,
+          samples.motion, samples.flaps, samples.flaps_variable, samples.flaps_by_lift, samples.intervals,
+          samples.model, samples.reference, samples.notes);
+}
+
+namespace internal {
+
+template <class Archive>
+void serialize(Archive& archive, ResidualSums& sums) {
+  archive(sums.samples, sums.sum, sums.squares, sums.noise_squares, sums.independent);
+}
+
+}  // namespace internal
+}  // namespace pcor
+
+namespace cereal {
+
+/// The samples of a flight that several may hold: each that gets them holds its own.
+template <class Archive>
+void save(Archive& archive, const std::shared_ptr<const pcor::FlightSamples>& samples) {
+  archive(const_cast<pcor::FlightSamples&>(*samples));
+}
+
+template <class Archive>
+void load(Archive& archive, std::shared_ptr<const pcor::FlightSamples>& samples) {
+  auto own = std::make_shared<pcor::FlightSamples>();
+  archive(*own);
+  samples = std::move(own);
+}
+
+}  // namespace cereal

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <pcor/team/team.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "team/packed.hpp"
+
+namespace pcor::internal {
+
+/// What one flight failed with.
+class FlightError : public Error {
+ public:
+  FlightError(const Error& error, std::size_t number) : Error(error), flight_(number) {}
+
+  std::size_t flight() const { return flight_; }  ///< its number
+
+ private:
+  std::size_t flight_;
+};
+
+/// Which flights of a list each member of a team owns: it alone reads them, and keeps what is kept of them.
+class FlightShare {
+ public:
+  /// All flights are of one member.
+  explicit FlightShare(std::size_t flights);
+
+  /// The longest first, each to the member that has least to read; as the first member sees the sizes.
+  /// @param sizes of the flights, in bytes or anything that their work is in proportion to
+  FlightShare(Team& team, const std::vector<std::uint64_t>& sizes);
+
+  std::size_t flights() const { return owner_.size(); }
+  bool owns(std::size_t flight) const { return owner_[flight] == team_->rank(); }
+  std::size_t own() const { return own_; }
+  Team& team() const { return *team_; }
+
+  /// What all flights are made to, in their order, on every member: one exchange.
+  /// @param visit gets the list of all parts, and sets those of own flights
+  /// @param state in which the members have to agree
+  /// @throws Error that of the first flight that failed, on any member
+  template <class Part, class Visit>
+  std::vector<Part> on_each_flight(const Visit& visit, std::uint64_t state = 0) const {
+    std::vector<Part> parts(flights());
+    try {
+      visit(parts);
+    } catch (const FlightError& error) {
+      team_->fail(error, error.flight() + 1);
+    } catch (const Error& error) {
+      team_->fail(error, 0);
+    }
+    if (team_->size() > 1) gather(parts, state);
+    return parts;
+  }
+
+  /// The same of one flight after another. @param make gives the part of a flight
+  template <class Part, class Make>
+  std::vector<Part> of_each_flight(const Make& make, std::uint64_t state = 0) const {
+    return on_each_flight<Part>(
+        [&](std::vector<Part>& parts) {
+          for (std::size_t flight = 0; flight < parts.size(); ++flight) {
+            if (!owns(flight)) continue;
+            try {
+              parts[flight] = make(flight);
+            } catch (const Error& error) {
+              throw FlightError(error, flight);
+            }
+          }
+        },
+        state);
+  }
+
+ private:
+  template <class Part>
+  void gather(std::vector<Part>& parts, std::uint64_t state) const {
+    std::vector<Part> own;
+    for (std::size_t flight = 0; flight < parts.size(); ++flight) {
+      if (owns(flight)) own.push_back(std::move(parts[flight]));
+    }
+    const std::vector<std::string> all = team_->gather(packed(own), state);
+    std::vector<std::vector<Part>> of_members;
+    for (const std::string& bytes : all) of_members.push_back(unpacked<std::vector<Part>>(bytes));
+    std::vector<std::size_t> next(of_members.size(), 0);
+    for (std::size_t flight = 0; flight < parts.size(); ++flight) {
+      const std::size_t owner = owner_[flight];
+      parts[flight] = std::move(of_members[owner].at(next[owner]++));
+    }
+  }
+
+  Team* team_;
+  std::vector<std::size_t> owner_;
+  std::size_t own_ = 0;
+};
+
+/// The flights of these files, by their sizes. A file that cannot be looked at is for its owner to tell of.
+FlightShare share_of_flights(Team& team, const std::vector<std::filesystem::path>& paths);
+
+}  // namespace pcor::internal

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <cereal/archives/binary.hpp>
+#include <cereal/types/array.hpp>
+#include <cereal/types/optional.hpp>
+#include <cereal/types/string.hpp>
+#include <cereal/types/utility.hpp>
+#include <cereal/types/vector.hpp>
+#include <sstream>
+#include <string>
+
+namespace cereal {
+
+/// Matrices and vectors, with their sizes.
+template <class Archive, int rows, int columns>
+void save(Archive& archive, const Eigen::Matrix<double, rows, columns>& matrix) {
+  archive(matrix.rows(), matrix.cols());
+  archive(binary_data(matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof(double)));
+}
+
+template <class Archive, int rows, int columns>
+void load(Archive& archive, Eigen::Matrix<double, rows, columns>& matrix) {
+  Eigen::Index height = 0;
+  Eigen::Index width = 0;
+  archive(height, width);
+  matrix.resize(height, width);
+  archive(binary_data(matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof(double)));
+}
+
+}  // namespace cereal
+
+namespace pcor::internal {
+
+/// A value as bytes, for a member of a team that runs the same program on a processor of the same kind.
+template <class Value>
+std::string packed(const Value& value) {
+  std::ostringstream stream;
+  cereal::BinaryOutputArchive archive(stream);
+  archive(value);
+  return stream.str();
+}
+
+template <class Value>
+Value unpacked(const std::string& bytes) {
+  std::istringstream stream(bytes);
+  Value value;
+  cereal::BinaryInputArchive archive(stream);
+  archive(value);
+  return value;
+}
+
+}  // namespace pcor::internal

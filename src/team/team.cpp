@@ -1,0 +1,127 @@
+#include <pcor/team/team.hpp>
+
+#include <algorithm>
+
+#include "team/packed.hpp"
+
+namespace pcor {
+
+using namespace internal;
+
+namespace internal {
+
+enum class Saying : std::uint8_t { part, failed, left };
+
+struct Message {
+  Saying saying = Saying::part;
+  std::uint64_t number = 0;  ///< of the exchanges of its member
+  std::uint64_t state = 0;
+  std::string part{};
+  // Of an error:
+  bool has_error = false;
+  std::uint64_t place = 0;
+  Error::Code code = Error::Code::other;
+  std::string text{};
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(saying, number, state, part, has_error, place, code, text);
+  }
+};
+
+}  // namespace internal
+
+namespace {
+
+class Alone final : public Team {
+ public:
+  std::size_t rank() const override { return 0; }
+  std::size_t size() const override { return 1; }
+
+ private:
+  std::vector<std::string> exchange(const std::string& own) override { return {own}; }
+};
+
+Message saying(const Error& error, std::size_t place) {
+  Message message{Saying::failed};
+  message.has_error = true;
+  message.place = place;
+  message.code = error.code();
+  message.text = error.what();
+  return message;
+}
+
+/// Of those that have an error the one in which a member alone would have failed first.
+const Message* first_error(const std::vector<Message>& all) {
+  const Message* first = nullptr;
+  for (const Message& each : all) {
+    if (each.has_error && (first == nullptr || each.place < first->place)) first = &each;
+  }
+  return first;
+}
+
+bool agree(const std::vector<Message>& all) {
+  const Message& first = all.front();
+  return std::all_of(all.begin(), all.end(), [&first](const Message& each) {
+    return each.saying == first.saying && each.number == first.number && each.state == first.state;
+  });
+}
+
+}  // namespace
+
+std::vector<Message> Team::talk(Message own) {
+  if (has_parted_) throw parted_with_ ? *parted_with_ : Error("a member of the team has left it before");
+  own.number = ++talks_;
+  std::vector<Message> all;
+  for (const std::string& bytes : exchange(packed(own))) all.push_back(unpacked<Message>(bytes));
+  has_parted_ = std::any_of(all.begin(), all.end(),
+                            [](const Message& each) { return each.saying == Saying::left; });
+  if (const Message* const error = first_error(all)) {
+    const Error agreed(error->code, error->text);
+    if (has_parted_) parted_with_ = agreed;
+    throw agreed;
+  }
+  if (!agree(all)) {
+    has_parted_ = true;
+    parted_with_ = Error(
+        "the processes of this run came to different numbers, so their processors are not of one kind, or "
+        "their flights differ; run them on nodes of one kind that see the same files");
+    throw *parted_with_;
+  }
+  return all;
+}
+
+std::vector<std::string> Team::gather(const std::string& own, std::uint64_t state) {
+  if (size() == 1) return {own};
+  Message message;
+  message.state = state;
+  message.part = own;
+  std::vector<std::string> parts;
+  for (Message& each : talk(std::move(message))) parts.push_back(std::move(each.part));
+  return parts;
+}
+
+void Team::fail(const Error& error, std::size_t place) {
+  if (size() > 1) talk(saying(error, place));
+  throw error;
+}
+
+std::optional<Error> Team::leave(const std::optional<Error>& error) {
+  if (size() == 1) return error;
+  if (has_parted_) return parted_with_ ? parted_with_ : error;
+  Message last = error ? saying(*error, 0) : Message{};
+  last.saying = Saying::left;
+  try {
+    talk(std::move(last));
+  } catch (const Error& of_all) {
+    return of_all;
+  }
+  return std::nullopt;
+}
+
+Team& alone() {
+  static Alone team;
+  return team;
+}
+
+}  // namespace pcor

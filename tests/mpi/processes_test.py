@@ -1,0 +1,190 @@
+#!/usr/bin/env python3
+"""The tool on several processes says and writes what it does alone, and ends wherever one of them fails.
+
+    processes_test.py TOOL TOOL_ON_PROCESSES LAUNCHER SOURCE_DIRECTORY
+"""
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+TOOL, TOOL_ON_PROCESSES, LAUNCHER, SOURCE = (Path(word) for word in sys.argv[1:5])
+MODEL = SOURCE / "data/scenarios/models/c130-psfd-eq18.toml"
+SCENARIO = SOURCE / "data/scenarios/c130-short.toml"
+FLIGHTS = 5
+# Open MPI alone reads these: more processes than processors, and as root where tests are run in containers.
+ENVIRONMENT = dict(
+    os.environ,
+    OMPI_ALLOW_RUN_AS_ROOT="1",
+    OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+    OMPI_MCA_rmaps_base_oversubscribe="1",
+    OMPI_MCA_hwloc_base_binding_policy="none",
+    OMPI_MCA_mpi_yield_when_idle="1",
+)
+SECONDS = 120
+
+
+def on_processes(count, *words, **options):
+    return subprocess.run(
+        [LAUNCHER, "-n", str(count), TOOL_ON_PROCESSES, *words],
+        capture_output=True, text=True, env=ENVIRONMENT, timeout=SECONDS, **options)
+
+
+class Processes(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.flights_folder = Path(folder.name)
+        for number in range(FLIGHTS):
+            flight = cls.flights_folder / f"flight{number}.nc"
+            subprocess.run([TOOL, "simulate", SCENARIO, "--seed", str(number + 1), "-o", flight, "--quiet"],
+                           check=True)
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = Path(folder.name)
+        self.flights = [f"flight{number}.nc" for number in range(FLIGHTS)]
+        for flight in self.flights:
+            shutil.copy(self.flights_folder / flight, self.path)
+
+    def outputs(self, run, words, outputs):
+        """What a run prints and writes."""
+        for output in outputs:
+            (self.path / output).unlink(missing_ok=True)
+        result = run(*words)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        written = {}
+        for output in outputs:
+            text = (self.path / output).read_text()
+            # The report says when it was made, and by which command.
+            written[output] = re.sub(r"\d{4}-\d\d-\d\d \d\d:\d\d UTC", "", text)
+        return {"text": result.stdout.replace(str(TOOL_ON_PROCESSES), "pcor").replace(str(TOOL), "pcor"), **written}
+
+    def assert_alike(self, words, outputs, counts):
+        alone = self.outputs(lambda *all: subprocess.run([TOOL, *all], capture_output=True, text=True, cwd=self.path),
+                             words, outputs)
+        self.assertTrue(alone["text"])
+        for count in counts:
+            together = self.outputs(lambda *all: on_processes(count, *all, cwd=self.path), words, outputs)
+            for name, text in alone.items():
+                self.assertEqual(together[name], text, f"{name} on {count} processes")
+
+    def test_refit_is_the_same_bytes_on_any_number_of_processes(self):
+        self.assert_alike(
+            ["refit", *self.flights[:4], "--holdout", self.flights[4], "-m", MODEL, "-o", "fitted.toml",
+             "--json", "fitted.json", "--table", "fitted.csv", "--report", "fitted.html"],
+            ["fitted.toml", "fitted.json", "fitted.csv", "fitted.html"], [1, 2, 3, 6])
+
+    def test_refit_that_reads_each_flight_again_in_every_pass_is_so_too(self):
+        self.assert_alike(
+            ["refit", *self.flights[:3], "-m", MODEL, "-o", "fitted.toml", "--json", "fitted.json", "--memory", "0"],
+            ["fitted.toml", "fitted.json"], [2])
+
+    def test_refit_in_stages_and_with_two_references_is_so_too(self):
+        self.assert_alike(
+            ["refit", *self.flights[:3], "-m", MODEL, "-o", "fitted.toml", "--json", "fitted.json",
+             "--stage", "pitch manoeuvre, speed run: static-alpha", "--reference", "lams", "--reference", "height",
+             "--training-share", "0.8"],
+            ["fitted.toml", "fitted.json"], [2, 4])
+
+    def damage(self, flight, how):
+        path = self.path / flight
+        if how == "missing":
+            path.unlink()
+        elif how == "truncated":
+            path.write_bytes(path.read_bytes()[: path.stat().st_size // 3])
+        else:
+            import netCDF4
+
+            with netCDF4.Dataset(path, "a") as file:
+                file["PSFD"].units = "furlong"
+
+    def test_a_flight_that_cannot_be_read_ends_all_with_the_message_of_one_process(self):
+        for how in ["missing", "truncated", "of a wrong unit"]:
+            for bad in self.flights[:4]:
+                with self.subTest(how=how, flight=bad):
+                    shutil.copy(self.flights_folder / bad, self.path)
+                    self.damage(bad, how)
+                    words = ["refit", *self.flights[:4], "-m", MODEL, "-o", "fitted.toml", "--json", "fitted.json"]
+                    alone = subprocess.run([TOOL, *words], capture_output=True, text=True, cwd=self.path)
+                    self.assertEqual(alone.returncode, 1)
+                    begin = time.monotonic()
+                    together = on_processes(3, *words, cwd=self.path)
+                    self.assertLess(time.monotonic() - begin, 10.0)
+                    self.assertEqual(together.returncode, 1)
+                    # mpirun adds lines of its own.
+                    told = [line for line in together.stderr.splitlines() if line.startswith("pcor: ")]
+                    self.assertEqual("\n".join(told) + "\n", alone.stderr)
+                    self.assertFalse(list(self.path.glob("*fitted*")))
+            shutil.copy(self.flights_folder / bad, self.path)
+
+    def test_one_line_tells_of_an_output_that_cannot_be_written_and_of_wrong_usage(self):
+        for status, words in {
+            1: ["refit", *self.flights[:2], "-m", MODEL, "-o", "nowhere/fitted.toml"],
+            2: ["refit", *self.flights[:2], "-m", MODEL],
+        }.items():
+            alone = subprocess.run([TOOL, *words], capture_output=True, text=True, cwd=self.path)
+            together = on_processes(3, *words, cwd=self.path)
+            self.assertEqual((alone.returncode, together.returncode), (status, status))
+            told = [line for line in together.stderr.splitlines() if line.startswith("pcor: ")]
+            self.assertEqual("\n".join(told) + "\n", alone.stderr.replace(str(TOOL), str(TOOL_ON_PROCESSES)))
+
+    def test_what_is_for_one_process_is_refused(self):
+        words = ["process", self.flights[0], "-m", MODEL, "-o", "corrected.nc"]
+        self.assertEqual(on_processes(1, *words, cwd=self.path).returncode, 0)
+        (self.path / "corrected.nc").unlink()
+        together = on_processes(2, *words, cwd=self.path)
+        self.assertEqual(together.returncode, 2)
+        self.assertIn("docs/campaigns.md", together.stderr)
+        self.assertFalse((self.path / "corrected.nc").exists())
+
+    def processes_of(self, folder):
+        """The processes of the tool that work in a folder."""
+        found = []
+        for process in Path("/proc").glob("[0-9]*"):
+            try:
+                if Path(os.readlink(process / "cwd")) == folder and \
+                        Path(os.readlink(process / "exe")) == TOOL_ON_PROCESSES.resolve():
+                    found.append(int(process.name))
+            except OSError:
+                pass
+        return sorted(found)
+
+    def test_a_process_that_is_killed_ends_the_job(self):
+        words = ["refit", *self.flights, "-m", MODEL, "-o", "fitted.toml", "--memory", "0", "--search-never-ends"][:-1]
+        for trial in range(6):
+            job = subprocess.Popen([LAUNCHER, "-n", "3", TOOL_ON_PROCESSES, *words], cwd=self.path, env=ENVIRONMENT,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+            processes = []
+            begin = time.monotonic()
+            while len(processes) < 3 and job.poll() is None and time.monotonic() - begin < 20:
+                processes = self.processes_of(self.path.resolve())
+                time.sleep(0.01)
+            time.sleep(0.1 * trial)
+            if len(processes) == 3 and job.poll() is None:
+                try:
+                    os.kill(processes[trial % 3], signal.SIGKILL)
+                except ProcessLookupError:
+                    pass  # it was done before
+            try:
+                status = job.wait(timeout=10 if len(processes) == 3 else SECONDS)
+            finally:
+                if job.poll() is None:
+                    os.killpg(job.pid, signal.SIGKILL)
+            if status == 0:
+                self.assertTrue((self.path / "fitted.toml").exists())
+            self.assertEqual(self.processes_of(self.path.resolve()), [])
+            (self.path / "fitted.toml").unlink(missing_ok=True)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[5:])

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <pcor/team/team.hpp>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace pcor::test {
+
+/// Runs `work` as each member of a team of threads, to the end of all. A member that waits for the others
+/// longer than a minute fails: that is a program that would hang.
+/// @return bytes that each member sent at each exchange
+/// @throws what a member threw, after all have ended
+inline std::vector<std::vector<std::size_t>> run_as_team(std::size_t size,
+                                                         const std::function<void(Team&)>& work) {
+  struct Table {
+    std::mutex mutex{};
+    std::condition_variable changed{};
+    std::vector<std::string> laid{};
+    std::size_t count = 0;
+    std::size_t round = 0;
+    std::vector<std::string> all{};
+  } table;
+  table.laid.resize(size);
+
+  class Member final : public Team {
+   public:
+    Member(Table& table, std::size_t rank, std::size_t size) : table_(table), rank_(rank), size_(size) {}
+    std::size_t rank() const override { return rank_; }
+    std::size_t size() const override { return size_; }
+
+    std::vector<std::size_t> sent{};
+
+   private:
+    std::vector<std::string> exchange(const std::string& own) override {
+      sent.push_back(own.size());
+      std::unique_lock lock(table_.mutex);
+      const std::size_t round = table_.round;
+      table_.laid[rank_] = own;
+      if (++table_.count == size_) {
+        table_.all = table_.laid;
+        table_.count = 0;
+        ++table_.round;
+        table_.changed.notify_all();
+      } else if (!table_.changed.wait_for(lock, std::chrono::minutes(1),
+                                          [&] { return table_.round != round; })) {
+        throw std::logic_error("a member of the team waits for others that do not come");
+      }
+      return table_.all;
+    }
+
+    Table& table_;
+    std::size_t rank_;
+    std::size_t size_;
+  };
+
+  std::vector<std::unique_ptr<Member>> members;
+  std::vector<std::exception_ptr> thrown(size);
+  std::vector<std::thread> threads;
+  for (std::size_t rank = 0; rank < size; ++rank)
+    members.push_back(std::make_unique<Member>(table, rank, size));
+  for (std::size_t rank = 0; rank < size; ++rank) {
+    threads.emplace_back([&, rank] {
+      try {
+        work(*members[rank]);
+      } catch (...) {
+        thrown[rank] = std::current_exception();
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const std::exception_ptr& each : thrown) {
+    if (each) std::rethrow_exception(each);
+  }
+  std::vector<std::vector<std::size_t>> sent;
+  for (const std::unique_ptr<Member>& member : members) sent.push_back(member->sent);
+  return sent;
+}
+
+}  // namespace pcor::test

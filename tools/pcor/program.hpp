@@ -1,0 +1,21 @@
+#pragma once
+
+#include <pcor/team/team.hpp>
+
+namespace pcor::tool {
+
+/// How the program ended.
+struct Ending {
+  int status = 0;  ///< 0 done, 1 the work could not be done, 2 usage
+  /// A file could not be written or read, or memory was short: HDF5 would try once more at the exit, and
+  /// crash.
+  bool at_once = false;
+};
+
+/// Reads the command line and does what it says, together with the other members of the team.
+Ending run_program(int argc, char** argv, Team& team);
+
+/// Ends this process so.
+[[noreturn]] void end_process(const Ending& ending);
+
+}  // namespace pcor::tool
