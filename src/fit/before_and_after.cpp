@@ -55,7 +55,7 @@ Compared compared(const Residuals& residuals, const FitTask& task, const Eigen::
 std::vector<Compared> compared(FitFlights& flights, const Eigen::VectorXd& values) {
   const FitTask& task = flights.task();
   std::vector<Compared> each(flights.count());
-  flights.visit([&](std::size_t number, std::size_t, FitFlight& fit) {
+  flights.visit([&](std::size_t number, FitFlight& fit) {
     each[number] = compared(fit.residuals(), task, values, task.options.training_share);
   });
   for (const std::filesystem::path& path : task.options.holdout) {
@@ -81,7 +81,7 @@ double BeforeAndAfter::noise_rms(std::size_t samples) const {
 
 BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& values) {
   std::vector<Compared> each = compared(flights, values);
-  flights.visit([&](std::size_t number, std::size_t, FitFlight& fit) {
+  flights.visit([&](std::size_t number, FitFlight& fit) {
     const FlightSamples& samples = fit.residuals().samples();
     Compared& one = each[number];
     one.flaps_out = flaps_out(fit.residuals(), values.data());

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include <pcor/numerics/noise.hpp>
-#include "fit/loss_function.hpp"
 #include "fit/prior.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
@@ -26,14 +25,13 @@ struct NormalLoss {
   double slope = 0.0;
   double square = 0.0;
 
-  NormalLoss(const ceres::LossFunction* loss, double deviation) {
+  NormalLoss(const ScaledLoss& loss, double deviation) {
     constexpr double step = 0.05;
     double weight = 0.0;
     for (double z = -6.0; z <= 6.0; z += step) {
       const double density = std::exp(-0.5 * z * z);
       const double innovation = deviation * z;
-      std::array<double, 3> rho{innovation * innovation, 1.0, 0.0};
-      if (loss != nullptr) loss->Evaluate(rho[0], rho.data());
+      const std::array<double, 3> rho = loss(innovation);
       weight += density;
       slope += density * (rho[1] + 2.0 * innovation * innovation * rho[2]);
       square += density * rho[1] * rho[1] * innovation * innovation;
@@ -48,7 +46,7 @@ class Blocks {
  public:
   explicit Blocks(FitFlights& flights) : begin_(flights.count(), 0.0), first_(flights.count(), 0) {
     std::vector<double> length(flights.count(), 0.0);
-    flights.visit([&](std::size_t number, std::size_t, FitFlight& fit) {
+    flights.visit([&](std::size_t number, FitFlight& fit) {
       const std::vector<double>& time = fit.bins().time();
       if (time.empty()) return;
       begin_[number] = time.front();
@@ -92,9 +90,8 @@ struct Sums {
 Sums sums_of(FitFlights& flights, const FitEquations& equations, const std::vector<std::size_t>& all,
              const Blocks& blocks) {
   const Solution& solution = equations.solution;
-  const std::unique_ptr<ceres::LossFunction> loss =
-      loss_function(flights.task().options.loss, solution.deviation);
-  const NormalLoss normal(loss.get(), solution.deviation);
+  const ScaledLoss loss(flights.task().options.loss, solution.deviation);
+  const NormalLoss normal(loss, solution.deviation);
   const Eigen::Index size = as_index(all.size());
   const Eigen::Index own = as_index(equations.parameters.size());
   std::vector<Eigen::Index> rows;  // of the own parameters among all
@@ -103,25 +100,20 @@ Sums sums_of(FitFlights& flights, const FitEquations& equations, const std::vect
   std::vector<Sums> each(flights.count());
   std::vector<double> squares(flights.count(), 0.0);
   std::vector<double> slopes(flights.count(), 0.0);
-  flights.visit([&](std::size_t number, std::size_t first_offset, FitFlight& fit) {
+  flights.visit([&](std::size_t number, FitFlight& fit) {
     Sums& sums = each[number];
     sums.derivatives.assign(blocks.count(), Eigen::MatrixXd());
     sums.score.assign(blocks.count(), Eigen::VectorXd());
     sums.covariance = Eigen::MatrixXd::Zero(own, own);
     if (fit.bins().size() == 0) return;
-    Eigen::VectorXd offsets;
-    if (fit.offsets() > 0)
-      offsets = solution.offsets.segment(as_index(first_offset), as_index(fit.offsets()));
-    const Eigen::MatrixXd white = fit.white_rows(solution.values, offsets);
-    Eigen::MatrixXd columns = fit.white_columns(solution.values, all);
-    const Eigen::Index count = white.rows();
+    const Eigen::VectorXd innovations = fit.white_rows(solution.values, loss).rightCols(1);
+    const Eigen::Index count = innovations.size();
     std::vector<double> influence(static_cast<std::size_t>(count));
     Eigen::VectorXd weight(count);
     double slope = 0.0;
     for (Eigen::Index i = 0; i < count; ++i) {
-      const double innovation = white(i, white.cols() - 1);
-      std::array<double, 3> rho{innovation * innovation, 1.0, 0.0};
-      if (loss != nullptr) loss->Evaluate(rho[0], rho.data());
+      const double innovation = innovations[i];
+      const std::array<double, 3> rho = loss(innovation);
       influence[static_cast<std::size_t>(i)] = rho[1] * innovation;
       weight[i] = rho[1];
       slope += rho[1] + 2.0 * innovation * innovation * rho[2];
@@ -133,13 +125,7 @@ Sums sums_of(FitFlights& flights, const FitEquations& equations, const std::vect
     }
     slopes[number] = slope;
     slope /= static_cast<double>(count);
-    if (fit.offsets() > 0) {
-      // What the offsets of the intervals take up is no business of the parameters.
-      const Eigen::MatrixXd shifts =
-          white.middleCols(as_index(flights.setup().wanted.size()), as_index(fit.offsets()));
-      const Eigen::MatrixXd weighted = weight.asDiagonal() * shifts;
-      columns -= shifts * (pseudo_inverse(shifts.transpose() * weighted) * (weighted.transpose() * columns));
-    }
+    const Eigen::MatrixXd columns = fit.without_offsets(fit.white_columns(solution.values, all), weight);
     const std::vector<Stretch>& stretches = fit.bins().stretches();
     const Autoregression memory = count < enough_bins ? Autoregression{{}, std::sqrt(normal.square)}
                                                       : autoregression(influence, stretches, infinity);
@@ -201,7 +187,7 @@ Sums sums_of(const FitEquations& equations, const std::vector<std::size_t>& all,
 
 double information_of(FitFlights& flights) {
   std::vector<double> parts_of_it(flights.count(), 0.0);
-  flights.visit([&](std::size_t number, std::size_t, FitFlight& fit) {
+  flights.visit([&](std::size_t number, FitFlight& fit) {
     parts_of_it[number] = fit.white(Eigen::VectorXd::Ones(as_index(fit.bins().size()))).squaredNorm();
   });
   double sum = 0.0;

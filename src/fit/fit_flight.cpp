@@ -5,6 +5,7 @@
 #include <iterator>
 #include <optional>
 
+#include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/spikes.hpp"
 #include "residuals/masks.hpp"
@@ -103,13 +104,9 @@ FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask
     at_common_pressures_.emplace(common, task.model, task.reference, task.options.mask);
 }
 
-void FitFlight::prepare(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) {
-  const auto same = [](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-    return a.size() == b.size() && a == b;
-  };
-  if (same(parameters, prepared_parameters_) && same(offsets, prepared_offsets_)) return;
+void FitFlight::prepare(const Eigen::VectorXd& parameters) {
+  if (parameters.size() == prepared_parameters_.size() && parameters == prepared_parameters_) return;
   prepared_parameters_ = parameters;
-  prepared_offsets_ = offsets;
   const FlightSamples& flight = residuals_.samples();
   if (moving_) {
     const Eigen::VectorXd own = own_parameters(residuals_, *task_, parameters);
@@ -125,10 +122,7 @@ void FitFlight::prepare(const Eigen::VectorXd& parameters, const Eigen::VectorXd
     evaluate(residuals_, first, count, parameters, {}, residual.data() + first, nullptr);
   }
   std::vector<double> series(flight.time.size(), nan);
-  for (std::size_t i = 0; i < kept_.size(); ++i) {
-    const double offset = offset_.empty() ? 0.0 : offsets[offset_[i]] * static_pressure(i);
-    series[kept_[i]] = residual[i] - offset;
-  }
+  for (std::size_t i = 0; i < kept_.size(); ++i) series[kept_[i]] = residual[i];
   spikes_ = 0;
   if (task_->options.loss != Loss::none) {
     const std::vector<double> nothing(series.size(), 0.0);
@@ -149,8 +143,18 @@ void FitFlight::prepare(const Eigen::VectorXd& parameters, const Eigen::VectorXd
   }
   whitening_.reset();
   kept_rows_.resize(0, 0);
-  kept_white_rows_.resize(0, 0);
-  if (linear_) kept_rows_ = rows_without_offsets(parameters);
+  if (linear_) kept_rows_ = means(parameters, setup_->wanted);
+  whiten_what_stays();
+}
+
+/// Rows of what is linear, and derivatives by the offsets, each of the pressure in its interval.
+void FitFlight::whiten_what_stays() {
+  kept_white_rows_ = white(kept_rows_);
+  Eigen::MatrixXd offsets = Eigen::MatrixXd::Zero(as_index(bins_.size()), as_index(offset_count_));
+  for (std::size_t i = 0; i < offset_.size(); ++i) {
+    if (bin_[i] >= 0) offsets(bin_[i], offset_[i]) -= static_pressure(i) / in_bin_[bin_[i]];
+  }
+  white_offsets_ = white(offsets);
 }
 
 void FitFlight::set_noise(const FitNoise& noise, std::size_t flight) {
@@ -165,7 +169,7 @@ void FitFlight::set_noise(const FitNoise& noise, std::size_t flight) {
     own[as_index(i)] = level[std::max<std::ptrdiff_t>(after - time.begin() - 1, 0)];
   }
   whitening_.emplace(bins_, model, 0);
-  if (kept_rows_.size() > 0) kept_white_rows_ = (*whitening_)(kept_rows_);
+  whiten_what_stays();
 }
 
 /// Through the chain; for LAMS, where some effect is not at the static ports, in the laser's own measure.
@@ -229,40 +233,38 @@ Eigen::MatrixXd FitFlight::means(const Eigen::VectorXd& parameters,
   return result;
 }
 
-Eigen::MatrixXd FitFlight::rows_without_offsets(const Eigen::VectorXd& parameters) const {
-  const Eigen::Index fitted = as_index(setup_->wanted.size());
-  const Eigen::MatrixXd now = means(parameters, setup_->wanted);
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(now.rows(), fitted + as_index(offset_count_) + 1);
-  result.leftCols(fitted) = now.leftCols(fitted);
-  result.rightCols(1) = now.rightCols(1);
-  for (std::size_t i = 0; i < offset_.size(); ++i) {
-    if (bin_[i] >= 0) result(bin_[i], fitted + offset_[i]) -= static_pressure(i) / in_bin_[bin_[i]];
+/// Linear rows at the parameters that were prepared, with the residual at others.
+Eigen::MatrixXd FitFlight::moved(Eigen::MatrixXd rows, const Eigen::VectorXd& parameters) const {
+  rows.rightCols(1) += rows.leftCols(rows.cols() - 1) * (parameters - prepared_parameters_)(setup_->wanted);
+  return rows;
+}
+
+Eigen::MatrixXd FitFlight::rows(const Eigen::VectorXd& parameters) const {
+  return linear_ ? moved(kept_rows_, parameters) : means(parameters, setup_->wanted);
+}
+
+Eigen::MatrixXd FitFlight::white_rows(const Eigen::VectorXd& parameters, const ScaledLoss& loss) const {
+  Eigen::MatrixXd result = linear_ ? moved(kept_white_rows_, parameters) : white(rows(parameters));
+  if (offset_count_ == 0) return result;
+  Eigen::VectorXd innovations = without_offsets(result.rightCols(1), Eigen::VectorXd::Ones(result.rows()));
+  for (const ScaledLoss& each : {loss.convex(), loss}) {
+    constexpr int most_rounds = 200;
+    for (int round = 0; round < most_rounds && !loss.is_least_squares(); ++round) {
+      const Eigen::VectorXd before = innovations;
+      innovations = without_offsets(before, each.weights(before));
+      if (!((innovations - before).norm() > 1e-12 * innovations.norm())) break;
+    }
   }
+  result.rightCols(1) = innovations;
   return result;
 }
 
-/// The residual of rows at the parameters that were prepared, without offsets, to others and to these
-/// offsets.
-void FitFlight::move_residual(Eigen::MatrixXd& rows, const Eigen::VectorXd& parameters,
-                              const Eigen::VectorXd& offsets) const {
-  const Eigen::Index fitted = as_index(setup_->wanted.size());
-  if (linear_)
-    rows.rightCols(1) += rows.leftCols(fitted) * (parameters - prepared_parameters_)(setup_->wanted);
-  if (offset_count_ > 0) rows.rightCols(1) += rows.middleCols(fitted, as_index(offset_count_)) * offsets;
-}
-
-Eigen::MatrixXd FitFlight::rows(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) const {
-  Eigen::MatrixXd result = linear_ ? kept_rows_ : rows_without_offsets(parameters);
-  move_residual(result, parameters, offsets);
-  return result;
-}
-
-Eigen::MatrixXd FitFlight::white_rows(const Eigen::VectorXd& parameters,
-                                      const Eigen::VectorXd& offsets) const {
-  if (!whitening_ || !linear_) return white(rows(parameters, offsets));
-  Eigen::MatrixXd result = kept_white_rows_;
-  move_residual(result, parameters, offsets);
-  return result;
+Eigen::MatrixXd FitFlight::without_offsets(const Eigen::MatrixXd& columns,
+                                           const Eigen::VectorXd& weights) const {
+  if (offset_count_ == 0) return columns;
+  const Eigen::MatrixXd weighted = weights.asDiagonal() * white_offsets_;
+  return columns - white_offsets_ * (pseudo_inverse(white_offsets_.transpose() * weighted) *
+                                     (weighted.transpose() * columns));
 }
 
 Eigen::MatrixXd FitFlight::white_columns(const Eigen::VectorXd& parameters,
@@ -287,8 +289,7 @@ Eigen::MatrixXd FitFlight::unweighted_factor(const Eigen::VectorXd& parameters) 
 }
 
 std::size_t FitFlight::outliers(const Eigen::VectorXd& parameters, double limit) const {
-  const Eigen::VectorXd innovations =
-      white_rows(parameters, Eigen::VectorXd::Zero(as_index(offset_count_))).rightCols(1);
+  const Eigen::VectorXd innovations = white_rows(parameters, {}).rightCols(1);
   auto count = static_cast<double>(spikes_);
   for (Eigen::Index i = 0; i < innovations.size(); ++i) {
     if (std::abs(innovations[i]) > limit) count += in_bin_[i];

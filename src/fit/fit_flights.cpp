@@ -1,7 +1,5 @@
 #include "fit/fit_flights.hpp"
 
-#include <ceres/loss_function.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,17 +25,13 @@ std::size_t bytes_of(const FlightSamples& samples, const Reference& reference) {
 }  // namespace
 
 FitFlights::FitFlights(std::vector<FlightSource> sources, const FitTask& task, FitSetup setup)
-    : sources_(std::move(sources)),
-      task_(task),
-      setup_(std::move(setup)),
-      cache_(sources_.size()),
-      first_offset_(sources_.size(), 0) {
+    : sources_(std::move(sources)), task_(task), setup_(std::move(setup)), cache_(sources_.size()) {
   std::vector<std::size_t> kept(sources_.size());
   std::vector<std::array<std::size_t, mask_count>> masks(sources_.size());
   std::vector<std::vector<bool>> linear(sources_.size());
   std::vector<std::size_t> offsets(sources_.size());
   std::vector<std::size_t> bins(sources_.size());
-  visit([&](std::size_t number, std::size_t, FitFlight& fit) {
+  visit([&](std::size_t number, FitFlight& fit) {
     kept[number] = fit.kept().size();
     masks[number] = fit.residuals().mask_counts();
     offsets[number] = fit.offsets();
@@ -48,7 +42,6 @@ FitFlights::FitFlights(std::vector<FlightSource> sources, const FitTask& task, F
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     samples_ += kept[i];
     bins_ += bins[i];
-    first_offset_[i] = offsets_;
     offsets_ += offsets[i];
     for (std::size_t m = 0; m < mask_count; ++m) masks_[m] += masks[i][m];
   }
@@ -64,8 +57,8 @@ bool FitFlights::sees_parameters() {
   constexpr std::size_t fewest_bins = 100;
   if (bins_ < fewest_bins) return false;
   std::vector<double> largest(count(), 0.0);
-  visit([&](std::size_t number, std::size_t, FitFlight& fit) {
-    const Eigen::MatrixXd rows = fit.rows(setup_.values, Eigen::VectorXd());
+  visit([&](std::size_t number, FitFlight& fit) {
+    const Eigen::MatrixXd rows = fit.rows(setup_.values);
     if (rows.rows() > 0)
       largest[number] = rows.leftCols(as_index(setup_.wanted.size())).cwiseAbs().maxCoeff();
   });
@@ -103,14 +96,10 @@ std::shared_ptr<FitFlight> FitFlights::made(std::size_t number,
   const bool is_given = sources_[number].samples != nullptr && samples->model.moving.empty();
   const std::size_t own_bytes = is_given ? 0 : bytes_of(*samples, task_.reference);
   auto fit = std::make_shared<FitFlight>(std::move(samples), task_, setup_);
-  if (prepared_parameters_.size() > 0) {
-    fit->prepare(prepared_parameters_, own(prepared_offsets_, first_offset_[number], *fit));
-  } else {
-    fit->prepare(setup_.values, Eigen::VectorXd::Zero(as_index(fit->offsets())));
-  }
+  fit->prepare(prepared_parameters_.size() > 0 ? prepared_parameters_ : setup_.values);
   if (noise_) fit->set_noise(*noise_, number);
-  const std::size_t bytes =
-      own_bytes + (2 * fit->bins().size() * (setup_.wanted.size() + 1) + fit->kept().size()) * sizeof(double);
+  const std::size_t columns = 2 * (setup_.wanted.size() + 1) + fit->offsets();
+  const std::size_t bytes = own_bytes + (columns * fit->bins().size() + fit->kept().size()) * sizeof(double);
   const std::lock_guard lock(counting_);
   if (cached_bytes_ + bytes <= task_.options.memory) {
     cached_bytes_ += bytes;
@@ -119,12 +108,12 @@ std::shared_ptr<FitFlight> FitFlights::made(std::size_t number,
   return fit;
 }
 
-void FitFlights::visit(const std::function<void(std::size_t, std::size_t, FitFlight&)>& visit) {
+void FitFlights::visit(const std::function<void(std::size_t, FitFlight&)>& visit) {
   const std::size_t wanted = task_.options.threads;
   const std::size_t threads =
       std::min<std::size_t>(wanted > 0 ? wanted : std::max(1U, std::thread::hardware_concurrency()), count());
   const auto work_on = [&](std::size_t number, std::shared_ptr<const FlightSamples> samples) {
-    visit(number, first_offset_[number], *made(number, std::move(samples)));
+    visit(number, *made(number, std::move(samples)));
   };
   std::deque<std::future<void>> working;
   try {
@@ -149,50 +138,47 @@ void FitFlights::visit(const std::function<void(std::size_t, std::size_t, FitFli
   }
 }
 
-Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets,
-                             const ceres::LossFunction* loss) {
+Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss& loss) {
   const Eigen::Index fitted = as_index(setup_.wanted.size());
-  const Eigen::Index columns = fitted + as_index(offsets_) + 1;
   std::vector<Reduction> parts(count());
-  visit([&](std::size_t number, std::size_t first_offset, FitFlight& fit) {
+  visit([&](std::size_t number, FitFlight& fit) {
     Reduction& part = parts[number];
-    const Eigen::MatrixXd rows = fit.white_rows(parameters, own(offsets, first_offset, fit));
-    const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(rows.rows());
-    std::vector<const double*> pointers(static_cast<std::size_t>(columns), nothing.data());
-    for (Eigen::Index k = 0; k < fitted; ++k) pointers[static_cast<std::size_t>(k)] = rows.col(k).data();
-    for (std::size_t k = 0; k < fit.offsets() && offsets_ > 0; ++k)
-      pointers[static_cast<std::size_t>(fitted) + first_offset + k] = rows.col(fitted + as_index(k)).data();
-    pointers.back() = rows.col(rows.cols() - 1).data();
-    std::vector<double> scale(static_cast<std::size_t>(rows.rows()));
-    double slopes = 0.0;
+    const Eigen::MatrixXd rows = fit.white_rows(parameters, loss);
+    Eigen::VectorXd weight(rows.rows());
     double curvatures = 0.0;
-    for (std::size_t i = 0; i < scale.size(); ++i) {
-      const double innovation = pointers.back()[i];
-      std::array<double, 3> rho{innovation * innovation, 1.0, 0.0};
-      if (loss != nullptr) loss->Evaluate(rho[0], rho.data());
-      part.cost += 0.5 * rho[0];
-      slopes += rho[1];
-      curvatures += rho[1] + 2.0 * innovation * innovation * rho[2];
-      scale[i] = std::sqrt(rho[1]);
+    for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+      const double innovation = rows(i, fitted);
+      const auto [value, slope, bend] = loss(innovation);
+      part.cost += 0.5 * value;
+      curvatures += slope + 2.0 * innovation * innovation * bend;
+      weight[i] = slope;
     }
-    TriangularFactor factor(columns);
-    factor.add(pointers, scale.data(), scale.size());
-    part.bins = scale.size();
-    if (slopes > 0.0) part.curvature = curvatures / slopes;
+    part.bins = fit.bins().size();
+    if (weight.sum() > 0.0) part.curvature = curvatures / weight.sum();
+    part.squares = rows.leftCols(fitted).array().square().matrix().transpose() * weight;
+    const Eigen::MatrixXd left = fit.without_offsets(rows, weight);
+    const Eigen::VectorXd scale = weight.cwiseSqrt();
+    std::vector<const double*> columns;
+    for (Eigen::Index k = 0; k <= fitted; ++k) columns.push_back(left.col(k).data());
+    TriangularFactor factor(fitted + 1);
+    factor.add(columns, scale.data(), part.bins);
     part.factor = factor.factor();
   });
   Reduction whole;
+  whole.squares = Eigen::VectorXd::Zero(fitted);
   double curvature = 0.0;
-  TriangularFactor sum(columns);
+  TriangularFactor sum(fitted + 1);
   for (const Reduction& part : parts) {
     sum.add(part.factor);
+    whole.squares += part.squares;
     whole.cost += part.cost;
     whole.bins += part.bins;
     if (part.bins > 0) curvature += part.curvature * static_cast<double>(part.bins);
   }
   for (FitFlights* const other : seeing_) {
-    const Reduction more = other->reduce(parameters, offsets, loss);
+    const Reduction more = other->reduce(parameters, loss);
     sum.add(more.factor);
+    whole.squares += more.squares;
     whole.cost += more.cost;
     whole.bins += more.bins;
     curvature += more.curvature * static_cast<double>(more.bins);
@@ -205,31 +191,27 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const Eigen::Vec
 
 Eigen::MatrixXd FitFlights::unweighted_factor(const Eigen::VectorXd& parameters) {
   std::vector<Eigen::MatrixXd> parts(count());
-  visit([&](std::size_t number, std::size_t, FitFlight& fit) {
-    parts[number] = fit.unweighted_factor(parameters);
-  });
+  visit([&](std::size_t number, FitFlight& fit) { parts[number] = fit.unweighted_factor(parameters); });
   TriangularFactor sum(as_index(setup_.wanted.size()) + 1);
   for (const Eigen::MatrixXd& part : parts) sum.add(part);
   return sum.factor();
 }
 
-void FitFlights::prepare(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) {
+void FitFlights::prepare(const Eigen::VectorXd& parameters) {
   // Flights that are read again are prepared again, at the same parameters.
   prepared_parameters_ = parameters;
-  prepared_offsets_ = offsets;
-  for (FitFlights* const other : seeing_) other->prepare(parameters, offsets);
-  visit([&](std::size_t number, std::size_t first_offset, FitFlight& fit) {
+  for (FitFlights* const other : seeing_) other->prepare(parameters);
+  visit([&](std::size_t number, FitFlight& fit) {
     if (!cache_[number]) return;
-    fit.prepare(parameters, own(offsets, first_offset, fit));
+    fit.prepare(parameters);
     if (noise_) fit.set_noise(*noise_, number);
   });
 }
 
-void FitFlights::measure_noise(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets,
-                               bool drift) {
-  for (FitFlights* const other : seeing_) other->measure_noise(parameters, offsets, drift);
+void FitFlights::measure_noise(const Eigen::VectorXd& parameters, bool drift) {
+  for (FitFlights* const other : seeing_) other->measure_noise(parameters, drift);
   if (!shares_noise_) noise_.reset();  // what is found anew need not be applied before
-  prepare(parameters, offsets);
+  prepare(parameters);
   if (shares_noise_) return;
   // How slow the noise is, is found from a few of many flights.
   constexpr std::size_t enough = 16;
@@ -237,8 +219,8 @@ void FitFlights::measure_noise(const Eigen::VectorXd& parameters, const Eigen::V
   std::vector<Binning> bins(count());
   std::vector<Eigen::VectorXd> residuals(count());
   std::vector<Eigen::MatrixXd> columns(count());
-  visit([&](std::size_t number, std::size_t first_offset, FitFlight& fit) {
-    const Eigen::MatrixXd rows = fit.rows(parameters, own(offsets, first_offset, fit));
+  visit([&](std::size_t number, FitFlight& fit) {
+    const Eigen::MatrixXd rows = fit.rows(parameters);
     bins[number] = fit.bins();
     residuals[number] = rows.rightCols(1);
     if (number % every == 0) columns[number] = rows.leftCols(as_index(setup_.wanted.size()));
@@ -248,7 +230,7 @@ void FitFlights::measure_noise(const Eigen::VectorXd& parameters, const Eigen::V
                        : estimate_noise(bins, residuals);
   for (const Binning& each : bins) found->time.push_back(each.time());
   noise_ = std::move(found);
-  visit([&](std::size_t number, std::size_t, FitFlight& fit) {
+  visit([&](std::size_t number, FitFlight& fit) {
     if (cache_[number]) fit.set_noise(*noise_, number);
   });
 }
@@ -260,12 +242,10 @@ double FitFlights::drift_rms() const {
   return std::sqrt(squares);
 }
 
-std::vector<double> FitFlights::innovations(const Eigen::VectorXd& parameters,
-                                            const Eigen::VectorXd& offsets) {
+std::vector<double> FitFlights::innovations(const Eigen::VectorXd& parameters) {
   std::vector<std::vector<double>> parts(count());
-  visit([&](std::size_t number, std::size_t first_offset, FitFlight& fit) {
-    const Eigen::VectorXd innovations =
-        fit.white_rows(parameters, own(offsets, first_offset, fit)).rightCols(1);
+  visit([&](std::size_t number, FitFlight& fit) {
+    const Eigen::VectorXd innovations = fit.white_rows(parameters, {}).rightCols(1);
     parts[number].assign(innovations.data(), innovations.data() + innovations.size());
   });
   std::vector<double> all;
@@ -273,10 +253,10 @@ std::vector<double> FitFlights::innovations(const Eigen::VectorXd& parameters,
   return all;
 }
 
-double FitFlights::deviation(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) {
+double FitFlights::deviation(const Eigen::VectorXd& parameters) {
   std::vector<double> all;
   for (FitFlights* const each : joint()) {
-    const std::vector<double> more = each->innovations(parameters, offsets);
+    const std::vector<double> more = each->innovations(parameters);
     all.insert(all.end(), more.begin(), more.end());
   }
   return robust_deviation(std::move(all));

@@ -13,13 +13,10 @@
 
 #include <pcor/residuals/residuals.hpp>
 #include "fit/fit_task.hpp"
+#include "fit/loss_function.hpp"
 #include "numerics/noise_model.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "numerics/whitening.hpp"
-
-namespace ceres {
-class LossFunction;
-}
 
 namespace pcor::internal {
 
@@ -58,6 +55,11 @@ Eigen::VectorXd own_parameters(const Residuals& residuals, const FitTask& task,
 /// as a residual holds together, and their residuals and derivatives in units of the noise and without its
 /// memory.
 ///
+/// What the offsets of the intervals of a stage are is the flight's own business: at given parameters and a
+/// loss they are those with the least loss, and derivatives are without what they take up, so that those of
+/// the least loss by the parameters are exact (Golub and Pereyra 1973, SIAM Journal on Numerical Analysis 10,
+/// 413).
+///
 /// Derivatives by the coefficients of two static systems are those at common pressures
 /// (`Residuals::at_common_pressures`), and stay until the flight is prepared again: the solution is where
 /// they are at right angles to the residual, which is a method of instruments, not of least squares. Those of
@@ -68,23 +70,28 @@ class FitFlight {
 
   const Residuals& residuals() const { return residuals_; }
   const std::vector<std::size_t>& kept() const { return kept_; }
+  /// How many intervals have an offset of their own.
   std::size_t offsets() const { return offset_count_; }
   const Binning& bins() const { return bins_; }
   double static_pressure(std::size_t kept) const { return (*static_pressure_)[kept_[kept]]; }
 
   /// Finds samples that depart from their neighbours at these parameters, which are left out from now on, and
   /// prepares the bins of the others. With a loss of least squares none is left out.
-  void prepare(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets);
+  void prepare(const Eigen::VectorXd& parameters);
 
   /// Sets the noise, number `flight` of `noise`; without one all bins count alike.
   void set_noise(const FitNoise& noise, std::size_t flight);
 
-  /// Derivatives by the wanted parameters and by the offsets of this flight, and the residual, hPa, by
-  /// columns, one row for each bin.
-  Eigen::MatrixXd rows(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) const;
+  /// Derivatives by the wanted parameters, and the residual, hPa, by columns, one row for each bin; without
+  /// offsets.
+  Eigen::MatrixXd rows(const Eigen::VectorXd& parameters) const;
 
-  /// The same in units of the noise and without its memory: the last column are the innovations.
-  Eigen::MatrixXd white_rows(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets) const;
+  /// The same in units of the noise and without its memory: the last column are the innovations, with the
+  /// offsets that leave the least loss, from Huber's solution on where a loss has several.
+  Eigen::MatrixXd white_rows(const Eigen::VectorXd& parameters, const ScaledLoss& loss) const;
+
+  /// White columns without what offsets take up of them where the bins have these weights.
+  Eigen::MatrixXd without_offsets(const Eigen::MatrixXd& columns, const Eigen::VectorXd& weights) const;
 
   /// Derivatives by any parameters, in units of the noise and without its memory.
   Eigen::MatrixXd white_columns(const Eigen::VectorXd& parameters,
@@ -108,9 +115,8 @@ class FitFlight {
   Eigen::MatrixXd means(const Residuals& residuals, const Eigen::VectorXd& parameters,
                         const std::vector<std::size_t>& wanted) const;
   Eigen::MatrixXd means(const Eigen::VectorXd& parameters, const std::vector<std::size_t>& wanted) const;
-  Eigen::MatrixXd rows_without_offsets(const Eigen::VectorXd& parameters) const;
-  void move_residual(Eigen::MatrixXd& rows, const Eigen::VectorXd& parameters,
-                     const Eigen::VectorXd& offsets) const;
+  void whiten_what_stays();
+  Eigen::MatrixXd moved(Eigen::MatrixXd rows, const Eigen::VectorXd& parameters) const;
 
   const FitTask* task_;
   const FitSetup* setup_;
@@ -127,18 +133,19 @@ class FitFlight {
   Eigen::VectorXd in_bin_;         // samples in each bin
   bool linear_ = false;
   Eigen::VectorXd prepared_parameters_;
-  Eigen::VectorXd prepared_offsets_;
   std::optional<Whitening> whitening_;
-  // Where the residual counts as linear in all that is wanted: rows at `prepared_parameters_` without
-  // offsets.
+  // Where the residual counts as linear in all that is wanted: rows at `prepared_parameters_`.
   Eigen::MatrixXd kept_rows_;
   Eigen::MatrixXd kept_white_rows_;
+  Eigen::MatrixXd white_offsets_;  // derivatives by the offsets
 };
 
 /// What a pass over all flights gives.
 struct Reduction {
-  Eigen::MatrixXd
-      factor;         ///< of white rows (derivatives by wanted parameters and offsets, residual), weighted
+  /// Of white rows (derivatives by wanted parameters, residual), weighted, without what offsets take up.
+  Eigen::MatrixXd factor;
+  /// Sums of the squares of the same derivatives, with what offsets take up.
+  Eigen::VectorXd squares;
   double cost = 0.0;  ///< half the sum of the loss over the innovations
   /// The curvature of the loss over its slope, rho' + 2 s rho'' over rho', mean over the bins: by so much the
   /// second derivative of the cost is less than that of the weighted squares.
@@ -183,27 +190,26 @@ class FitFlights {
   /// For each of the parameters whether the residual is linear in it.
   const std::vector<bool>& is_linear() const { return linear_; }
   std::size_t samples() const { return samples_; }
-  std::size_t offsets() const { return offsets_; }
+  /// The wanted parameters, and the offsets of all intervals.
+  std::size_t unknowns() const { return setup_.wanted.size() + offsets_; }
   /// Bins of all flights at the values of the setup.
   std::size_t bins() const { return bins_; }
   const std::array<std::size_t, mask_count>& masks() const { return masks_; }
 
-  /// Visits every flight; `visit` is called by several threads, with the number of the flight and of its
-  /// first offset.
-  void visit(const std::function<void(std::size_t flight, std::size_t first_offset, FitFlight& fit)>& visit);
+  /// Visits every flight; `visit` is called by several threads.
+  void visit(const std::function<void(std::size_t flight, FitFlight& fit)>& visit);
 
-  Reduction reduce(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets,
-                   const ceres::LossFunction* loss);
+  Reduction reduce(const Eigen::VectorXd& parameters, const ScaledLoss& loss);
 
   /// The factor of rows (derivatives, residual) in hPa, all samples alike, of the first reference.
   Eigen::MatrixXd unweighted_factor(const Eigen::VectorXd& parameters);
 
   /// Prepares every flight at these parameters; the noise stays.
-  void prepare(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets);
+  void prepare(const Eigen::VectorXd& parameters);
 
   /// Prepares every flight, and finds the noise, with its slow parts or without, which weights the bins from
   /// now on; or keeps that of `share_noise`.
-  void measure_noise(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets, bool drift);
+  void measure_noise(const Eigen::VectorXd& parameters, bool drift);
 
   /// Of the slow parts of the noise together, hPa; zero before it was measured.
   double drift_rms() const;
@@ -218,24 +224,20 @@ class FitFlights {
   bool shares_noise() const { return shares_noise_; }
 
   /// The robust deviation of the innovations; 1 where the noise is right.
-  double deviation(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets);
+  double deviation(const Eigen::VectorXd& parameters);
 
   /// The innovations.
-  std::vector<double> innovations(const Eigen::VectorXd& parameters, const Eigen::VectorXd& offsets);
+  std::vector<double> innovations(const Eigen::VectorXd& parameters);
 
  private:
   bool sees_parameters();
   std::shared_ptr<const FlightSamples> samples_of(std::size_t number) const;
   std::shared_ptr<FitFlight> made(std::size_t number, std::shared_ptr<const FlightSamples> samples);
-  Eigen::VectorXd own(const Eigen::VectorXd& offsets, std::size_t first, const FitFlight& fit) const {
-    return offsets.size() == 0 ? offsets : offsets.segment(as_index(first), as_index(fit.offsets()));
-  }
 
   std::vector<FlightSource> sources_;
   const FitTask& task_;
   const FitSetup setup_;  // the flights in the cache point to it
   std::vector<std::shared_ptr<FitFlight>> cache_;
-  std::vector<std::size_t> first_offset_;
   std::mutex counting_;
   std::size_t cached_bytes_ = 0;
   std::vector<bool> linear_;
@@ -246,7 +248,6 @@ class FitFlights {
   std::shared_ptr<const FitNoise> noise_;
   bool shares_noise_ = false;
   Eigen::VectorXd prepared_parameters_;
-  Eigen::VectorXd prepared_offsets_;
   std::vector<std::unique_ptr<FitFlights>> further_;
   std::vector<FitFlights*> seeing_;  // of the further ones, those that see some parameter
 };

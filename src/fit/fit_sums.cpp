@@ -16,7 +16,7 @@ void FitSums::add(const FitSums& other) {
 
 FitSums sums_at(FitFlights& flights, const Eigen::VectorXd& values, double deviation) {
   std::vector<FitSums> parts(flights.count());
-  flights.visit([&](std::size_t number, std::size_t, FitFlight& fit) {
+  flights.visit([&](std::size_t number, FitFlight& fit) {
     // The reference's delta-p by its own file, so that R2 does not grow with a reference that is fitted too.
     const std::vector<double> wanted = fit.residuals().wanted_defect(flights.task().start.data());
     const std::vector<double> all = fit.residuals().values(values.data());

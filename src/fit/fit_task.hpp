@@ -29,7 +29,6 @@ struct FitTask {
 /// What a fit has found so far.
 struct Solution {
   Eigen::VectorXd values{};      ///< of all parameters
-  Eigen::VectorXd offsets{};     ///< of the intervals of a stage, of delta-p/p
   std::vector<bool> at_bound{};  ///< of all parameters
   double deviation = 1.0;        ///< robust, of the innovations
 };

@@ -31,8 +31,7 @@ class Trial {
 
   double operator()(const std::vector<double>& searched) {
     for (std::size_t i = 0; i < searched.size(); ++i) parameters_[parameter(searched_[i])] = searched[i];
-    const Eigen::VectorXd offsets = Eigen::VectorXd::Zero(as_index(flights_.offsets()));
-    const Reduction reduction = flights_.reduce(parameters_, offsets, nullptr);
+    const Reduction reduction = flights_.reduce(parameters_, {});
     flights_.task().tell();
     if (!reduction.valid) return infinity;
     const Eigen::VectorXd residual = reduction.factor.rightCols(1);
@@ -56,11 +55,7 @@ class Trial {
     return as_index(setup_.wanted[static_cast<std::size_t>(k)]);
   }
 
-  Eigen::VectorXd wanted() const {
-    Eigen::VectorXd result = Eigen::VectorXd::Zero(as_index(setup_.wanted.size() + flights_.offsets()));
-    for (Eigen::Index k = 0; k < as_index(setup_.wanted.size()); ++k) result[k] = parameters_[parameter(k)];
-    return result;
-  }
+  Eigen::VectorXd wanted() const { return parameters_(setup_.wanted); }
 
   FitFlights& flights_;
   const FitSetup& setup_;

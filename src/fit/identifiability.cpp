@@ -19,17 +19,6 @@ constexpr double collinear_condition = 300.0;
 // A standard error above this share of an effect's typical size is worth a word.
 constexpr double weak_share = 0.25;
 
-/// The factor of the wanted parameters alone, with what the offsets explain taken out.
-Eigen::MatrixXd parameter_factor(const Reduction& reduction, Eigen::Index wanted) {
-  const Eigen::Index size = reduction.factor.cols() - 1;
-  Eigen::MatrixXd turned(size, size);
-  turned.leftCols(size - wanted) = reduction.factor.block(0, wanted, size, size - wanted);
-  turned.rightCols(wanted) = reduction.factor.block(0, 0, size, wanted);
-  const Eigen::HouseholderQR<Eigen::MatrixXd> decomposition(turned);
-  const Eigen::MatrixXd upper = decomposition.matrixQR().triangularView<Eigen::Upper>();
-  return upper.bottomRightCorner(wanted, wanted);
-}
-
 }  // namespace
 
 double condition_number(const Reduction& reduction, const FitTask& task,
@@ -37,10 +26,10 @@ double condition_number(const Reduction& reduction, const FitTask& task,
   const auto name_of = [&](Eigen::Index k) -> const std::string& {
     return task.parameters[wanted[static_cast<std::size_t>(k)]].name;
   };
-  Eigen::MatrixXd scaled = parameter_factor(reduction, as_index(wanted.size()));
+  Eigen::MatrixXd scaled = reduction.factor.leftCols(as_index(wanted.size()));
   for (Eigen::Index k = 0; k < scaled.cols(); ++k) {
     const double length = scaled.col(k).norm();
-    const double with_offsets = reduction.factor.col(k).norm();
+    const double with_offsets = std::sqrt(reduction.squares[k]);
     if (!(with_offsets > 0.0)) {
       throw Error(fmt::format(
           "{} changes nothing on these flights, so it cannot be found; leave it as it is: --fix {}",

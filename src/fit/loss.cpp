@@ -45,8 +45,11 @@ std::optional<Loss> loss_named(std::string_view name) {
 
 namespace internal {
 
-std::unique_ptr<ceres::LossFunction> loss_function(Loss loss, double deviation) {
-  return deviation > 0.0 ? facts_of(loss).function(deviation) : nullptr;
+ScaledLoss::ScaledLoss(Loss loss, double deviation)
+    : deviation_(deviation), function_(deviation > 0.0 ? facts_of(loss).function(deviation) : nullptr) {}
+
+Eigen::VectorXd ScaledLoss::weights(const Eigen::VectorXd& residuals) const {
+  return residuals.unaryExpr([this](double residual) { return (*this)(residual)[1]; });
 }
 
 }  // namespace internal

@@ -2,6 +2,8 @@
 
 #include <ceres/loss_function.h>
 
+#include <Eigen/Dense>
+#include <array>
 #include <memory>
 
 #include <pcor/fit/loss.hpp>
@@ -9,8 +11,30 @@
 
 namespace pcor::internal {
 
-/// The loss of residuals whose robust deviation is `deviation`; null for least squares, and where there is no
-/// deviation.
-std::unique_ptr<ceres::LossFunction> loss_function(Loss loss, double deviation);
+/// The loss of residuals whose robust deviation is known; least squares where that is zero.
+class ScaledLoss {
+ public:
+  ScaledLoss() = default;  // least squares
+  ScaledLoss(Loss loss, double deviation);
+
+  /// The loss of a residual, and its first and second derivative by the square of the residual.
+  std::array<double, 3> operator()(double residual) const {
+    std::array<double, 3> rho{residual * residual, 1.0, 0.0};
+    if (function_) function_->Evaluate(rho[0], rho.data());
+    return rho;
+  }
+
+  /// What each residual weighs where it is: the first derivative.
+  Eigen::VectorXd weights(const Eigen::VectorXd& residuals) const;
+
+  bool is_least_squares() const { return function_ == nullptr; }
+
+  /// Huber's loss of the same residuals, whose minimum is unique.
+  ScaledLoss convex() const { return is_least_squares() ? *this : ScaledLoss(Loss::huber, deviation_); }
+
+ private:
+  double deviation_ = 0.0;
+  std::shared_ptr<const ceres::LossFunction> function_;
+};
 
 }  // namespace pcor::internal

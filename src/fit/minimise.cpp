@@ -32,9 +32,11 @@ class QuietLog {
 /// cost to that of the loss.
 class ReducedCost final : public ceres::CostFunction {
  public:
-  ReducedCost(FitFlights& flights, const Eigen::VectorXd& parameters, const ceres::LossFunction* loss)
-      : flights_(flights), setup_(flights.setup()), parameters_(parameters), loss_(loss) {
-    size_ = as_index(setup_.wanted.size() + flights.offsets());
+  ReducedCost(FitFlights& flights, const Eigen::VectorXd& parameters, const ScaledLoss& loss)
+      : flights_(flights),
+        parameters_(parameters),
+        loss_(loss),
+        size_(as_index(flights.setup().wanted.size())) {
     set_num_residuals(static_cast<int>(size_) + 1);
     mutable_parameter_block_sizes()->push_back(static_cast<int>(size_));
   }
@@ -42,9 +44,8 @@ class ReducedCost final : public ceres::CostFunction {
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     const Eigen::Map<const Eigen::VectorXd> x(blocks[0], size_);
     if (last_.size() == 0 || last_ != x) {
-      for (std::size_t k = 0; k < setup_.wanted.size(); ++k)
-        parameters_[as_index(setup_.wanted[k])] = x[as_index(k)];
-      reduction_ = flights_.reduce(parameters_, x.tail(as_index(flights_.offsets())), loss_);
+      parameters_(flights_.setup().wanted) = x;
+      reduction_ = flights_.reduce(parameters_, loss_);
       last_ = x;
       flights_.task().tell();
     }
@@ -68,46 +69,41 @@ class ReducedCost final : public ceres::CostFunction {
 
  private:
   FitFlights& flights_;
-  const FitSetup& setup_;
   mutable Eigen::VectorXd parameters_;
-  const ceres::LossFunction* loss_;
-  Eigen::Index size_ = 0;
+  const ScaledLoss& loss_;
+  Eigen::Index size_;
   mutable Eigen::VectorXd last_;
   mutable Reduction reduction_;
 };
 
-/// Draws the first unknowns to their starts.
+/// Draws the unknowns to their starts.
 class PriorCost final : public ceres::CostFunction {
  public:
-  PriorCost(const Prior& prior, Eigen::Index unknowns) : prior_(prior), unknowns_(unknowns) {
+  explicit PriorCost(const Prior& prior) : prior_(prior) {
     set_num_residuals(static_cast<int>(prior.rows.rows()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(unknowns));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(prior.rows.cols()));
   }
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
-    const Eigen::Index drawn = prior_.start.size();
-    const Eigen::Map<const Eigen::VectorXd> x(blocks[0], drawn);
+    const Eigen::Map<const Eigen::VectorXd> x(blocks[0], prior_.start.size());
     Eigen::Map<Eigen::VectorXd>(residuals, prior_.rows.rows()) = prior_.rows * (x - prior_.start);
     if (jacobians == nullptr || jacobians[0] == nullptr) return true;
-    Eigen::Map<RowMajor> jacobian(jacobians[0], prior_.rows.rows(), unknowns_);
-    jacobian.setZero();
-    jacobian.leftCols(drawn) = prior_.rows;
+    Eigen::Map<RowMajor>(jacobians[0], prior_.rows.rows(), prior_.rows.cols()) = prior_.rows;
     return true;
   }
 
  private:
   const Prior& prior_;
-  Eigen::Index unknowns_;
 };
 
 }  // namespace
 
-void minimise(FitFlights& flights, const Eigen::VectorXd& parameters, const ceres::LossFunction* loss,
+void minimise(FitFlights& flights, const Eigen::VectorXd& parameters, const ScaledLoss& loss,
               const Prior& prior, Eigen::VectorXd& x) {
   ceres::Problem problem;
   problem.AddParameterBlock(x.data(), static_cast<int>(x.size()));
   problem.AddResidualBlock(new ReducedCost(flights, parameters, loss), nullptr, x.data());
-  if (prior.rows.rows() > 0) problem.AddResidualBlock(new PriorCost(prior, x.size()), nullptr, x.data());
+  if (prior.rows.rows() > 0) problem.AddResidualBlock(new PriorCost(prior), nullptr, x.data());
   int place = 0;
   for (const std::size_t p : flights.setup().wanted) {
     const Bounds& bounds = flights.task().parameters[p].bounds;

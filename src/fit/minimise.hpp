@@ -6,20 +6,19 @@
 
 namespace pcor::internal {
 
-/// What draws the first unknowns to their starting values: rows (x - start) as further residuals. No rows for
-/// none.
+/// What draws the unknowns to their starting values: rows (x - start) as further residuals. No rows for none.
 struct Prior {
   Eigen::VectorXd start{};
   Eigen::MatrixXd rows{};
 };
 
-/// Finds with Ceres, from `x` on, the unknowns of a fit (its wanted parameters, then the offsets) with the
-/// least loss. Every step is one pass over the flights.
+/// Finds with Ceres, from `x` on, the wanted parameters of a fit with the least loss. Every step is one pass
+/// over the flights.
 ///
 /// @param parameters all parameters; those that are not wanted stay as they are there
-/// @param loss of the innovations; null for least squares
+/// @param loss of the innovations
 /// @throws Error if residuals are not numbers
-void minimise(FitFlights& flights, const Eigen::VectorXd& parameters, const ceres::LossFunction* loss,
+void minimise(FitFlights& flights, const Eigen::VectorXd& parameters, const ScaledLoss& loss,
               const Prior& prior, Eigen::VectorXd& x);
 
 }  // namespace pcor::internal

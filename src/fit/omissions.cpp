@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "fit/loss_function.hpp"
 #include "fit/prior.hpp"
 #include "numerics/bounded_least_squares.hpp"
 #include "numerics/missing.hpp"
@@ -40,13 +39,13 @@ std::vector<Omission> omissions(FitFlights& flights, const Solution& solution, c
                                 const SquaredResiduals& squares) {
   const std::vector<std::size_t>& wanted = flights.setup().wanted;
   const FitTask& task = flights.task();
-  const std::unique_ptr<ceres::LossFunction> loss = loss_function(task.options.loss, solution.deviation);
+  const ScaledLoss loss(task.options.loss, solution.deviation);
   const Eigen::Index size = as_index(wanted.size());
   const Eigen::MatrixXd prior = solution.deviation * prior_rows(task, wanted);
   // Rows of derivatives and residual at some coefficients, with what draws these to their start.
   const auto rows_at = [&](const Eigen::VectorXd& values) {
     Eigen::MatrixXd rows(size + prior.rows(), size + 1);
-    rows.topRows(size) = flights.reduce(values, Eigen::VectorXd(), loss.get()).factor.topRows(size);
+    rows.topRows(size) = flights.reduce(values, loss).factor.topRows(size);
     rows.bottomLeftCorner(prior.rows(), size) = prior;
     rows.bottomRightCorner(prior.rows(), 1) = prior * (values(wanted) - task.start(wanted));
     task.tell();

@@ -125,35 +125,29 @@ void repeat_stages(Fitted& fitted, const Sources& sources, const FitTask& task,
     const Eigen::VectorXd before = solution.values;
     // The noise hardly changes after the first rounds.
     if (round < 2) {
-      fitted.flights->measure_noise(solution.values, Eigen::VectorXd(), task.options.drift);
-      solution.deviation = fitted.flights->deviation(solution.values, Eigen::VectorXd());
+      fitted.flights->measure_noise(solution.values, task.options.drift);
+      solution.deviation = fitted.flights->deviation(solution.values);
     }
     for (FitEquations& each : fitted.equations) {
       if (each.parameters.empty()) continue;
       each.flights->share_noise(*fitted.flights);
       solution = solve(*each.flights, std::move(solution));
       each.solution = solution;
-      if (round == 0) {
-        condition_number(each.flights->reduce(solution.values, solution.offsets, nullptr), task,
-                         each.parameters);
-      }
+      if (round == 0) condition_number(each.flights->reduce(solution.values, {}), task, each.parameters);
     }
-    const Eigen::MatrixXd factor = fitted.flights->reduce(solution.values, Eigen::VectorXd(), nullptr)
-                                       .factor.leftCols(as_index(fitted.parameters.size()));
+    const Eigen::VectorXd lengths = fitted.flights->reduce(solution.values, {}).squares.cwiseSqrt();
     const Eigen::VectorXd step = (solution.values - before)(fitted.parameters);
-    fitted.stands_still =
-        (factor.colwise().norm().transpose().cwiseProduct(step)).cwiseAbs().maxCoeff() < 0.01;
+    fitted.stands_still = lengths.cwiseProduct(step).cwiseAbs().maxCoeff() < 0.01;
   }
   // Every stage at the coefficients that all of them found.
   for (FitEquations& each : fitted.equations) {
     if (each.parameters.empty()) {
       each.flights->share_noise(*fitted.flights);
       each.solution = solution;
-      each.solution.offsets = Eigen::VectorXd();
     }
     each.solution.values = solution.values;
     each.solution.at_bound = solution.at_bound;
-    each.flights->prepare(solution.values, each.solution.offsets);
+    each.flights->prepare(solution.values);
   }
 }
 
@@ -176,9 +170,8 @@ Fitted fit_in_stages(const Sources& sources, const FitTask& task) {
   if (stages.size() > 1) {
     repeat_stages(fitted, sources, task, stages);
     // What comes now, errors, what can be told apart, and what each effect does, is of all samples.
-    solution.offsets = Eigen::VectorXd();
-    fitted.flights->measure_noise(solution.values, solution.offsets, task.options.drift);
-    solution.deviation = fitted.flights->deviation(solution.values, solution.offsets);
+    fitted.flights->measure_noise(solution.values, task.options.drift);
+    solution.deviation = fitted.flights->deviation(solution.values);
   }
   if (fitted.equations.empty())
     fitted.equations.push_back({fitted.flights.get(), fitted.parameters, solution});
@@ -250,6 +243,7 @@ Reduction unweighted(FitFlights& flights, const Eigen::VectorXd& values) {
   for (FitFlights* const each : flights.joint()) sum.add(each->unweighted_factor(values));
   Reduction result;
   result.factor = sum.factor();
+  result.squares = result.factor.colwise().squaredNorm();
   return result;
 }
 

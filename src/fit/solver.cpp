@@ -5,14 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include <pcor/words/error.hpp>
 #include "fit/global_search.hpp"
-#include "fit/loss_function.hpp"
 #include "fit/minimise.hpp"
 #include "fit/prior.hpp"
 #include "numerics/bounded_least_squares.hpp"
@@ -39,7 +37,7 @@ void require_samples(const FitFlights& flights) {
         "--max-flaps, --exclude",
         flights.count() == 1 ? flights.name(0) : "the flights", mask_text(flights.masks())));
   }
-  const std::size_t unknown = setup.wanted.size() + flights.offsets();
+  const std::size_t unknown = flights.unknowns();
   if (flights.samples() <= unknown) {
     throw Error(
         fmt::format("{} samples are too few for {} coefficients (not used: {}); give more flights or fix "
@@ -57,26 +55,23 @@ void require_samples(const FitFlights& flights) {
   }
 }
 
-/// The unknowns are the wanted parameters and after them the offsets.
+/// The unknowns are the wanted parameters.
 class Solver {
  public:
   Solver(FitFlights& flights, Solution from)
       : flights_(flights),
         task_(flights.task()),
         wanted_(flights.setup().wanted),
-        fitted_(as_index(wanted_.size())),
         solution_(std::move(from)),
         prior_(prior_rows(task_, wanted_)),
-        unknowns_(Eigen::VectorXd::Zero(fitted_ + as_index(flights.offsets()))),
-        lower_(Eigen::VectorXd::Constant(unknowns_.size(), -infinity)),
-        upper_(Eigen::VectorXd::Constant(unknowns_.size(), infinity)) {
-    for (Eigen::Index k = 0; k < fitted_; ++k) {
+        lower_(as_index(wanted_.size())),
+        upper_(lower_.size()) {
+    for (Eigen::Index k = 0; k < lower_.size(); ++k) {
       const Bounds& bounds = task_.parameters[wanted_[static_cast<std::size_t>(k)]].bounds;
       lower_[k] = bounds.lower;
       upper_[k] = bounds.upper;
     }
-    unknowns_.head(fitted_) =
-        solution_.values(wanted_).cwiseMax(lower_.head(fitted_)).cwiseMin(upper_.head(fitted_));
+    unknowns_ = solution_.values(wanted_).cwiseMax(lower_).cwiseMin(upper_);
     solution_.at_bound.resize(task_.parameters.size(), false);
     spread();
   }
@@ -86,12 +81,12 @@ class Solver {
       unknowns_ = global_search(flights_, solution_.values);
       spread();
     }
-    flights_.prepare(solution_.values, solution_.offsets);
+    flights_.prepare(solution_.values);
     const Loss loss = task_.options.loss;
     // Where the noise is that of others, this is a stage that begins at a solution.
     if (!flights_.shares_noise()) {
       choose_times();
-      linear_step(nullptr);
+      linear_step({});
       measure(false);
       // The solution of a convex loss is unique; from Huber's the others find the minimum of the bulk.
       settles_with(loss == Loss::none ? loss : Loss::huber);
@@ -99,7 +94,7 @@ class Solver {
       constexpr int most = 5;
       for (int round = 0; round < most && flights_.has_moving_columns(); ++round) {
         const Eigen::VectorXd before = unknowns_;
-        flights_.prepare(solution_.values, solution_.offsets);
+        flights_.prepare(solution_.values);
         settles_with(loss == Loss::none ? loss : Loss::huber);
         if (stands_still(before)) break;
       }
@@ -114,7 +109,7 @@ class Solver {
         continue;
       }
       if (settled && stands_still(before)) break;
-      flights_.prepare(solution_.values, solution_.offsets);
+      flights_.prepare(solution_.values);
     }
     find_bounds();
     return std::move(solution_);
@@ -122,15 +117,12 @@ class Solver {
 
  private:
   /// The unknowns to where they belong.
-  void spread() {
-    solution_.values(wanted_) = unknowns_.head(fitted_);
-    solution_.offsets = unknowns_.tail(unknowns_.size() - fitted_);
-  }
+  void spread() { solution_.values(wanted_) = unknowns_; }
 
   /// Of each time over which a need is found the start from which the others leave least: the sum of squares
   /// has several minima in it, as a wave has that is shifted by more than its length.
   void choose_times() {
-    for (Eigen::Index k = 0; k < fitted_; ++k) {
+    for (Eigen::Index k = 0; k < unknowns_.size(); ++k) {
       std::vector<double> times = task_.parameters[wanted_[static_cast<std::size_t>(k)]].tried;
       if (times.empty()) continue;
       times.insert(times.begin(), unknowns_[k]);
@@ -141,25 +133,25 @@ class Solver {
       const auto put = [&](const Eigen::VectorXd& unknowns) {
         unknowns_ = unknowns;
         spread();
-        flights_.prepare(solution_.values, solution_.offsets);
+        flights_.prepare(solution_.values);
       };
       for (const double time : times) {
         if (time < lower || time > upper) continue;
         Eigen::VectorXd at = start;
         at[k] = lower_[k] = upper_[k] = time;
         put(at);
-        linear_step(nullptr);
+        linear_step({});
         find_deviation();
         deviation = std::min(deviation, solution_.deviation);
         solutions.push_back(unknowns_);
       }
       // Outliers have no say either.
-      const std::unique_ptr<ceres::LossFunction> huber = loss_function(Loss::huber, deviation);
+      const ScaledLoss huber(Loss::huber, deviation);
       Eigen::VectorXd best = start;
       double least = infinity;
       for (const Eigen::VectorXd& solution : solutions) {
         put(solution);
-        const double cost = flights_.reduce(solution_.values, solution_.offsets, huber.get()).cost;
+        const double cost = flights_.reduce(solution_.values, huber).cost;
         if (cost < least) best = solution;
         least = std::min(least, cost);
       }
@@ -169,30 +161,27 @@ class Solver {
   }
 
   void measure(bool drift) {
-    flights_.measure_noise(solution_.values, solution_.offsets, drift);
+    flights_.measure_noise(solution_.values, drift);
     find_deviation();
   }
 
   /// The deviation of a stage of a few manoeuvres is that of all samples, as its noise is.
   void find_deviation() {
-    if (!flights_.shares_noise())
-      solution_.deviation = flights_.deviation(solution_.values, solution_.offsets);
+    if (!flights_.shares_noise()) solution_.deviation = flights_.deviation(solution_.values);
   }
 
   /// The linear problem, in closed form: where derivatives do not depend on the coefficients, its solution.
   /// Gives the cost before the step.
-  double linear_step(const ceres::LossFunction* loss) {
-    const Reduction reduction = flights_.reduce(solution_.values, solution_.offsets, loss);
+  double linear_step(const ScaledLoss& loss) {
+    const Reduction reduction = flights_.reduce(solution_.values, loss);
     task_.tell();
     const Eigen::Index size = unknowns_.size();
     const Prior drawn = prior();
     const Eigen::Index more = drawn.rows.rows();
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(size + more, size);
+    Eigen::MatrixXd rows(size + more, size);
     Eigen::VectorXd right(size + more);
-    rows.topRows(size) = reduction.factor.topLeftCorner(size, size);
-    right.head(size) = -reduction.factor.col(size).head(size);
-    rows.bottomLeftCorner(more, fitted_) = drawn.rows;
-    right.tail(more) = drawn.rows * (drawn.start - unknowns_.head(fitted_));
+    rows << reduction.factor.topLeftCorner(size, size), drawn.rows;
+    right << -reduction.factor.col(size).head(size), drawn.rows * (drawn.start - unknowns_);
     if (!rows.allFinite() || !right.allFinite()) return infinity;
     unknowns_ = bounded_least_squares(rows, right + rows * unknowns_, lower_, upper_, unknowns_);
     spread();
@@ -203,18 +192,17 @@ class Solver {
 
   /// True where no unknown moved by a hundredth of what the flights and the prior leave open.
   bool stands_still(const Eigen::VectorXd& before) {
-    const Reduction reduction = flights_.reduce(solution_.values, solution_.offsets, nullptr);
-    const Eigen::Index size = unknowns_.size();
+    const Reduction reduction = flights_.reduce(solution_.values, {});
     const Eigen::VectorXd step = unknowns_ - before;
-    const double by_flights = (reduction.factor.topLeftCorner(size, size) * step).norm();
-    const double by_prior = (prior_ * step.head(fitted_)).norm();
+    const double by_flights = (reduction.factor.leftCols(step.size()) * step).norm();
+    const double by_prior = (prior_ * step).norm();
     return std::max(by_flights, by_prior) < 0.01 * std::max(solution_.deviation, 1e-300);
   }
 
   /// Notes which parameters are at a bound. True where some are.
   bool find_bounds() {
     bool any = false;
-    for (Eigen::Index k = 0; k < fitted_; ++k) {
+    for (Eigen::Index k = 0; k < unknowns_.size(); ++k) {
       const double near = 1e-9 * std::max(std::abs(unknowns_[k]), 1e-12);
       const bool touches = unknowns_[k] <= lower_[k] + near || unknowns_[k] >= upper_[k] - near;
       solution_.at_bound[wanted_[static_cast<std::size_t>(k)]] = touches;
@@ -225,8 +213,8 @@ class Solver {
 
   /// Minimises that loss; true where the deviation, which scales it, stays after that.
   bool settles_with(Loss loss) {
-    const std::unique_ptr<ceres::LossFunction> function = loss_function(loss, solution_.deviation);
-    minimise(flights_, solution_.values, function.get(), prior(), unknowns_);
+    const ScaledLoss scaled(loss, solution_.deviation);
+    minimise(flights_, solution_.values, scaled, prior(), unknowns_);
     spread();
     // Along a bound, where coefficients are nearly collinear, steps cut off at the bounds stall before the
     // minimum; steps that know the bounds go on.
@@ -234,7 +222,7 @@ class Solver {
     Eigen::VectorXd best = unknowns_;
     for (int step = 0; step < 20 && find_bounds(); ++step) {
       const Eigen::VectorXd now = unknowns_;
-      const double cost_now = linear_step(function.get());
+      const double cost_now = linear_step(scaled);
       if (!(cost_now < (1.0 - 1e-10) * cost)) break;
       cost = cost_now;
       best = now;
@@ -250,7 +238,6 @@ class Solver {
   FitFlights& flights_;
   const FitTask& task_;
   const std::vector<std::size_t>& wanted_;
-  Eigen::Index fitted_;
   Solution solution_;
   Eigen::MatrixXd prior_;
   Eigen::VectorXd unknowns_;

@@ -81,7 +81,7 @@ std::vector<std::string> fit_warnings(FitFlights& flights, const RefitResult& re
                     result.r_squared));
   }
   std::vector<Run> runs(flights.count());
-  flights.visit([&](std::size_t number, std::size_t, FitFlight& fit) {
+  flights.visit([&](std::size_t number, FitFlight& fit) {
     if (!fit.kept().empty()) runs[number] = longest_run(fit, values);
   });
   const Run longest = *std::max_element(

@@ -14,11 +14,7 @@ constexpr std::array<Loss, 5> losses{Loss::tukey, Loss::huber, Loss::soft_l1, Lo
 /// The weight of a sample that is that many deviations off, next to one of least squares.
 double weight(Loss loss, double deviations) {
   constexpr double deviation = 0.4;
-  const auto function = internal::loss_function(loss, deviation);
-  std::array<double, 3> rho{0.0, 1.0, 0.0};
-  const double residual = deviations * deviation;
-  if (function) function->Evaluate(residual * residual, rho.data());
-  return rho[1];
+  return internal::ScaledLoss(loss, deviation)(deviations * deviation)[1];
 }
 
 TEST(Loss, IsFoundByItsName) {
@@ -43,7 +39,7 @@ TEST(Loss, LetsOutliersCountLess) {
 }
 
 TEST(Loss, IsLeastSquaresWhereThereIsNoDeviation) {
-  for (const Loss loss : losses) EXPECT_EQ(internal::loss_function(loss, 0.0), nullptr);
+  for (const Loss loss : losses) EXPECT_TRUE(internal::ScaledLoss(loss, 0.0).is_least_squares());
 }
 
 }  // namespace

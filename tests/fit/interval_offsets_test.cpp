@@ -1,0 +1,147 @@
+#include <gtest/gtest.h>
+#include <pcor/fit/refit.hpp>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "fit/fit_flights.hpp"
+#include "fit/fit_parameters.hpp"
+#include "fit/solver.hpp"
+#include "support/made_samples.hpp"
+
+// The offsets of the intervals of a stage, which every flight finds for itself, against one system of
+// equations that has all of them as unknowns, and against the laws that a least has.
+
+using namespace pcor;
+using namespace pcor::internal;
+
+namespace {
+
+/// A stage that fits two slopes to four intervals of each of ten flights, with the noise of all samples.
+class IntervalOffsets : public testing::TestWithParam<Loss> {
+ protected:
+  static std::vector<FlightSource> sources() {
+    std::vector<FlightSource> all;
+    for (unsigned seed = 1; seed <= 10; ++seed) {
+      made::Plan plan;
+      plan.seed = seed;
+      plan.samples = 2400;
+      plan.outliers = 0.01;
+      plan.defect = made::equation_18;
+      FlightSamples samples = made::flight(plan);
+      for (const std::size_t begin : {200U, 600U, 900U, 1800U}) {  // the third goes on from the second
+        Interval interval;
+        interval.regime = Regime::pitch_manoeuvre;
+        interval.begin = samples.time[begin];
+        interval.end = samples.time[begin + 300];
+        samples.intervals.push_back(interval);
+      }
+      all.push_back({{}, std::make_shared<const FlightSamples>(samples)});
+    }
+    return all;
+  }
+
+  IntervalOffsets() {
+    options_.loss = GetParam();
+    options_.threads = 1;
+    task_.start = Eigen::Vector3d(0.004, 0.02, 0.03);
+    task_.doubt = Eigen::Matrix3d::Zero();
+    whole_ = std::make_unique<FitFlights>(sources(), task_, FitSetup{task_.start, {0, 1, 2}});
+    whole_->measure_noise(task_.start, true);
+    stage_ = std::make_unique<FitFlights>(sources(), task_,
+                                          FitSetup{task_.start, {1, 2}, {Regime::pitch_manoeuvre}});
+    stage_->share_noise(*whole_);
+  }
+
+  Solution solution() {
+    Solution from;
+    from.values = task_.start;
+    from.deviation = whole_->deviation(task_.start);
+    return solve(*stage_, from);
+  }
+
+  RefitOptions options_;
+  ModelFile model_ = made::model({"static-constant", "static-alpha", "static-qp"});
+  References references_ = made::pressure_reference();
+  FitTask task_{
+      model_, *references_.front(), options_, fit_parameters(model_, *references_.front(), options_), {}, {},
+      [] {}};
+  std::unique_ptr<FitFlights> whole_;
+  std::unique_ptr<FitFlights> stage_;
+};
+
+using IntervalOffsetsOfLeastSquares = IntervalOffsets;
+using IntervalOffsetsOfAnyLoss = IntervalOffsets;
+
+TEST_P(IntervalOffsetsOfLeastSquares, AreThoseOfOneSystemOfAllUnknowns) {
+  const Solution found = solution();
+  std::vector<Eigen::MatrixXd> columns;  // of each flight: derivatives by the slopes and by its offsets
+  std::vector<Eigen::VectorXd> residuals;
+  Eigen::Index bins = 0;
+  stage_->visit([&](std::size_t, FitFlight& fit) {
+    const FlightSamples& samples = fit.residuals().samples();
+    const std::vector<double>& pressure = *samples.model.find(Quantity::static_pressure);
+    const Eigen::MatrixXd rows = fit.white(fit.rows(task_.start));
+    Eigen::MatrixXd own(rows.rows(), 2);
+    own = rows.leftCols(2);
+    for (const Interval& interval : samples.intervals) {
+      std::vector<double> shift(samples.time.size(), 0.0);
+      for (std::size_t i = 0; i < shift.size(); ++i) {
+        if (samples.time[i] >= interval.begin && samples.time[i] < interval.end) shift[i] = pressure[i];
+      }
+      own.conservativeResize(Eigen::NoChange, own.cols() + 1);
+      own.rightCols(1) = fit.white(fit.bins().means(shift));
+    }
+    columns.push_back(own);
+    residuals.emplace_back(rows.rightCols(1));
+    bins += rows.rows();
+  });
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(bins, 2 + 40);
+  Eigen::VectorXd residual(bins);
+  Eigen::Index row = 0;
+  for (std::size_t f = 0; f < columns.size(); ++f) {
+    const Eigen::Index count = columns[f].rows();
+    all.block(row, 0, count, 2) = columns[f].leftCols(2);
+    all.block(row, 2 + 4 * static_cast<Eigen::Index>(f), count, 4) = columns[f].rightCols(4);
+    residual.segment(row, count) = residuals[f];
+    row += count;
+  }
+  const Eigen::VectorXd step = all.colPivHouseholderQr().solve(-residual);
+  for (const Eigen::Index k : {0, 1})
+    EXPECT_NEAR(found.values[1 + k] / (task_.start[1 + k] + step[k]), 1.0, 1e-10);
+  // The derivatives of the least squares know what the offsets take up.
+  const Reduction reduction = stage_->reduce(found.values, {});
+  const Eigen::MatrixXd information = (all.transpose() * all).inverse().topLeftCorner(2, 2).inverse();
+  const Eigen::MatrixXd factor = reduction.factor.leftCols(2);
+  EXPECT_LT((factor.transpose() * factor - information).norm(), 1e-9 * information.norm());
+  EXPECT_LT((reduction.squares - all.leftCols(2).colwise().squaredNorm().transpose()).norm(),
+            1e-10 * reduction.squares.norm());
+}
+
+INSTANTIATE_TEST_SUITE_P(Stage, IntervalOffsetsOfLeastSquares, testing::Values(Loss::none));
+
+TEST_P(IntervalOffsetsOfAnyLoss, LeaveTheDerivativesOfTheLeastLoss) {
+  const ScaledLoss loss(GetParam(), 1.0);
+  Eigen::VectorXd values = task_.start + Eigen::Vector3d(0.0, 0.0005, 0.0005);
+  const Reduction reduction = stage_->reduce(values, loss);
+  const Eigen::VectorXd gradient = reduction.factor.leftCols(2).transpose() * reduction.factor.col(2);
+  for (const Eigen::Index k : {0, 1}) {
+    const double step = 1e-3 / std::sqrt(reduction.squares[k]);
+    Eigen::VectorXd more = values;
+    Eigen::VectorXd less = values;
+    more[1 + k] += step;
+    less[1 + k] -= step;
+    const double change = stage_->reduce(more, loss).cost - stage_->reduce(less, loss).cost;
+    // Costs of some thousand know their difference to 1e-12 of them.
+    EXPECT_NEAR(change / (2.0 * step) / gradient[k], 1.0, 1e-5);
+  }
+  // They hang on the parameters alone, not on what was asked before.
+  EXPECT_EQ(stage_->reduce(values, loss).factor, reduction.factor);
+}
+
+INSTANTIATE_TEST_SUITE_P(Stage, IntervalOffsetsOfAnyLoss,
+                         testing::Values(Loss::tukey, Loss::huber, Loss::cauchy, Loss::none));
+
+}  // namespace
