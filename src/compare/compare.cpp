@@ -14,6 +14,8 @@
 
 #include "numerics/missing.hpp"
 #include "residuals/flight_statistics.hpp"
+#include "residuals/packed_residuals.hpp"
+#include "team/flight_share.hpp"
 #include "words/phrasing.hpp"
 
 namespace pcor {
@@ -232,7 +234,7 @@ std::vector<Field> fields_of(const std::vector<Contender>& contenders) {
 
 /// The residuals of models to one reference on one flight, where all of them have one.
 FlightResiduals residuals_on(const Flight& flight, const std::vector<Pairing>& pairings,
-                             const MaskOptions& options, std::vector<FlightNote>& notes) {
+                             const MaskOptions& options, std::vector<std::string>& notes) {
   FlightResiduals result;
   for (const auto& [contender, reference] : pairings) {
     const ModelFile& model = contender.model;
@@ -243,7 +245,7 @@ FlightResiduals residuals_on(const Flight& flight, const std::vector<Pairing>& p
     result.values.push_back(residuals.values(parameters));
     result.reference_defects.push_back(residuals.wanted_defect(parameters));
     result.model_defects.push_back(residuals.quantity(Quantity::static_defect, parameters));
-    for (const std::string& note : samples->notes) notes.emplace_back(samples->name, note);
+    notes.insert(notes.end(), samples->notes.begin(), samples->notes.end());
     if (!result.samples) {
       result.samples = samples;
       result.mask = residuals.mask();
@@ -268,28 +270,51 @@ FlightResiduals residuals_on(const Flight& flight, const std::vector<Pairing>& p
   return result;
 }
 
+/// What a member of a team tells of a flight of its own.
+struct FlightPart {
+  std::string aircraft{};
+  FlightResiduals residuals{};
+  std::vector<std::string> notes{};
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    FlightResiduals& r = residuals;
+    archive(aircraft, r.samples, r.mask, r.values, r.flaps_out, r.reference_defects, r.model_defects,
+            r.static_pressure, r.corrected_pressure, r.total_pressure, r.reference_total_pressure, r.mach,
+            r.dynamic_ratio, notes);
+  }
+};
+
 /// Holds contenders against a reference. Without samples there are no models in the result.
 Comparison compare_with(const std::vector<Pairing>& pairings,
-                        const std::vector<std::filesystem::path>& flights, const CompareOptions& options,
-                        const std::function<void()>& tell) {
+                        const std::vector<std::filesystem::path>& flights, const FlightShare& share,
+                        const CompareOptions& options, const std::function<void()>& tell) {
   const Reference& first = pairings.front().reference;
   Comparison result;
   result.reference = first.description();
   result.is_static_pressure = first.is_static_pressure();
+  auto parts = share.of_each_flight<FlightPart>([&](std::size_t number) {
+    const Flight flight(flights[number], options.time_stamp);
+    FlightPart part;
+    part.aircraft = flight.aircraft();
+    part.residuals = residuals_on(flight, pairings, options.mask, part.notes);
+    tell();
+    return part;
+  });
   std::vector<Gathering> gatherings;
   for (const auto& [contender, reference] : pairings) gatherings.emplace_back(contender.name, reference);
   std::vector<std::pair<std::string, std::string>> aircraft;
+  for (std::size_t f = 0; f < flights.size(); ++f)
+    aircraft.emplace_back(flights[f].filename().string(), parts[f].aircraft);
+  require_one_aircraft(aircraft);
   std::vector<FlightNote> notes;
-  for (const std::filesystem::path& path : flights) {
-    const Flight flight(path, options.time_stamp);
-    aircraft.emplace_back(path.filename().string(), flight.aircraft());
-    require_one_aircraft(aircraft);
-    FlightResiduals residuals = residuals_on(flight, pairings, options.mask, notes);
+  for (FlightPart& part : parts) {
+    FlightResiduals& residuals = part.residuals;
+    for (const std::string& note : part.notes) notes.emplace_back(residuals.samples->name, note);
     for (const Mask mask : residuals.mask) ++result.masks[static_cast<std::size_t>(mask)];
     const NoiseFloor noise = lowest_noise(residuals);
     for (std::size_t m = 0; m < pairings.size(); ++m) gatherings[m].add(residuals, m, noise);
     result.flights.push_back(std::move(residuals));
-    tell();
   }
   result.notes = notes_of_flights(notes);
   if (result.masks[0] == 0) return result;
@@ -306,12 +331,13 @@ Comparison compare(const std::vector<std::filesystem::path>& flights,
     throw Error("nothing to compare; give at least one flight and one model");
   for (const Contender& contender : contenders) first_of(contender.references);
   const std::vector<Field> fields = fields_of(contenders);
+  const FlightShare share = share_of_flights(*options.team, flights);
   const auto tell = [&, done = std::size_t{0}]() mutable {
     ++done;
-    if (options.progress) options.progress(done, fields.size() * flights.size());
+    if (options.progress) options.progress(done, fields.size() * share.own());
   };
   const std::function<void()> progress = tell;
-  Comparison result = compare_with(fields.front().pairings, flights, options, progress);
+  Comparison result = compare_with(fields.front().pairings, flights, share, options, progress);
   if (result.masks[0] == 0) {
     throw Error(
         fmt::format("{}: no sample is left to compare: {}; see the variables of the model and "
@@ -319,7 +345,7 @@ Comparison compare(const std::vector<std::filesystem::path>& flights,
                     flights.size() == 1 ? flights.front().string() : "the flights", mask_text(result.masks)));
   }
   for (auto field = fields.begin() + 1; field != fields.end(); ++field) {
-    Comparison further = compare_with(field->pairings, flights, options, progress);
+    Comparison further = compare_with(field->pairings, flights, share, options, progress);
     if (further.masks[0] == 0) {
       result.notes.push_back(fmt::format("no sample is left to compare with the {}: {}", further.reference,
                                          mask_text(further.masks)));

@@ -4,9 +4,18 @@
 
 #include "residuals/flight_statistics.hpp"
 #include "residuals/masks.hpp"
+#include "residuals/packed_residuals.hpp"
 #include "words/phrasing.hpp"
 
-namespace pcor::internal {
+namespace pcor {
+
+template <class Archive>
+void serialize(Archive& archive, FlightFit& flight) {
+  archive(flight.flight, flight.holdout, flight.before, flight.after, flight.expected_bias, flight.gain,
+          flight.gain_error, flight.reference);
+}
+
+namespace internal {
 namespace {
 
 /// A flight before and after the fit.
@@ -17,6 +26,11 @@ struct Compared {
   ResidualSums flaps_out{};
   std::vector<FlightNote> notes{};
   RegimeSet flown{};
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(parts, fitted_blocks, held_out_blocks, flaps_out, notes, flown);
+  }
 };
 
 Compared compared(const Residuals& residuals, const FitTask& task, const Eigen::VectorXd& values,
@@ -51,20 +65,29 @@ Compared compared(const Residuals& residuals, const FitTask& task, const Eigen::
   return result;
 }
 
-/// The flights that take part, and those that are held out.
-std::vector<Compared> compared(FitFlights& flights, const Eigen::VectorXd& values) {
-  const FitTask& task = flights.task();
-  std::vector<Compared> each(flights.count());
-  flights.visit([&](std::size_t number, FitFlight& fit) {
-    each[number] = compared(fit.residuals(), task, values, task.options.training_share);
-  });
-  for (const std::filesystem::path& path : task.options.holdout) {
-    const Flight file(path, task.options.time_stamp);
+/// The flights that are held out.
+std::vector<Compared> held_out(const FitTask& task, const Eigen::VectorXd& values) {
+  const std::vector<std::filesystem::path>& paths = task.options.holdout;
+  return share_of_flights(*task.options.team, paths).of_each_flight<Compared>([&](std::size_t number) {
+    const Flight file(paths[number], task.options.time_stamp);
     const auto samples = std::make_shared<const FlightSamples>(
         read_samples(file, task.model, task.reference, task.options.mask));
-    const Residuals residuals(samples, task.model, task.reference, task.options.mask);
-    each.push_back(compared(residuals, task, values, 0.0));
-  }
+    return compared(Residuals(samples, task.model, task.reference, task.options.mask), task, values, 0.0);
+  });
+}
+
+/// The flights that take part, as well as `more` of them tells, and those that are held out.
+template <class More>
+std::vector<Compared> compared(FitFlights& flights, const Eigen::VectorXd& values, const More& more) {
+  const FitTask& task = flights.task();
+  std::vector<Compared> each = flights.of_each(
+      [&](std::size_t, FitFlight& fit) {
+        Compared one = compared(fit.residuals(), task, values, task.options.training_share);
+        more(fit.residuals(), one);
+        return one;
+      },
+      values);
+  for (Compared& one : held_out(task, values)) each.push_back(std::move(one));
   return each;
 }
 
@@ -80,15 +103,14 @@ double BeforeAndAfter::noise_rms(std::size_t samples) const {
 }
 
 BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& values) {
-  std::vector<Compared> each = compared(flights, values);
-  flights.visit([&](std::size_t number, FitFlight& fit) {
-    const FlightSamples& samples = fit.residuals().samples();
-    Compared& one = each[number];
-    one.flaps_out = flaps_out(fit.residuals(), values.data());
-    for (const std::string& note : samples.notes) one.notes.emplace_back(samples.name, note);
-    for (const Interval& interval : samples.intervals)
-      one.flown.set(static_cast<std::size_t>(interval.regime));
-  });
+  const std::vector<Compared> each =
+      compared(flights, values, [&](const Residuals& residuals, Compared& one) {
+        const FlightSamples& samples = residuals.samples();
+        one.flaps_out = flaps_out(residuals, values.data());
+        for (const std::string& note : samples.notes) one.notes.emplace_back(samples.name, note);
+        for (const Interval& interval : samples.intervals)
+          one.flown.set(static_cast<std::size_t>(interval.regime));
+      });
   std::vector<std::vector<double>> fitted;
   ResidualSums with_flaps;
   for (const Compared& one : each) {
@@ -97,14 +119,15 @@ BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& valu
   }
   BeforeAndAfter all;
   all.flaps_out = with_flaps.statistics();
-  for (Compared& one : each) {
-    for (FlightFit& part : one.parts) {
-      if (!part.holdout) continue;
-      part.expected_bias = expected_bias(fitted, one.held_out_blocks);
-      const HeldOutPart judged{part.flight, part.after, part.expected_bias};
-      if (judged.is_off()) all.notes.push_back(judged.text());
+  for (const Compared& one : each) {
+    for (FlightFit part : one.parts) {
+      if (part.holdout) {
+        part.expected_bias = expected_bias(fitted, one.held_out_blocks);
+        const HeldOutPart judged{part.flight, part.after, part.expected_bias};
+        if (judged.is_off()) all.notes.push_back(judged.text());
+      }
+      all.flights.push_back(std::move(part));
     }
-    all.flights.insert(all.flights.end(), one.parts.begin(), one.parts.end());
   }
   std::vector<FlightNote> notes;
   for (const Compared& one : each) {
@@ -113,10 +136,11 @@ BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& valu
   }
   for (std::string& note : notes_of_flights(notes)) all.notes.push_back(std::move(note));
   for (const std::unique_ptr<FitFlights>& with : flights.further()) {
-    for (const Compared& one : compared(*with, values))
+    for (const Compared& one : compared(*with, values, [](const Residuals&, Compared&) {}))
       all.further.insert(all.further.end(), one.parts.begin(), one.parts.end());
   }
   return all;
 }
 
-}  // namespace pcor::internal
+}  // namespace internal
+}  // namespace pcor

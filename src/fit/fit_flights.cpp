@@ -8,7 +8,9 @@
 #include <thread>
 
 #include "numerics/missing.hpp"
+#include "numerics/median.hpp"
 #include "residuals/moving_columns.hpp"
+#include "team/median_of_all.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -22,28 +24,42 @@ std::size_t bytes_of(const FlightSamples& samples, const Reference& reference) {
   return copies * (columns * samples.time.size() + model.along_beam.values.size()) * sizeof(double);
 }
 
+struct FlightCounts {
+  std::size_t samples = 0;
+  std::size_t bins = 0;
+  std::size_t offsets = 0;
+  std::array<std::size_t, mask_count> masks{};
+  std::vector<bool> linear{};  ///< for each of the parameters whether the residual is linear in it
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(samples, bins, offsets, masks, linear);
+  }
+};
+
 }  // namespace
+
+std::uint64_t digest_of(const Eigen::VectorXd& parameters) {
+  // Fowler, Noll and Vo's FNV-1a, 64 bits.
+  std::uint64_t digest = 14695981039346656037U;
+  const auto* const bytes = reinterpret_cast<const unsigned char*>(parameters.data());
+  for (std::size_t i = 0; i < static_cast<std::size_t>(parameters.size()) * sizeof(double); ++i)
+    digest = (digest ^ bytes[i]) * 1099511628211U;
+  return digest;
+}
 
 FitFlights::FitFlights(std::vector<FlightSource> sources, const FitTask& task, FitSetup setup)
     : sources_(std::move(sources)), task_(task), setup_(std::move(setup)), cache_(sources_.size()) {
-  std::vector<std::size_t> kept(sources_.size());
-  std::vector<std::array<std::size_t, mask_count>> masks(sources_.size());
-  std::vector<std::vector<bool>> linear(sources_.size());
-  std::vector<std::size_t> offsets(sources_.size());
-  std::vector<std::size_t> bins(sources_.size());
-  visit([&](std::size_t number, FitFlight& fit) {
-    kept[number] = fit.kept().size();
-    masks[number] = fit.residuals().mask_counts();
-    offsets[number] = fit.offsets();
-    bins[number] = fit.bins().size();
-    linear[number] = fit.residuals().is_linear();
+  const auto counts = of_each([](std::size_t, FitFlight& fit) {
+    return FlightCounts{fit.kept().size(), fit.bins().size(), fit.offsets(), fit.residuals().mask_counts(),
+                        fit.residuals().is_linear()};
   });
-  linear_ = linear.front();
-  for (std::size_t i = 0; i < sources_.size(); ++i) {
-    samples_ += kept[i];
-    bins_ += bins[i];
-    offsets_ += offsets[i];
-    for (std::size_t m = 0; m < mask_count; ++m) masks_[m] += masks[i][m];
+  linear_ = counts.front().linear;
+  for (const FlightCounts& flight : counts) {
+    samples_ += flight.samples;
+    bins_ += flight.bins;
+    offsets_ += flight.offsets;
+    for (std::size_t m = 0; m < mask_count; ++m) masks_[m] += flight.masks[m];
   }
   if (!setup_.regimes.empty()) return;
   for (const FitTask& with : task_.further) {
@@ -56,11 +72,9 @@ FitFlights::FitFlights(std::vector<FlightSource> sources, const FitTask& task, F
 bool FitFlights::sees_parameters() {
   constexpr std::size_t fewest_bins = 100;
   if (bins_ < fewest_bins) return false;
-  std::vector<double> largest(count(), 0.0);
-  visit([&](std::size_t number, FitFlight& fit) {
+  const auto largest = of_each([this](std::size_t, FitFlight& fit) {
     const Eigen::MatrixXd rows = fit.rows(setup_.values);
-    if (rows.rows() > 0)
-      largest[number] = rows.leftCols(as_index(setup_.wanted.size())).cwiseAbs().maxCoeff();
+    return rows.rows() > 0 ? rows.leftCols(as_index(setup_.wanted.size())).cwiseAbs().maxCoeff() : 0.0;
   });
   return std::any_of(largest.begin(), largest.end(), [](double each) { return each > 0.0; });
 }
@@ -109,40 +123,43 @@ std::shared_ptr<FitFlight> FitFlights::made(std::size_t number,
 }
 
 void FitFlights::visit(const std::function<void(std::size_t, FitFlight&)>& visit) {
-  const std::size_t wanted = task_.options.threads;
-  const std::size_t threads =
-      std::min<std::size_t>(wanted > 0 ? wanted : std::max(1U, std::thread::hardware_concurrency()), count());
+  const std::size_t wanted = task_.threads();
+  const std::size_t threads = wanted > 0 ? wanted : std::max(1U, std::thread::hardware_concurrency());
+  const auto how = threads > 1 ? std::launch::async : std::launch::deferred;
+  std::deque<std::pair<std::size_t, std::future<void>>> working;
+  const auto finish_first = [&working] {
+    const std::size_t number = working.front().first;
+    std::future<void> done = std::move(working.front().second);
+    working.pop_front();
+    try {
+      done.get();
+    } catch (const Error& error) {
+      throw FlightError(error, number);
+    }
+  };
   const auto work_on = [&](std::size_t number, std::shared_ptr<const FlightSamples> samples) {
     visit(number, *made(number, std::move(samples)));
   };
-  std::deque<std::future<void>> working;
-  try {
-    for (std::size_t number = 0; number < count(); ++number) {
-      std::shared_ptr<const FlightSamples> samples = samples_of(number);
-      if (threads <= 1) {
-        work_on(number, std::move(samples));
-        continue;
-      }
-      if (working.size() == threads) {
-        working.front().get();
-        working.pop_front();
-      }
-      working.push_back(std::async(std::launch::async, work_on, number, std::move(samples)));
+  for (std::size_t number = 0; number < count(); ++number) {
+    if (!task_.share.owns(number)) continue;
+    std::shared_ptr<const FlightSamples> samples;
+    try {
+      samples = samples_of(number);
+    } catch (const Error& error) {
+      while (!working.empty()) finish_first();  // an earlier flight fails first
+      throw FlightError(error, number);
     }
-    for (std::future<void>& each : working) each.get();
-  } catch (...) {
-    for (std::future<void>& each : working) {
-      if (each.valid()) each.wait();
-    }
-    throw;
+    if (working.size() == threads) finish_first();
+    working.emplace_back(number, std::async(how, work_on, number, std::move(samples)));
+    if (threads == 1) finish_first();
   }
+  while (!working.empty()) finish_first();
 }
 
 Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss& loss) {
   const Eigen::Index fitted = as_index(setup_.wanted.size());
-  std::vector<Reduction> parts(count());
-  visit([&](std::size_t number, FitFlight& fit) {
-    Reduction& part = parts[number];
+  const auto reduced = [&](std::size_t, FitFlight& fit) {
+    Reduction part;
     const Eigen::MatrixXd rows = fit.white_rows(parameters, loss);
     Eigen::VectorXd weight(rows.rows());
     double curvatures = 0.0;
@@ -163,12 +180,13 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss
     TriangularFactor factor(fitted + 1);
     factor.add(columns, scale.data(), part.bins);
     part.factor = factor.factor();
-  });
+    return part;
+  };
   Reduction whole;
   whole.squares = Eigen::VectorXd::Zero(fitted);
   double curvature = 0.0;
   TriangularFactor sum(fitted + 1);
-  for (const Reduction& part : parts) {
+  for (const Reduction& part : of_each(reduced, parameters)) {
     sum.add(part.factor);
     whole.squares += part.squares;
     whole.cost += part.cost;
@@ -190,10 +208,9 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss
 }
 
 Eigen::MatrixXd FitFlights::unweighted_factor(const Eigen::VectorXd& parameters) {
-  std::vector<Eigen::MatrixXd> parts(count());
-  visit([&](std::size_t number, FitFlight& fit) { parts[number] = fit.unweighted_factor(parameters); });
+  const auto factor = [&](std::size_t, FitFlight& fit) { return fit.unweighted_factor(parameters); };
   TriangularFactor sum(as_index(setup_.wanted.size()) + 1);
-  for (const Eigen::MatrixXd& part : parts) sum.add(part);
+  for (const Eigen::MatrixXd& part : of_each(factor, parameters)) sum.add(part);
   return sum.factor();
 }
 
@@ -201,10 +218,12 @@ void FitFlights::prepare(const Eigen::VectorXd& parameters) {
   // Flights that are read again are prepared again, at the same parameters.
   prepared_parameters_ = parameters;
   for (FitFlights* const other : seeing_) other->prepare(parameters);
-  visit([&](std::size_t number, FitFlight& fit) {
-    if (!cache_[number]) return;
-    fit.prepare(parameters);
-    if (noise_) fit.set_noise(*noise_, number);
+  task_.share.attempt([&] {
+    visit([&](std::size_t number, FitFlight& fit) {
+      if (!cache_[number]) return;
+      fit.prepare(parameters);
+      if (noise_) fit.set_noise(*noise_, number);
+    });
   });
 }
 
@@ -242,24 +261,19 @@ double FitFlights::drift_rms() const {
   return std::sqrt(squares);
 }
 
-std::vector<double> FitFlights::innovations(const Eigen::VectorXd& parameters) {
-  std::vector<std::vector<double>> parts(count());
-  visit([&](std::size_t number, FitFlight& fit) {
-    const Eigen::VectorXd innovations = fit.white_rows(parameters, {}).rightCols(1);
-    parts[number].assign(innovations.data(), innovations.data() + innovations.size());
-  });
-  std::vector<double> all;
-  for (const std::vector<double>& part : parts) all.insert(all.end(), part.begin(), part.end());
-  return all;
-}
-
 double FitFlights::deviation(const Eigen::VectorXd& parameters) {
-  std::vector<double> all;
+  std::vector<double> own;
   for (FitFlights* const each : joint()) {
-    const std::vector<double> more = each->innovations(parameters);
-    all.insert(all.end(), more.begin(), more.end());
+    std::vector<Eigen::VectorXd> innovations(count());
+    task_.share.attempt([&] {
+      each->visit([&](std::size_t number, FitFlight& fit) {
+        innovations[number] = fit.white_rows(parameters, {}).rightCols(1);
+      });
+    });
+    for (const Eigen::VectorXd& flight : innovations)
+      own.insert(own.end(), flight.data(), flight.data() + flight.size());
   }
-  return robust_deviation(std::move(all));
+  return deviation_of_median * median_of_absolute_values(task_.share.team(), std::move(own));
 }
 
 }  // namespace pcor::internal

@@ -3,12 +3,15 @@
 #include <Eigen/Dense>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <pcor/residuals/residuals.hpp>
@@ -140,6 +143,9 @@ class FitFlight {
   Eigen::MatrixXd white_offsets_;  // derivatives by the offsets
 };
 
+/// A number that differs where some bit of the parameters does.
+std::uint64_t digest_of(const Eigen::VectorXd& parameters);
+
 /// What a pass over all flights gives.
 struct Reduction {
   /// Of white rows (derivatives by wanted parameters, residual), weighted, without what offsets take up.
@@ -152,10 +158,16 @@ struct Reduction {
   double curvature = 1.0;
   std::size_t bins = 0;
   bool valid = true;  ///< false where some residual is not a number at these parameters
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(factor, squares, cost, curvature, bins);
+  }
 };
 
-/// The flights of a fit. Passes over them run several flights at a time; their results are added in the order
-/// of the flights, so they do not depend on the number of threads.
+/// The flights of a fit. Passes over them run several flights at a time, and each member of a team passes over
+/// its own; results are added in the order of the flights, so they do not depend on the number of threads or
+/// members.
 class FitFlights {
  public:
   FitFlights(std::vector<FlightSource> sources, const FitTask& task, FitSetup setup);
@@ -180,6 +192,7 @@ class FitFlights {
   bool has_moving_columns() const;
 
   std::size_t count() const { return sources_.size(); }
+  const FlightShare& share() const { return task_.share; }
 
   /// What a flight is called.
   std::string name(std::size_t number) const {
@@ -196,8 +209,18 @@ class FitFlights {
   std::size_t bins() const { return bins_; }
   const std::array<std::size_t, mask_count>& masks() const { return masks_; }
 
-  /// Visits every flight; `visit` is called by several threads.
-  void visit(const std::function<void(std::size_t flight, FitFlight& fit)>& visit);
+  /// What is made of every flight, in the order of flights, on every member of the team: one exchange.
+  /// @param make gets the number of a flight and the flight; it is called by several threads
+  /// @param parameters in which the members have to agree
+  template <class Make>
+  auto of_each(const Make& make, const Eigen::VectorXd& parameters = {}) {
+    using Part = std::decay_t<decltype(make(std::size_t{}, std::declval<FitFlight&>()))>;
+    return task_.share.on_each_flight<Part>(
+        [&](std::vector<Part>& parts) {
+          visit([&](std::size_t number, FitFlight& fit) { parts[number] = make(number, fit); });
+        },
+        digest_of(parameters));
+  }
 
   Reduction reduce(const Eigen::VectorXd& parameters, const ScaledLoss& loss);
 
@@ -226,10 +249,9 @@ class FitFlights {
   /// The robust deviation of the innovations; 1 where the noise is right.
   double deviation(const Eigen::VectorXd& parameters);
 
-  /// The innovations.
-  std::vector<double> innovations(const Eigen::VectorXd& parameters);
-
  private:
+  /// Visits the flights of this member.
+  void visit(const std::function<void(std::size_t flight, FitFlight& fit)>& visit);
   bool sees_parameters();
   std::shared_ptr<const FlightSamples> samples_of(std::size_t number) const;
   std::shared_ptr<FitFlight> made(std::size_t number, std::shared_ptr<const FlightSamples> samples);

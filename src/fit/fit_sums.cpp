@@ -15,14 +15,13 @@ void FitSums::add(const FitSums& other) {
 }
 
 FitSums sums_at(FitFlights& flights, const Eigen::VectorXd& values, double deviation) {
-  std::vector<FitSums> parts(flights.count());
-  flights.visit([&](std::size_t number, FitFlight& fit) {
+  const auto sums_of = [&](std::size_t, FitFlight& fit) {
     // The reference's delta-p by its own file, so that R2 does not grow with a reference that is fitted too.
     const std::vector<double> wanted = fit.residuals().wanted_defect(flights.task().start.data());
     const std::vector<double> all = fit.residuals().values(values.data());
     std::vector<double> residual;
     for (const std::size_t i : fit.kept()) residual.push_back(all[i]);
-    FitSums& sums = parts[number];
+    FitSums sums;
     sums.samples = fit.kept().size();
     for (std::size_t i = 0; i < residual.size(); ++i) {
       const double relative = residual[i] / fit.static_pressure(i);
@@ -35,9 +34,10 @@ FitSums sums_at(FitFlights& flights, const Eigen::VectorXd& values, double devia
     sums.outliers = fit.outliers(values, tukey_width * deviation);
     const double bulk = robust_deviation(residual);
     if (sums.samples > 0) sums.bulk_squares = bulk * bulk * static_cast<double>(sums.samples);
-  });
+    return sums;
+  };
   FitSums whole;
-  for (const FitSums& part : parts) whole.add(part);
+  for (const FitSums& part : flights.of_each(sums_of, values)) whole.add(part);
   flights.task().tell();
   return whole;
 }

@@ -19,6 +19,11 @@ struct FitSums {
 
   void add(const FitSums& other);
 
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(squares, bulk_squares, relative_squares, wanted, wanted_squares, samples, outliers);
+  }
+
   double rms_of(double sum) const { return std::sqrt(sum / static_cast<double>(samples)); }
   /// Of a model with that sum of squared residuals.
   double r_squared(double of_squares) const {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fit/fit_parameters.hpp"
+#include "team/flight_share.hpp"
 
 namespace pcor::internal {
 
@@ -13,6 +14,7 @@ struct FitTask {
   const ModelFile& model;
   const Reference& reference;
   const RefitOptions& options;
+  const FlightShare& share;
   std::vector<FitParameter> parameters;
   Eigen::VectorXd start;  ///< their values in the files
   Eigen::MatrixXd doubt;  ///< the covariance of these values as the files state it; zero where they do not
@@ -22,6 +24,11 @@ struct FitTask {
   /// Whether the parameters after those of the model are of this reference's system, too. Those of a system
   /// that only a further reference reads stay as its file has them.
   bool shares_system = true;
+
+  /// Flights at a time, in one process.
+  std::size_t threads() const {
+    return options.threads == 0 && options.team->size() > 1 ? 1 : options.threads;
+  }
 
   bool uses_prior() const { return options.use_prior || options.fit_reference; }
 };

@@ -39,17 +39,12 @@ std::string flight_text(const std::filesystem::path& path) {
   return (text.empty() ? path.filename().string() + " " : text) + utc_text(flight.time().first, "%Y-%m-%d");
 }
 
-std::string flights_text(const std::vector<std::string>& flights) {
-  if (flights.empty()) return "no flight";
-  if (flights.size() == 1) return flights.front();
-  return fmt::format("{} and {} more", flights.front(), flights.size() - 1);
+std::string flights_text(const std::string& first, std::size_t count) {
+  return count == 1 ? first : fmt::format("{} and {} more", first, count - 1);
 }
 
 std::string flights_text(const std::vector<std::filesystem::path>& flights) {
-  std::vector<std::string> texts;
-  for (const std::filesystem::path& flight : flights)
-    texts.push_back(texts.empty() ? flight_text(flight) : flight.string());
-  return flights_text(texts);
+  return flights.empty() ? "no flight" : flights_text(flight_text(flights.front()), flights.size());
 }
 
 std::string unfitted_name(const ModelFile& model) {

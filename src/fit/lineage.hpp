@@ -13,7 +13,8 @@ namespace pcor::internal {
 std::string flight_text(const std::filesystem::path& flight);
 
 /// Several flights in a few words: "GOTEX rf06 2004-02-18 and 2 more".
-std::string flights_text(const std::vector<std::string>& flights);
+/// @param first of them, as `flight_text` has it @param count how many they are
+std::string flights_text(const std::string& first, std::size_t count);
 std::string flights_text(const std::vector<std::filesystem::path>& flights);
 
 /// The name that a model had before it was fitted.

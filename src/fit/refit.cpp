@@ -43,32 +43,37 @@ void require_sense(const Sources& sources, const Reference& reference, const Ref
 }
 
 /// All flights are of one aircraft, those that are held out too, and none is given twice.
-void require_one_kind(const Sources& sources, const RefitOptions& options) {
+void require_one_kind(const Sources& sources, const FlightShare& share, const RefitOptions& options) {
   std::vector<std::filesystem::path> paths = options.holdout;
   for (const FlightSource& source : sources) {
     if (!source.samples) paths.push_back(source.path);
   }
   require_each_once(paths);
-  std::vector<std::pair<std::string, std::string>> aircraft;
-  const auto add = [&aircraft](const std::filesystem::path& path) {
-    aircraft.emplace_back(path.filename().string(), Flight(path).aircraft());
+  using OfAircraft = std::pair<std::string, std::string>;
+  const auto of_file = [](const std::filesystem::path& path) {
+    return OfAircraft(path.filename().string(), Flight(path).aircraft());
   };
-  for (const FlightSource& source : sources) {
-    if (source.samples) {
-      aircraft.emplace_back(source.samples->name, source.samples->aircraft);
-    } else {
-      add(source.path);
-    }
-  }
-  for (const std::filesystem::path& path : options.holdout) add(path);
+  std::vector<OfAircraft> aircraft = share.of_each_flight<OfAircraft>([&](std::size_t number) {
+    const FlightSource& source = sources[number];
+    return source.samples ? OfAircraft(source.samples->name, source.samples->aircraft) : of_file(source.path);
+  });
+  const FlightShare held_out = share_of_flights(*options.team, options.holdout);
+  for (OfAircraft& each : held_out.of_each_flight<OfAircraft>(
+           [&](std::size_t number) { return of_file(options.holdout[number]); }))
+    aircraft.push_back(std::move(each));
   require_one_aircraft(aircraft);
+}
+
+FlightShare share_of(const Sources& sources, Team& team) {
+  std::vector<std::filesystem::path> paths;
+  for (const FlightSource& source : sources) paths.push_back(source.path);
+  return share_of_flights(team, paths);
 }
 
 /// What the flights of a fit are called, from files or memory.
 std::string text_of(const Sources& sources) {
-  std::vector<std::string> flights;
-  for (const auto& [path, samples] : sources) flights.push_back(samples ? samples->name : flight_text(path));
-  return flights_text(flights);
+  const auto& [path, samples] = sources.front();
+  return flights_text(samples ? samples->name : flight_text(path), sources.size());
 }
 
 /// Whether two references are of one system, and have its law.
@@ -77,9 +82,10 @@ bool share_system(const Reference& a, const Reference& b) {
   return a.model()->model.name == b.model()->model.name && a.model()->variables == b.model()->variables;
 }
 
-FitTask task_of(const ModelFile& model, const References& references, const RefitOptions& options) {
+FitTask task_of(const ModelFile& model, const References& references, const RefitOptions& options,
+                const FlightShare& share) {
   const Reference& reference = first_of(references);
-  FitTask task{model, reference, options, fit_parameters(model, reference, options), {}, {}, {}};
+  FitTask task{model, reference, options, share, fit_parameters(model, reference, options), {}, {}, {}};
   task.doubt = stated_covariance(model, reference);
   task.start.resize(as_index(task.parameters.size()));
   for (std::size_t p = 0; p < task.parameters.size(); ++p) task.start[as_index(p)] = task.parameters[p].start;
@@ -88,7 +94,7 @@ FitTask task_of(const ModelFile& model, const References& references, const Refi
     if (progress) progress(std::min(passes, passes_expected - 1), passes_expected);
   };
   for (std::size_t i = 1; i < references.size(); ++i) {
-    FitTask with{model, *references[i], options, task.parameters, task.start, task.doubt, [] {}};
+    FitTask with{model, *references[i], options, share, task.parameters, task.start, task.doubt, [] {}};
     with.shares_system = share_system(reference, *references[i]);
     task.further.push_back(std::move(with));
   }
@@ -251,11 +257,12 @@ RefitResult fit(const Sources& sources, const ModelFile& model, const References
                 const RefitOptions& options) {
   const Reference& reference = first_of(references);
   require_sense(sources, reference, options);
-  require_one_kind(sources, options);
+  const FlightShare share = share_of(sources, *options.team);
+  require_one_kind(sources, share, options);
   const std::string fitted_flights = text_of(sources);  // while nothing is lost where one cannot be read
   RefitOptions shared = options;
   shared.memory /= references.size() * (1 + options.stages.size());  // each keeps samples of its own
-  const FitTask task = task_of(model, references, shared);
+  const FitTask task = task_of(model, references, shared, share);
   const Fitted fitted = fit_in_stages(sources, task);
   const Solution& solution = fitted.solution;
   FitFlights& flights = *fitted.flights;

@@ -27,6 +27,11 @@ struct Run {
   double begin = 0.0;  ///< s since 1970 UTC
   double end = 0.0;
   double mean = 0.0;  ///< hPa
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(flight, samples, begin, end, mean);
+  }
 };
 
 Run longest_run(const FitFlight& fit, const Eigen::VectorXd& values) {
@@ -80,10 +85,9 @@ std::vector<std::string> fit_warnings(FitFlights& flights, const RefitResult& re
                     "constant would describe it better than this model does",
                     result.r_squared));
   }
-  std::vector<Run> runs(flights.count());
-  flights.visit([&](std::size_t number, FitFlight& fit) {
-    if (!fit.kept().empty()) runs[number] = longest_run(fit, values);
-  });
+  const std::vector<Run> runs = flights.of_each(
+      [&](std::size_t, FitFlight& fit) { return fit.kept().empty() ? Run{} : longest_run(fit, values); },
+      values);
   const Run longest = *std::max_element(
       runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.end - a.begin < b.end - b.begin; });
   if (longest.end - longest.begin >= longest_chance) {

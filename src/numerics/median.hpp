@@ -8,6 +8,10 @@
 
 namespace pcor::internal {
 
+/// The standard deviation of a normal distribution over the median of its absolute values: 1 over its
+/// quantile at 0.75.
+inline constexpr double deviation_of_median = 1.482602218505602;
+
 /// Of an even number of values the upper of the middle two; NaN where there is none.
 inline double median(std::vector<double> values) {
   if (values.empty()) return nan;

@@ -14,8 +14,6 @@ using namespace internal;
 
 namespace {
 
-constexpr double deviation_of_median =
-    1.482602218505602;  // 1 / (the 0.75 quantile of the normal distribution)
 constexpr std::array<std::size_t, 7> lags{1, 2, 4, 8, 16, 32, 64};
 constexpr double plateau_growth = 1.15;
 constexpr std::size_t fewest_differences = 30;

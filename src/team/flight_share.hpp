@@ -39,6 +39,18 @@ class FlightShare {
   std::size_t own() const { return own_; }
   Team& team() const { return *team_; }
 
+  /// Work on own flights. Where it fails, all members do, at what they gather next.
+  template <class Work>
+  void attempt(const Work& work) const {
+    try {
+      work();
+    } catch (const FlightError& error) {
+      team_->fail(error, error.flight() + 1);
+    } catch (const Error& error) {
+      team_->fail(error, 0);
+    }
+  }
+
   /// What all flights are made to, in their order, on every member: one exchange.
   /// @param visit gets the list of all parts, and sets those of own flights
   /// @param state in which the members have to agree
@@ -46,13 +58,7 @@ class FlightShare {
   template <class Part, class Visit>
   std::vector<Part> on_each_flight(const Visit& visit, std::uint64_t state = 0) const {
     std::vector<Part> parts(flights());
-    try {
-      visit(parts);
-    } catch (const FlightError& error) {
-      team_->fail(error, error.flight() + 1);
-    } catch (const Error& error) {
-      team_->fail(error, 0);
-    }
+    attempt([&] { visit(parts); });
     if (team_->size() > 1) gather(parts, state);
     return parts;
   }

@@ -8,6 +8,7 @@
 
 #include <pcor/words/error.hpp>
 #include "choices.hpp"
+#include "team.hpp"
 
 #include "text.hpp"
 
@@ -102,7 +103,7 @@ void deliver(const ModelFile& model, const std::string& output, const std::vecto
   fmt::print("{}", write_model(model));
 }
 
-JsonResult::JsonResult(const CommonOptions& options) : place_(options.json) {
+JsonResult::JsonResult(const CommonOptions& options) : place_(is_speaker() ? options.json : "") {
   if (is_file(place_)) file_.emplace(place_);
 }
 
@@ -124,7 +125,7 @@ void JsonResult::write(nlohmann::ordered_json result) {
 }
 
 void require_writable(const fs::path& output) {
-  if (is_file(output)) const ReplacementFile probe(output);
+  if (is_speaker() && is_file(output)) const ReplacementFile probe(output);
 }
 
 void refuse_overwriting(const std::vector<fs::path>& outputs, const std::vector<fs::path>& inputs) {

@@ -14,4 +14,7 @@ inline constexpr std::array commands{
     &add_inspect, &add_compare, &add_refit,       &add_diagnose, &add_effects,    &add_add, &add_improve,
     &add_check,   &add_process, &add_temperature, &add_simulate, &add_completion, &add_man};
 
+/// Those whose flights a team of several processes shares. The others are work of one process.
+inline constexpr std::array<const char*, 2> commands_of_a_team{"compare", "refit"};
+
 }  // namespace pcor::tool

@@ -16,6 +16,7 @@
 #include "model_of_flight.hpp"
 #include "progress.hpp"
 #include "report_origin.hpp"
+#include "team.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -266,7 +267,7 @@ void run(const Options& options) {
   for (const std::string& path : options.models) {
     const ModelFile model = read_model_for(path, flight_paths(options.comparison), options.common);
     const ChosenReferences own =
-        read_references(options.comparison.references, model, flight_paths(options.comparison));
+        read_references(options.comparison.references, model, flight_paths(options.comparison), team());
     add_references(references, own);
     contenders.push_back({model.model.name, model, own.used});
   }
@@ -274,12 +275,14 @@ void run(const Options& options) {
   CompareOptions compare_options;
   compare_options.mask = mask_options(options.comparison);
   compare_options.time_stamp = time_stamp(options.comparison);
+  compare_options.team = &team();
   Comparison comparison;
   {
     Progress bar("comparing", !options.common.quiet);
     compare_options.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
     comparison = compare(flight_paths(options.comparison), contenders, compare_options);
   }
+  if (!is_speaker()) return;
   OutputsTogether together;
   if (!options.residuals.empty()) {
     for (std::size_t i = 0; i < comparison.flights.size(); ++i) {

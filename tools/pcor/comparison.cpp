@@ -9,10 +9,11 @@
 #include <cmath>
 #include <system_error>
 
-#include <pcor/flight/flight.hpp>
+#include <pcor/flight/readable_flights.hpp>
 #include <pcor/words/error.hpp>
 #include <pcor/words/suggest.hpp>
 #include "choices.hpp"
+#include "team.hpp"
 
 namespace pcor::tool {
 
@@ -41,17 +42,12 @@ namespace {
 
 /// Takes out the flights that cannot be opened, and says so. @throws Error if none is left.
 void leave_out_unreadable(std::vector<std::string>& flights) {
-  std::vector<std::string> readable;
-  for (const std::string& flight : flights) {
-    try {
-      const Flight opened(flight);
-      readable.push_back(flight);
-    } catch (const Error& error) {
-      tell_choices({fmt::format("left out: {}", error.what())}, false);
-    }
-  }
-  if (readable.empty()) throw Error(fmt::format("none of the {} flights can be read", flights.size()));
-  flights = std::move(readable);
+  const ReadableFlights readable = readable_flights({flights.begin(), flights.end()}, team());
+  for (const std::string& trouble : readable.troubles)
+    tell_choices({fmt::format("left out: {}", trouble)}, false);
+  if (readable.flights.empty()) throw Error(fmt::format("none of the {} flights can be read", flights.size()));
+  flights.clear();
+  for (const std::filesystem::path& flight : readable.flights) flights.push_back(flight.string());
 }
 
 }  // namespace
@@ -143,7 +139,7 @@ ChosenReferences references_to_fit(const ComparisonOptions& options, const Model
                                    const std::vector<std::string>& holdout) {
   std::vector<std::filesystem::path> flights = flight_paths(options);
   flights.insert(flights.end(), holdout.begin(), holdout.end());
-  ChosenReferences chosen = read_references(options.references, model, flights);
+  ChosenReferences chosen = read_references(options.references, model, flights, team());
   if (!options.references.empty()) return chosen;
   const auto held_together = std::stable_partition(chosen.used.begin(), chosen.used.end(),
                                                    [](const auto& each) { return each->is_of_one_sample(); });

@@ -1,8 +1,10 @@
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -59,6 +61,18 @@ void fill_closed_streams() {
   }
 }
 
+/// @throws CLI::ArgumentMismatch if several processes would all do the whole work of a command
+void require_command_of_a_team(const CLI::App& program) {
+  const std::string name = program.get_subcommands().front()->get_name();
+  if (team().size() == 1 || std::find(commands_of_a_team.begin(), commands_of_a_team.end(), name) !=
+                                commands_of_a_team.end())
+    return;
+  throw CLI::ArgumentMismatch(fmt::format(
+      "{} is work of one process, and several processes share that of {} alone: run it with one, or flight by "
+      "flight as docs/campaigns.md says",
+      name, fmt::join(commands_of_a_team, " and ")));
+}
+
 /// Reads the command line and does what it says. @return the exit status
 int run(int argc, char** argv) {
   remember_command(argc, argv);
@@ -82,6 +96,7 @@ int run(int argc, char** argv) {
     program.parse(argc, argv);
     const std::string misplaced = flights_behind_holdout(program, words);
     if (!misplaced.empty()) throw CLI::ArgumentMismatch(misplaced);
+    require_command_of_a_team(program);
   } catch (const CLI::Success& help_or_version) {
     std::ostringstream text;
     program.exit(help_or_version, text, text);

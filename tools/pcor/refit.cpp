@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <pcor/fit/refit_report.hpp>
@@ -19,6 +20,7 @@
 #include "progress.hpp"
 #include "refusal.hpp"
 #include "report_origin.hpp"
+#include "team.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -87,6 +89,7 @@ RefitOptions refit_options(const Options& options) {
   refit.drift = !options.no_drift;
   refit.training_share = options.training_share;
   refit.holdout.assign(options.holdout.begin(), options.holdout.end());
+  refit.team = &team();
   refit.memory = static_cast<std::size_t>(options.memory_mib * 1048576.0);
   return refit;
 }
@@ -244,9 +247,11 @@ void print_next_step(const Options& options) {
       quoted(options.output));
 }
 
-void write_fit_report(const RefitResult& result, const ModelFile& model, const References& references,
-                      const Options& options) {
+/// The flights with the model before and after the fit, for the report.
+Comparison before_against_after(const RefitResult& result, const ModelFile& model, const References& references,
+                                const Options& options) {
   CompareOptions compare_options;
+  compare_options.team = &team();
   compare_options.mask = mask_options(options.comparison);
   compare_options.time_stamp = time_stamp(options.comparison);
   std::vector<std::filesystem::path> flights = flight_paths(options.comparison);
@@ -261,17 +266,14 @@ void write_fit_report(const RefitResult& result, const ModelFile& model, const R
   compare_options.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
   const bool holds_out = !options.holdout.empty() || options.training_share < 1.0;
   const std::string part = holds_out ? ", fitted and held-out samples" : "";
-  const Comparison comparison = compare(
+  return compare(
       flights, {{"before the fit" + part, model, references}, {"after the fit" + part, result.model, fitted}},
       compare_options);
-  write_report_of_run(refit_report(result, comparison),
-                      {{options.model, options.output}, options.comparison.flights, options.holdout},
-                      options.common);
 }
 
-/// The coefficients as each flight alone finds them. Those of a flight that cannot tell them are missing.
-void write_flight_table(const RefitResult& all, const ModelFile& model, const References& references,
-                        const RefitOptions& with, const Options& options) {
+/// A row for each flight, with the coefficients that it finds alone.
+FlightTable flight_table(const RefitResult& all, const ModelFile& model, const References& references,
+                         RefitOptions with, const Options& options) {
   std::vector<std::string> columns{"flight",         "held_out",       "reference",
                                    "samples",        "rms_before_hpa", "bias_after_hpa",
                                    "bias_error_hpa", "rms_after_hpa",  "noise_rms_hpa"};
@@ -282,20 +284,12 @@ void write_flight_table(const RefitResult& all, const ModelFile& model, const Re
     columns.push_back(parameter.name + " alone");
     columns.push_back(parameter.name + " alone, standard error");
   }
-  std::map<std::string, RefitResult> alone;
   Progress bar("fitting each flight alone", !options.common.quiet);
-  RefitOptions own = with;
-  own.holdout.clear();
-  own.progress = nullptr;
+  with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
   const std::vector<std::filesystem::path> flights = flight_paths(options.comparison);
-  for (std::size_t i = 0; i < flights.size(); ++i) {
-    try {
-      alone.emplace(flights[i].filename().string(), refit({flights[i]}, model, references, own));
-    } catch (const Error& error) {
-      if (error.code() == Error::Code::file) throw;
-    }
-    bar.show(i + 1, flights.size());
-  }
+  const auto found = refit_each_alone(flights, model, references, with);
+  std::map<std::string, std::vector<FittedParameter>> alone;
+  for (std::size_t i = 0; i < flights.size(); ++i) alone.emplace(flights[i].filename().string(), found[i]);
   FlightTable table(columns);
   for (const FlightFit& flight : all.flights) {
     std::vector<std::string> row{flight.flight,
@@ -307,12 +301,11 @@ void write_flight_table(const RefitResult& all, const ModelFile& model, const Re
                                  cell(flight.after.bias_error),
                                  cell(flight.after.rms),
                                  cell(flight.after.noise_rms)};
-    const auto found = alone.find(flight.flight);
     for (const std::string& name : fitted) {
       double value = std::numeric_limits<double>::quiet_NaN();
       double error = value;
-      if (found != alone.end() && !flight.holdout) {
-        for (const FittedParameter& parameter : found->second.parameters) {
+      if (!flight.holdout) {
+        for (const FittedParameter& parameter : alone[flight.flight]) {
           if (parameter.name != name) continue;
           value = parameter.value;
           error = parameter.standard_error;
@@ -323,7 +316,7 @@ void write_flight_table(const RefitResult& all, const ModelFile& model, const Re
     }
     table.add(std::move(row));
   }
-  table.write(options.table);
+  return table;
 }
 
 /// Writes the fitted models. @throws Error, before anything is written, if they are refused.
@@ -359,9 +352,19 @@ void run(const Options& options) {
     result = refit(flight_paths(options.comparison), model, references.used, refit_with);
   }
   const bool is_refused = !result.worse.empty() && !options.force;
+  std::optional<Comparison> comparison;
+  if (wants_report(options.common))
+    comparison = before_against_after(result, model, references.used, options);
+  std::optional<FlightTable> table;
+  if (!options.table.empty()) table = flight_table(result, model, references.used, refit_with, options);
+  if (!is_speaker()) return;
   OutputsTogether together;
-  if (wants_report(options.common)) write_fit_report(result, model, references.used, options);
-  if (!options.table.empty()) write_flight_table(result, model, references.used, refit_with, options);
+  if (comparison) {
+    write_report_of_run(refit_report(result, *comparison),
+                        {{options.model, options.output}, options.comparison.flights, options.holdout},
+                        options.common);
+  }
+  if (table) table->write(options.table);
   json.write(as_json(result));
   if (!is_refused) deliver_models(result, inputs, options);
   together.appear();

@@ -9,6 +9,7 @@
 #include <pcor/report/figures.hpp>
 #include <pcor/words/utc.hpp>
 #include "choices.hpp"
+#include "team.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -31,7 +32,7 @@ bool wants_report(const CommonOptions& options) {
 }
 
 void require_figures(const CommonOptions& options) {
-  if (!options.figures.empty()) pcor::require_figures(options.figures);
+  if (is_speaker() && !options.figures.empty()) pcor::require_figures(options.figures);
 }
 
 void write_report_of_run(Report report, const ReportFiles& files, const CommonOptions& options) {

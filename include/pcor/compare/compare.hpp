@@ -3,6 +3,7 @@
 #include <pcor/numerics/line_fit.hpp>
 #include <pcor/residuals/residuals.hpp>
 #include <pcor/residuals/statistics.hpp>
+#include <pcor/team/team.hpp>
 
 #include <array>
 #include <cstddef>
@@ -82,7 +83,8 @@ struct Comparison {
 struct CompareOptions {
   MaskOptions mask;
   TimeStamp time_stamp = TimeStamp::begin;
-  /// Told after every flight with every reference.
+  Team* team = &alone();  ///< which shares the flights; all of its members get the comparison
+  /// Told after every flight of this member with every reference.
   std::function<void(std::size_t done, std::size_t total)> progress{};
 };
 

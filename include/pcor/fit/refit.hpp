@@ -3,6 +3,7 @@
 #include <pcor/fit/loss.hpp>
 #include <pcor/residuals/residuals.hpp>
 #include <pcor/residuals/statistics.hpp>
+#include <pcor/team/team.hpp>
 
 #include <cstddef>
 #include <filesystem>
@@ -50,8 +51,10 @@ struct RefitOptions {
   /// The fit uses the first part of every flight, this share of the samples; the rest is held out.
   double training_share = 1.0;
   std::vector<std::filesystem::path> holdout{};  ///< flights that take no part in the fit
-  std::size_t threads = 0;                       ///< flights reduced at a time; 0: as many as processors
-  /// Bytes of flights that may be kept between passes; what is beyond is read again in every pass, so memory
+  /// Flights reduced at a time; 0: as many as processors, and one in a team of several.
+  std::size_t threads = 0;
+  Team* team = &alone();  ///< which shares the flights; all of its members get the result
+  /// Bytes of flights that a member of the team may keep between passes; what is beyond is read again in every pass, so memory
   /// does not grow with the number of flights.
   std::size_t memory = std::size_t{512} << 20U;
   std::function<void(std::size_t pass, std::size_t passes)> progress{};
@@ -147,8 +150,16 @@ struct RefitResult {
 RefitResult refit(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
                   const References& references, const RefitOptions& options = {});
 
-/// As above, for flights in memory, which hold what the first reference reads: the others take no part.
+/// As `refit`, for flights in memory, which hold what the first reference reads: the others take no part.
 RefitResult refit(const std::vector<std::shared_ptr<const FlightSamples>>& flights, const ModelFile& model,
                   const References& references, const RefitOptions& options = {});
+
+/// The coefficients as each flight alone finds them, without held-out flights; none of a flight that cannot tell
+/// them. The team of the options shares the flights.
+/// @throws Error if a flight cannot be read
+std::vector<std::vector<FittedParameter>> refit_each_alone(const std::vector<std::filesystem::path>& flights,
+                                                           const ModelFile& model,
+                                                           const References& references,
+                                                           const RefitOptions& options = {});
 
 }  // namespace pcor

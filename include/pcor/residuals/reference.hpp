@@ -2,6 +2,7 @@
 
 #include <pcor/laws/model_file.hpp>
 #include <pcor/residuals/samples.hpp>
+#include <pcor/team/team.hpp>
 
 #include <filesystem>
 #include <memory>
@@ -127,9 +128,10 @@ struct ChosenReferences {
 /// The references that `texts` name; without texts LAMS, and all else that the model and every flight allow:
 /// the total pressure of a second pair of pressures, heights, and wind.
 ///
+/// @param team looks at the flights
 /// @throws Error as `read_reference`, or if there is no text and no LAMS: the others do not tell a static
 /// pressure by themselves.
 ChosenReferences read_references(const std::vector<std::string>& texts, const ModelFile& model,
-                                 const std::vector<std::filesystem::path>& flights);
+                                 const std::vector<std::filesystem::path>& flights, Team& team = alone());
 
 }  // namespace pcor

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <pcor/laws/model_file.hpp>
+#include <pcor/team/team.hpp>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace pcor {
+
+/// A model that leaves variables open, completed (`with_roles`) by the first flight that can be read and
+/// completes it. All others have to choose the same variables: a result must not depend on which flights stand
+/// beside.
+/// @param flights at least one
+/// @param notes get what was chosen, a sentence each
+/// @throws Error that of the first flight where none completes the model, or Error if two choose differently
+ModelFile model_for_flights(const ModelFile& open, const std::vector<std::filesystem::path>& flights,
+                            std::vector<std::string>& notes, Team& team = alone());
+
+}  // namespace pcor

@@ -1,0 +1,39 @@
+#include <pcor/fit/refit.hpp>
+
+#include <pcor/words/error.hpp>
+#include "team/flight_share.hpp"
+
+namespace pcor {
+
+using namespace internal;
+
+template <class Archive>
+void serialize(Archive& archive, FittedParameter& parameter) {
+  archive(parameter.name, parameter.unit, parameter.start, parameter.value, parameter.standard_error,
+          parameter.jackknife_error, parameter.fitted, parameter.at_bound, parameter.stage);
+}
+
+std::vector<std::vector<FittedParameter>> refit_each_alone(const std::vector<std::filesystem::path>& flights,
+                                                           const ModelFile& model,
+                                                           const References& references,
+                                                           const RefitOptions& options) {
+  const FlightShare share = share_of_flights(*options.team, flights);
+  RefitOptions own = options;
+  own.team = &alone();
+  if (options.team->size() > 1 && own.threads == 0) own.threads = 1;
+  own.holdout.clear();
+  own.progress = nullptr;
+  std::size_t done = 0;
+  return share.of_each_flight<std::vector<FittedParameter>>([&](std::size_t number) {
+    std::vector<FittedParameter> found;
+    try {
+      found = refit(std::vector{flights[number]}, model, references, own).parameters;
+    } catch (const Error& error) {
+      if (error.code() == Error::Code::file) throw;
+    }
+    if (options.progress) options.progress(++done, share.own());
+    return found;
+  });
+}
+
+}  // namespace pcor

@@ -1,0 +1,60 @@
+#include <pcor/roles/model_for_flights.hpp>
+
+#include <cereal/types/map.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include <pcor/flight/flight.hpp>
+#include <pcor/roles/with_roles.hpp>
+#include <pcor/words/error.hpp>
+#include "team/flight_share.hpp"
+
+namespace pcor {
+
+using namespace internal;
+
+namespace {
+
+/// What a flight chooses for a model.
+struct Choice {
+  bool completes = false;
+  std::map<Quantity, std::string> variables{};
+  bool moist = false;
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(completes, variables, moist);
+  }
+};
+
+}  // namespace
+
+ModelFile model_for_flights(const ModelFile& open, const std::vector<std::filesystem::path>& flights,
+                            std::vector<std::string>& notes, Team& team) {
+  const auto choices = share_of_flights(team, flights).of_each_flight<Choice>([&](std::size_t number) {
+    try {
+      std::vector<std::string> unsaid;
+      const ModelFile own = with_roles(open, Flight(flights[number]), unsaid);
+      return Choice{true, own.variables, own.model.moist};
+    } catch (const Error&) {
+      // Whether a flight may be left out is for the work to say.
+      return Choice{};
+    }
+  });
+  const auto completes = [](const Choice& choice) { return choice.completes; };
+  const auto first = std::find_if(choices.begin(), choices.end(), completes);
+  const auto path_of = [&](auto choice) { return flights[static_cast<std::size_t>(choice - choices.begin())]; };
+  for (auto other = first; other != choices.end(); ++other) {
+    if (other->completes && (other->variables != first->variables || other->moist != first->moist)) {
+      throw Error(fmt::format(
+          "{} and {} record different variables, so that one model for both would be of the first; "
+          "give them apart, or name the variables in the [variables] of the model",
+          path_of(first).string(), path_of(other).string()));
+    }
+  }
+  return with_roles(open, Flight(first == choices.end() ? flights.front() : path_of(first)), notes);
+}
+
+}  // namespace pcor
