@@ -108,7 +108,8 @@ std::shared_ptr<FitFlight> FitFlights::made(std::size_t number,
   return fit;
 }
 
-void FitFlights::visit(const std::function<void(std::size_t, FitFlight&)>& visit) {
+void FitFlights::visit_those(const std::function<bool(std::size_t)>& chosen,
+                             const std::function<void(std::size_t, FitFlight&)>& visit) {
   const std::size_t wanted = task_.options.threads;
   const std::size_t threads =
       std::min<std::size_t>(wanted > 0 ? wanted : std::max(1U, std::thread::hardware_concurrency()), count());
@@ -118,6 +119,7 @@ void FitFlights::visit(const std::function<void(std::size_t, FitFlight&)>& visit
   std::deque<std::future<void>> working;
   try {
     for (std::size_t number = 0; number < count(); ++number) {
+      if (!chosen(number)) continue;
       std::shared_ptr<const FlightSamples> samples = samples_of(number);
       if (threads <= 1) {
         work_on(number, std::move(samples));
@@ -201,8 +203,8 @@ void FitFlights::prepare(const Eigen::VectorXd& parameters) {
   // Flights that are read again are prepared again, at the same parameters.
   prepared_parameters_ = parameters;
   for (FitFlights* const other : seeing_) other->prepare(parameters);
-  visit([&](std::size_t number, FitFlight& fit) {
-    if (!cache_[number]) return;
+  const auto is_kept = [this](std::size_t number) { return cache_[number] != nullptr; };
+  visit_those(is_kept, [&](std::size_t number, FitFlight& fit) {
     fit.prepare(parameters);
     if (noise_) fit.set_noise(*noise_, number);
   });
@@ -213,32 +215,35 @@ void FitFlights::measure_noise(const Eigen::VectorXd& parameters, bool drift) {
   if (!shares_noise_) noise_.reset();  // what is found anew need not be applied before
   prepare(parameters);
   if (shares_noise_) return;
-  // How slow the noise is, is found from a few of many flights.
   constexpr std::size_t enough = 16;
   const std::size_t every = (count() + enough - 1) / enough;
-  std::vector<Binning> bins(count());
-  std::vector<Eigen::VectorXd> residuals(count());
-  std::vector<Eigen::MatrixXd> columns(count());
-  visit([&](std::size_t number, FitFlight& fit) {
+  const std::size_t some = (count() + every - 1) / every;
+  std::vector<Binning> bins(some);
+  std::vector<Eigen::VectorXd> residuals(some);
+  std::vector<Eigen::MatrixXd> columns(some);
+  const auto is_one = [every](std::size_t number) { return number % every == 0; };
+  visit_those(is_one, [&](std::size_t number, FitFlight& fit) {
     const Eigen::MatrixXd rows = fit.rows(parameters);
-    bins[number] = fit.bins();
-    residuals[number] = rows.rightCols(1);
-    if (number % every == 0) columns[number] = rows.leftCols(as_index(setup_.wanted.size()));
+    bins[number / every] = fit.bins();
+    residuals[number / every] = rows.rightCols(1);
+    columns[number / every] = rows.leftCols(as_index(setup_.wanted.size()));
   });
-  auto found = std::make_shared<FitNoise>();
-  found->model = drift ? find_noise(bins, columns, residuals, task_.options.threads).model
-                       : estimate_noise(bins, residuals);
-  for (const Binning& each : bins) found->time.push_back(each.time());
-  noise_ = std::move(found);
+  const auto found = std::make_shared<FitNoise>();
+  found->shared = drift ? find_noise(bins, columns, residuals, task_.options.threads).model
+                        : estimate_noise(bins, residuals);
+  found->shared.level.clear();
+  found->levels.resize(count());
   visit([&](std::size_t number, FitFlight& fit) {
-    if (cache_[number]) fit.set_noise(*noise_, number);
+    found->levels[number] = noise_levels(fit.bins(), fit.rows(parameters).rightCols(1), found->shared);
+    if (cache_[number]) fit.set_noise(*found, number);
   });
+  noise_ = found;
 }
 
 double FitFlights::drift_rms() const {
   double squares = 0.0;
   for (std::size_t k = 0; noise_ && k < slow_times.size(); ++k)
-    squares += noise_->model.slow[k] * noise_->model.slow[k];
+    squares += noise_->shared.slow[k] * noise_->shared.slow[k];
   return std::sqrt(squares);
 }
 
