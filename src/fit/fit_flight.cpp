@@ -158,17 +158,9 @@ void FitFlight::whiten_what_stays() {
 }
 
 void FitFlight::set_noise(const FitNoise& noise, std::size_t flight) {
-  NoiseModel model;
-  model.coefficients = noise.model.coefficients;
-  model.slow = noise.model.slow;
-  const std::vector<double>& time = noise.time[flight];
-  const Eigen::VectorXd& level = noise.model.level[flight];
-  Eigen::VectorXd& own = model.level.emplace_back(as_index(bins_.size()));
-  for (std::size_t i = 0; i < bins_.size(); ++i) {
-    const auto after = std::upper_bound(time.begin(), time.end(), bins_.time()[i] + 1e-6);
-    own[as_index(i)] = level[std::max<std::ptrdiff_t>(after - time.begin() - 1, 0)];
-  }
-  whitening_.emplace(bins_, model, 0);
+  NoiseModel own = noise.shared;
+  own.level = {level_of_bins(noise.levels[flight], bins_)};
+  whitening_.emplace(bins_, own, 0);
   whiten_what_stays();
 }
 

@@ -37,6 +37,17 @@ struct FlightCounts {
   }
 };
 
+/// The bins of a flight, and its rows in them: derivatives by the wanted parameters, residual.
+struct BinnedRows {
+  Binning bins{};
+  Eigen::MatrixXd rows{};
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(bins, rows);
+  }
+};
+
 }  // namespace
 
 std::uint64_t digest_of(const Eigen::VectorXd& parameters) {
@@ -122,7 +133,8 @@ std::shared_ptr<FitFlight> FitFlights::made(std::size_t number,
   return fit;
 }
 
-void FitFlights::visit(const std::function<void(std::size_t, FitFlight&)>& visit) {
+void FitFlights::visit_those(const std::function<bool(std::size_t)>& chosen,
+                             const std::function<void(std::size_t, FitFlight&)>& visit) {
   const std::size_t wanted = task_.threads();
   const std::size_t threads = wanted > 0 ? wanted : std::max(1U, std::thread::hardware_concurrency());
   const auto how = threads > 1 ? std::launch::async : std::launch::deferred;
@@ -141,7 +153,7 @@ void FitFlights::visit(const std::function<void(std::size_t, FitFlight&)>& visit
     visit(number, *made(number, std::move(samples)));
   };
   for (std::size_t number = 0; number < count(); ++number) {
-    if (!task_.share.owns(number)) continue;
+    if (!task_.share.owns(number) || !chosen(number)) continue;
     std::shared_ptr<const FlightSamples> samples;
     try {
       samples = samples_of(number);
@@ -218,9 +230,9 @@ void FitFlights::prepare(const Eigen::VectorXd& parameters) {
   // Flights that are read again are prepared again, at the same parameters.
   prepared_parameters_ = parameters;
   for (FitFlights* const other : seeing_) other->prepare(parameters);
+  const auto is_kept = [this](std::size_t number) { return cache_[number] != nullptr; };
   task_.share.attempt([&] {
-    visit([&](std::size_t number, FitFlight& fit) {
-      if (!cache_[number]) return;
+    visit_those(is_kept, [&](std::size_t number, FitFlight& fit) {
       fit.prepare(parameters);
       if (noise_) fit.set_noise(*noise_, number);
     });
@@ -232,32 +244,42 @@ void FitFlights::measure_noise(const Eigen::VectorXd& parameters, bool drift) {
   if (!shares_noise_) noise_.reset();  // what is found anew need not be applied before
   prepare(parameters);
   if (shares_noise_) return;
-  // How slow the noise is, is found from a few of many flights.
   constexpr std::size_t enough = 16;
   const std::size_t every = (count() + enough - 1) / enough;
-  std::vector<Binning> bins(count());
-  std::vector<Eigen::VectorXd> residuals(count());
-  std::vector<Eigen::MatrixXd> columns(count());
-  visit([&](std::size_t number, FitFlight& fit) {
-    const Eigen::MatrixXd rows = fit.rows(parameters);
-    bins[number] = fit.bins();
-    residuals[number] = rows.rightCols(1);
-    if (number % every == 0) columns[number] = rows.leftCols(as_index(setup_.wanted.size()));
+  const auto some = task_.share.on_each_flight<BinnedRows>(
+      [&](std::vector<BinnedRows>& parts) {
+        visit_those([every](std::size_t number) { return number % every == 0; },
+                    [&](std::size_t number, FitFlight& fit) {
+                      parts[number] = {fit.bins(), fit.rows(parameters)};
+                    });
+      },
+      digest_of(parameters));
+  std::vector<Binning> bins;
+  std::vector<Eigen::VectorXd> residuals;
+  std::vector<Eigen::MatrixXd> columns;
+  for (std::size_t number = 0; number < count(); number += every) {
+    bins.push_back(some[number].bins);
+    residuals.emplace_back(some[number].rows.rightCols(1));
+    columns.emplace_back(some[number].rows.leftCols(as_index(setup_.wanted.size())));
+  }
+  const auto found = std::make_shared<FitNoise>();
+  found->shared = drift ? find_noise(bins, columns, residuals, task_.threads()).model
+                        : estimate_noise(bins, residuals);
+  found->shared.level.clear();
+  found->levels.resize(count());
+  task_.share.attempt([&] {
+    visit([&](std::size_t number, FitFlight& fit) {
+      found->levels[number] = noise_levels(fit.bins(), fit.rows(parameters).rightCols(1), found->shared);
+      if (cache_[number]) fit.set_noise(*found, number);
+    });
   });
-  auto found = std::make_shared<FitNoise>();
-  found->model = drift ? find_noise(bins, columns, residuals, task_.options.threads).model
-                       : estimate_noise(bins, residuals);
-  for (const Binning& each : bins) found->time.push_back(each.time());
-  noise_ = std::move(found);
-  visit([&](std::size_t number, FitFlight& fit) {
-    if (cache_[number]) fit.set_noise(*noise_, number);
-  });
+  noise_ = found;
 }
 
 double FitFlights::drift_rms() const {
   double squares = 0.0;
   for (std::size_t k = 0; noise_ && k < slow_times.size(); ++k)
-    squares += noise_->model.slow[k] * noise_->model.slow[k];
+    squares += noise_->shared.slow[k] * noise_->shared.slow[k];
   return std::sqrt(squares);
 }
 

@@ -41,10 +41,10 @@ struct FitSetup {
   std::vector<Regime> regimes{};
 };
 
-/// The noise of the flights of a fit, and the times of the bins in which its level was found, s.
+/// The noise of the flights of a fit: what they share, and the levels of each.
 struct FitNoise {
-  NoiseModel model{};
-  std::vector<std::vector<double>> time{};  ///< of each flight
+  NoiseModel shared{};
+  std::vector<std::vector<NoiseLevel>> levels{};
 };
 
 /// How many of the first parameters of a fit the residuals have as their first.
@@ -231,7 +231,8 @@ class FitFlights {
   void prepare(const Eigen::VectorXd& parameters);
 
   /// Prepares every flight, and finds the noise, with its slow parts or without, which weights the bins from
-  /// now on; or keeps that of `share_noise`.
+  /// now on; or keeps that of `share_noise`. What flights share of it is found from sixteen of them at most,
+  /// as far apart as they come.
   void measure_noise(const Eigen::VectorXd& parameters, bool drift);
 
   /// Of the slow parts of the noise together, hPa; zero before it was measured.
@@ -250,9 +251,13 @@ class FitFlights {
   double deviation(const Eigen::VectorXd& parameters);
 
  private:
-  /// Visits the flights of this member.
-  void visit(const std::function<void(std::size_t flight, FitFlight& fit)>& visit);
+  void visit(const std::function<void(std::size_t flight, FitFlight& fit)>& visit) {
+    visit_those([](std::size_t) { return true; }, visit);
+  }
   bool sees_parameters();
+  /// Visits the flights of this member that are chosen.
+  void visit_those(const std::function<bool(std::size_t flight)>& chosen,
+                   const std::function<void(std::size_t flight, FitFlight& fit)>& visit);
   std::shared_ptr<const FlightSamples> samples_of(std::size_t number) const;
   std::shared_ptr<FitFlight> made(std::size_t number, std::shared_ptr<const FlightSamples> samples);
 

@@ -6,7 +6,14 @@
 
 #include <pcor/numerics/noise.hpp>
 
-namespace pcor::internal {
+namespace pcor {
+
+template <class Archive>
+void serialize(Archive& archive, Stretch& stretch) {
+  archive(stretch.first, stretch.count);
+}
+
+namespace internal {
 
 /// Means over about four seconds: long enough that the noise of sensors is not what whitening amplifies,
 /// short enough for every manoeuvre. Longer ones for residuals that are not of one sample alone.
@@ -39,6 +46,12 @@ class Binning {
   const std::vector<std::size_t>& records() const { return record_; }
   const std::vector<Eigen::Index>& bins() const { return bin_; }
 
+  /// Without the records: with what is a mean over a bin already, nobody needs them.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(time_, stretches_);
+  }
+
  private:
   std::vector<std::size_t> record_;
   std::vector<Eigen::Index> bin_;
@@ -47,4 +60,5 @@ class Binning {
   std::vector<Stretch> stretches_;
 };
 
-}  // namespace pcor::internal
+}  // namespace internal
+}  // namespace pcor

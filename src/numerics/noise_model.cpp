@@ -19,6 +19,7 @@ constexpr double pi = 3.14159265358979323846;
 constexpr std::size_t most_shapes = 48;
 constexpr double shortest_period = 300.0;  // s
 constexpr std::size_t fewest_innovations = 20;
+constexpr double same_time = 1e-6;  // s
 /// Twice the logarithm of the likelihood that a slow part has to be worth.
 constexpr double worth_of_a_part = 2.0;
 
@@ -60,6 +61,31 @@ Eigen::VectorXd without_drift(const Binning& bins, const Eigen::VectorXd& residu
   return residual - shapes * symmetric_solution(normal, shapes.transpose() * residual);
 }
 
+/// The innovations of the autoregression of that noise, all at one level.
+Eigen::VectorXd at_one_level(const Eigen::VectorXd& fast, const Binning& bins, const NoiseModel& noise) {
+  NoiseModel even;
+  even.coefficients = noise.coefficients;
+  even.level = {Eigen::VectorXd::Ones(fast.size())};
+  return whitened(fast, bins, even, 0);
+}
+
+std::vector<NoiseLevel> levels_of(const Eigen::VectorXd& innovations, const Binning& bins,
+                                  const NoiseModel& noise) {
+  const std::vector<double>& time = bins.time();
+  std::vector<NoiseLevel> levels;
+  for (std::size_t first = 0; first < time.size() || levels.empty();) {
+    std::size_t last = first;
+    while (last < time.size() && time[last] < time[first] + local_noise_time) ++last;
+    double here = noise.common_level;
+    if (last - first >= fewest_innovations)
+      here = robust_deviation({innovations.data() + first, innovations.data() + last});
+    const double level = local_noise_level(here, noise.common_level);
+    levels.push_back({time.empty() ? 0.0 : time[first], noise.scale * (level > 0.0 ? level : 1.0)});
+    first = last;
+  }
+  return levels;
+}
+
 }  // namespace
 
 bool NoiseModel::drifts() const {
@@ -87,33 +113,32 @@ NoiseModel estimate_noise(const std::vector<Binning>& bins, const std::vector<Ei
       scaled.insert(scaled.end(), ratio.data(), ratio.data() + ratio.size());
     }
     noise.coefficients = autoregression(scaled, stretches).coefficients;
-    // The level of the innovations: first without a level of its own for each time.
-    for (Eigen::VectorXd& level : noise.level) level.setOnes();
     std::vector<Eigen::VectorXd> innovations;
     std::vector<double> whole;
     for (std::size_t f = 0; f < bins.size(); ++f) {
-      innovations.emplace_back(whitened(fast[f], bins[f], noise, f));
+      innovations.push_back(at_one_level(fast[f], bins[f], noise));
       whole.insert(whole.end(), innovations[f].data(), innovations[f].data() + innovations[f].size());
     }
-    const double common = robust_deviation(whole);
-    for (std::size_t f = 0; f < bins.size(); ++f) {
-      const std::vector<double>& time = bins[f].time();
-      for (std::size_t first = 0; first < time.size();) {
-        std::size_t last = first;
-        while (last < time.size() && time[last] < time[first] + local_noise_time) ++last;
-        const double* const begin = innovations[f].data() + first;
-        const double* const end = innovations[f].data() + last;
-        double here = common;
-        if (last - first >= fewest_innovations) here = robust_deviation({begin, end});
-        const double level = local_noise_level(here, common);
-        noise.level[f]
-            .segment(as_index(first), as_index(last - first))
-            .setConstant(level > 0.0 ? level : 1.0);
-        first = last;
-      }
-    }
+    noise.common_level = robust_deviation(whole);
+    for (std::size_t f = 0; f < bins.size(); ++f)
+      noise.level[f] = level_of_bins(levels_of(innovations[f], bins[f], noise), bins[f]);
   }
   return noise;
+}
+
+std::vector<NoiseLevel> noise_levels(const Binning& bins, const Eigen::VectorXd& residual,
+                                     const NoiseModel& noise) {
+  return levels_of(at_one_level(without_drift(bins, residual), bins, noise), bins, noise);
+}
+
+Eigen::VectorXd level_of_bins(const std::vector<NoiseLevel>& levels, const Binning& bins) {
+  Eigen::VectorXd result(as_index(bins.size()));
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    while (last + 1 < levels.size() && levels[last + 1].begin <= bins.time()[i] + same_time) ++last;
+    result[as_index(i)] = levels[last].rms;
+  }
+  return result;
 }
 
 namespace {
@@ -122,13 +147,12 @@ namespace {
 class RestrictedLikelihood {
  public:
   RestrictedLikelihood(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
-                       const std::vector<Eigen::VectorXd>& residuals, const std::vector<std::size_t>& flights,
-                       std::size_t threads)
-      : threads_(threads) {
-    for (const std::size_t f : flights) {
-      bins_.push_back(&bins[f]);
+                       const std::vector<Eigen::VectorXd>& residuals, std::size_t threads)
+      : threads_(threads), bins_(bins) {
+    for (std::size_t f = 0; f < bins.size(); ++f) {
       Eigen::MatrixXd& all = rows_.emplace_back(columns[f].rows(), columns[f].cols() + 1);
-      all << columns[f], residuals[f];
+      all.leftCols(columns[f].cols()) = columns[f];
+      all.rightCols(1) = residuals[f];
       first_.push_back(count_);
       count_ += all.rows();
     }
@@ -145,7 +169,7 @@ class RestrictedLikelihood {
   Value operator()(const NoiseModel& noise) {
     std::vector<double> determinants(bins_.size());
     in_parallel(bins_.size(), threads_, [&](std::size_t f) {
-      const Whitening whitening(*bins_[f], noise, f);
+      const Whitening whitening(bins_[f], noise, f);
       white_.middleRows(first_[f], rows_[f].rows()) = whitening(rows_[f]);
       determinants[f] = whitening.log_determinant();
     });
@@ -182,7 +206,7 @@ class RestrictedLikelihood {
   static constexpr double clipped_variance = 0.9950;  // of a normal variable, squares cut off at nine
 
   std::size_t threads_;
-  std::vector<const Binning*> bins_;
+  const std::vector<Binning>& bins_;
   std::vector<Eigen::MatrixXd> rows_;
   std::vector<Eigen::Index> first_;  // row of each flight in `white_`
   Eigen::Index count_ = 0;
@@ -221,22 +245,16 @@ std::vector<double> least_of(const Cost& cost, std::size_t parts) {
 FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
                       const std::vector<Eigen::VectorXd>& residuals, std::size_t threads) {
   FoundNoise found{estimate_noise(bins, residuals)};
-  NoiseModel& whole = found.model;
-  NoiseModel noise;  // of the flights that take part
-  noise.coefficients = whole.coefficients;
-  std::vector<std::size_t> part;
+  NoiseModel& noise = found.model;
   std::vector<double> all;
   double longest = 0.0;  // of the flights, s
   for (std::size_t f = 0; f < bins.size(); ++f) {
-    if (columns[f].rows() == 0) continue;
-    part.push_back(f);
-    noise.level.push_back(whole.level[f]);
     all.insert(all.end(), residuals[f].data(), residuals[f].data() + residuals[f].size());
     if (bins[f].size() > 0) longest = std::max(longest, bins[f].time().back() - bins[f].time().front());
   }
   const double rms = robust_deviation(all);
   if (!(rms > 0.0)) return found;
-  RestrictedLikelihood likelihood(bins, columns, residuals, part, threads);
+  RestrictedLikelihood likelihood(bins, columns, residuals, threads);
   const auto with = [&](const std::vector<double>& sizes) {
     for (std::size_t k = 0; k < sizes.size(); ++k) noise.slow[k] = sizes[k] * rms;
     return likelihood(noise);
@@ -260,9 +278,9 @@ FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen:
   found.drift_gain = cost(std::vector<double>(sizes.size(), 0.0)) - least;
   const RestrictedLikelihood::Value best = with(sizes);
   found.likelihood = -best.plain;
-  const double scale = std::sqrt(best.variance);
-  for (Eigen::VectorXd& level : whole.level) level *= scale;
-  for (std::size_t k = 0; k < sizes.size(); ++k) whole.slow[k] = scale * noise.slow[k];
+  noise.scale = std::sqrt(best.variance);
+  for (Eigen::VectorXd& level : noise.level) level *= noise.scale;
+  for (double& slow : noise.slow) slow *= noise.scale;
   return found;
 }
 

@@ -18,9 +18,17 @@ struct NoiseModel {
   std::vector<double> coefficients{};            ///< of the autoregression, from bin to bin
   std::vector<Eigen::VectorXd> level{};          ///< of each flight's bins: rms of the innovations, hPa
   std::array<double, slow_times.size()> slow{};  ///< rms of each slow part, hPa
+  double common_level = 0.0;                     ///< to which that of each five minutes is drawn, hPa
+  double scale = 1.0;                            ///< of the levels, beside what residuals tell of them
 
   /// Whether any part of it is slow.
   bool drifts() const;
+};
+
+/// The level of the noise of a flight from a time on, until that of the next.
+struct NoiseLevel {
+  double begin = 0.0;  ///< s
+  double rms = 0.0;    ///< of the innovations, hPa
 };
 
 /// A noise model, and how well it describes the residuals that it was found from.
@@ -36,14 +44,23 @@ struct FoundNoise {
 /// @param residuals of each flight, in bins, hPa
 NoiseModel estimate_noise(const std::vector<Binning>& bins, const std::vector<Eigen::VectorXd>& residuals);
 
+/// The levels of a flight, every five minutes, with what it shares with the flights from which the noise was
+/// found. One of those has the levels that it has in the noise model.
+///
+/// @param residual in bins, hPa
+std::vector<NoiseLevel> noise_levels(const Binning& bins, const Eigen::VectorXd& residual,
+                                     const NoiseModel& noise);
+
+/// The same levels bin by bin, of the bins of any part of the flight. @param levels one at least
+Eigen::VectorXd level_of_bins(const std::vector<NoiseLevel>& levels, const Binning& bins);
+
 /// The whole of the noise of residuals that columns are fitted to: autoregression and levels by
 /// `estimate_noise`, then the slow parts, and the scale of all parts, that are most likely for what the
 /// columns leave: by restricted likelihood, which knows that columns take up some of a drift (Patterson and
 /// Thompson 1971, Biometrika 58, 545). Innovations beyond three deviations count as if they were at that
 /// limit.
 ///
-/// @param columns of each flight, in bins: of all that is fitted. Flights without columns do not take part in
-///        the search for slow parts.
+/// @param columns of each flight, in bins: of all that is fitted
 /// @param residuals of each flight, in bins, after the fit, hPa
 /// @param threads flights that are filtered at a time; 0: as many as processors
 FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,

@@ -162,3 +162,30 @@ TEST(NoiseModel, OfSeveralFlightsHasALevelForEach) {
   EXPECT_NEAR(noise.level[0].mean(), 0.11, 0.02);
   EXPECT_NEAR(noise.level[1].mean(), 0.29, 0.04);
 }
+
+TEST(NoiseModel, GivesAFlightItsLevelsFromWhatFlightsShare) {
+  const std::vector<Binning> bins{bins_of(std::vector<double>(600, 0.0)),
+                                  bins_of(std::vector<double>(900, 0.0)),
+                                  bins_of(std::vector<double>(450, 0.0))};
+  const auto level = [](std::size_t i) { return i % 300 < 150 ? 0.1 : 0.3; };
+  const std::vector<Eigen::VectorXd> residuals{second_order(600, 14, level), second_order(900, 15, level),
+                                               second_order(450, 16, level)};
+  std::vector<Eigen::MatrixXd> columns;
+  for (const Eigen::VectorXd& each : residuals) columns.emplace_back(Eigen::VectorXd::Ones(each.size()));
+  const NoiseModel noise = pcor::internal::find_noise(bins, columns, residuals).model;
+  for (std::size_t f = 0; f < bins.size(); ++f) {
+    const auto levels = pcor::internal::noise_levels(bins[f], residuals[f], noise);
+    EXPECT_EQ(pcor::internal::level_of_bins(levels, bins[f]), noise.level[f]);
+  }
+  // What is left out of a flight does not change the levels of the rest.
+  const auto levels = pcor::internal::noise_levels(bins[1], residuals[1], noise);
+  std::vector<double> part(900, 0.0);
+  std::fill(part.begin() + 100, part.begin() + 400, std::nan(""));
+  const Eigen::VectorXd of_part = pcor::internal::level_of_bins(levels, bins_of(part));
+  EXPECT_EQ(of_part.head(100), noise.level[1].head(100));
+  EXPECT_EQ(of_part.tail(500), noise.level[1].tail(500));
+  // A flight of which nothing is left has the level of all.
+  const auto nothing = pcor::internal::noise_levels(Binning(), Eigen::VectorXd(), noise);
+  ASSERT_EQ(nothing.size(), 1U);
+  EXPECT_NEAR(nothing.front().rms, noise.scale * noise.common_level, 1e-12);
+}

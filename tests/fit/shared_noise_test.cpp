@@ -1,0 +1,60 @@
+#include <gtest/gtest.h>
+#include <pcor/fit/refit.hpp>
+
+#include <memory>
+#include <vector>
+
+#include "fit/fit_flights.hpp"
+#include "fit/fit_parameters.hpp"
+#include "support/made_samples.hpp"
+
+// The noise of more flights than those from which its memory is found.
+
+using namespace pcor;
+using namespace pcor::internal;
+
+namespace {
+
+constexpr std::size_t count = 34;  // the memory is found from each third
+constexpr std::size_t loud = 16;   // which is none of those
+
+/// The robust deviation of the innovations of each flight.
+std::vector<double> deviations(std::size_t memory) {
+  RefitOptions options;
+  options.memory = memory;
+  const ModelFile model = made::model({"static-constant", "static-alpha", "static-qp"});
+  const References references = made::pressure_reference();
+  FitTask task{
+      model, *references.front(), options, fit_parameters(model, *references.front(), options), {}, {},
+      [] {}};
+  task.start = Eigen::Vector3d(0.004127875, 0.021279816, 0.030849643);
+  std::vector<FlightSource> sources;
+  for (std::size_t f = 0; f < count; ++f) {
+    made::Plan plan;
+    plan.seed = static_cast<unsigned>(f);
+    plan.noise = f == loud ? 3.0 : 0.3;
+    plan.defect = made::equation_18;
+    sources.push_back({{}, made::shared(plan)});
+  }
+  FitFlights flights(sources, task, FitSetup{task.start, {0, 1, 2}});
+  flights.measure_noise(task.start, true);
+  std::vector<double> each(count);
+  flights.visit([&](std::size_t number, FitFlight& fit) {
+    const Eigen::VectorXd innovations = fit.white_rows(task.start, {}).rightCols(1);
+    each[number] = robust_deviation({innovations.begin(), innovations.end()});
+  });
+  return each;
+}
+
+TEST(SharedNoise, LeavesEveryFlightItsOwnLevels) {
+  const std::vector<double> kept = deviations(std::size_t{512} << 20U);
+  for (std::size_t f = 0; f < count; ++f) {
+    // A level of ten times the common one is brought towards it by 15 % of its logarithm, 10^0.15 = 1.41;
+    // 900 innovations tell a robust deviation to 4 %, and what is slow may be of the others alone.
+    EXPECT_NEAR(kept[f], f == loud ? 1.41 : 1.0, 0.2) << f;
+  }
+  // Flights that are made anew in every pass have the levels that they had.
+  EXPECT_EQ(deviations(0), kept);
+}
+
+}  // namespace
