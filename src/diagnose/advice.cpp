@@ -5,6 +5,7 @@
 
 #include "diagnose/separation.hpp"
 #include "numerics/triangular_factor.hpp"
+#include "team/median_of_all.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -22,9 +23,11 @@ void advise(const Analysis& analysis, const CandidateSet& set, const ModelFile& 
   const bool any = std::any_of(findings.begin(), findings.end(),
                                [](const Finding& finding) { return !finding.aliases.empty(); });
   if (!any) return;
-  std::vector<std::shared_ptr<const FlightSamples>> flights;
-  for (const FlightColumns& flight : analysis.flights()) flights.push_back(flight.samples);
-  const std::vector<Prospect> prospects = prospects_of(flights, analysis.noise(), set, model, mask);
+  const auto flights = analysis.share().of_each_flight<std::shared_ptr<const FlightSamples>>(
+      [&analysis](std::size_t f) { return analysis.flights()[f].samples; });
+  const double usual_level = median_of_absolute_values(analysis.share().team(), levels_of(analysis.noise()));
+  const std::vector<Prospect> prospects =
+      prospects_of(flights, analysis.noise(), usual_level, set, model, mask);
   const Eigen::Index columns = analysis.scores().columns();
   const Eigen::MatrixXd now = analysis.scores().information.topLeftCorner(columns, columns);
   const double variance = analysis.search().variance(analysis.result().chosen);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnose/rms.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/spikes.hpp"
@@ -24,6 +25,24 @@ std::vector<Value> part(const std::vector<Value>& all, std::size_t first, std::s
   return {all.begin() + static_cast<std::ptrdiff_t>(first), all.begin() + static_cast<std::ptrdiff_t>(last)};
 }
 
+/// The entries of a share that are of flights against the first reference: the first of them.
+std::vector<std::size_t> first_entries(const std::vector<FlightColumns>& flights) {
+  std::vector<std::size_t> first;
+  for (std::size_t f = 0; f < flights.size() && flights[f].reference == 0; ++f) first.push_back(f);
+  return first;
+}
+
+/// A flight in bins: columns, and the residual last.
+struct BinnedRows {
+  Binning bins{};
+  Eigen::MatrixXd rows{};
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(bins, rows);
+  }
+};
+
 }  // namespace
 
 std::size_t held_out_part(const FlightSamples& samples, double time) {
@@ -31,11 +50,13 @@ std::size_t held_out_part(const FlightSamples& samples, double time) {
                                             static_cast<double>(held_out_parts)));
 }
 
-Analysis::Analysis(std::vector<FlightColumns> flights, std::vector<ColumnGroup> groups, std::uint64_t seed,
-                   double explained)
-    : groups_(std::move(groups)), seed_(seed) {
-  base_ = flights.front().base.cols();
-  for (FlightColumns& flight : flights) {
+Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::uint64_t seed, double explained)
+    : share_(columns.share),
+      first_share_(share_.of_entries(first_entries(columns.flights))),
+      groups_(std::move(groups)),
+      seed_(seed) {
+  base_ = columns.flights.front().base.cols();
+  for (FlightColumns& flight : columns.flights) {
     const Binning& bins = bins_.emplace_back(flight.given, flight.samples->time, flight.samples->step,
                                              std::max(flight.window, Binning::usual_width));
     columns_.push_back(binned_columns(flight, bins));
@@ -43,15 +64,16 @@ Analysis::Analysis(std::vector<FlightColumns> flights, std::vector<ColumnGroup> 
     (flight.reference == 0 ? flights_ : further_).push_back(std::move(flight));
   }
   first_bins_ = part(bins_, 0, flights_.size());
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(base_, base_);
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(base_);
-  for (std::size_t f = 0; f < bins_.size(); ++f) {
-    information += columns_[f].leftCols(base_).transpose() * columns_[f].leftCols(base_);
-    right += columns_[f].leftCols(base_).transpose() * residuals_[f];
-  }
+  const auto normal = share_.sum_of_each_flight<Eigen::MatrixXd>([this](std::size_t f) {
+    Eigen::MatrixXd part(base_, base_ + 1);
+    part.leftCols(base_) = columns_[f].leftCols(base_).transpose() * columns_[f].leftCols(base_);
+    part.rightCols(1) = columns_[f].leftCols(base_).transpose() * residuals_[f];
+    return part;
+  });
   // Slow effects and slow drift contend for the same part of the residuals, so noise is found from both ends:
   // with whatever might be an effect taken off first, and with none. The likelier end counts.
-  const Eigen::VectorXd start = pseudo_solution(information, right, least_eigenvalue);
+  const Eigen::VectorXd start =
+      pseudo_solution(normal.leftCols(base_), normal.rightCols(1), least_eigenvalue);
   const double by_effects = search_from(start, true, explained);
   const bool drifts =
       std::any_of(noise_.begin(), noise_.end(), [](const auto& each) { return each.drifts(); });
@@ -95,24 +117,26 @@ std::vector<Eigen::MatrixXd> Analysis::columns_of(const std::vector<std::size_t>
   return part(all_columns_of(groups), 0, flights_.size());
 }
 
-std::vector<Eigen::MatrixXd> Analysis::all_columns_of(const std::vector<std::size_t>& groups) const {
+std::vector<Eigen::Index> Analysis::places_of(const std::vector<std::size_t>& groups) const {
   std::vector<Eigen::Index> places;
   for (Eigen::Index c = 0; c < base_; ++c) places.push_back(c);
   for (const std::size_t group : groups) {
     for (Eigen::Index k = 0; k < groups_[group].count; ++k)
       places.push_back(base_ + groups_[group].first + k);
   }
+  return places;
+}
+
+std::vector<Eigen::MatrixXd> Analysis::all_columns_of(const std::vector<std::size_t>& groups) const {
+  const std::vector<Eigen::Index> places = places_of(groups);
   std::vector<Eigen::MatrixXd> result;
   for (const Eigen::MatrixXd& columns : columns_) result.emplace_back(columns(Eigen::all, places));
   return result;
 }
 
-std::vector<Eigen::VectorXd> Analysis::left_by(const std::vector<std::size_t>& groups,
-                                               const Eigen::VectorXd& estimate) const {
-  std::vector<Eigen::VectorXd> left = residuals_;
-  const std::vector<Eigen::MatrixXd> columns = all_columns_of(groups);
-  for (std::size_t f = 0; f < left.size(); ++f) left[f] -= columns[f] * estimate;
-  return left;
+Eigen::VectorXd Analysis::left_of(std::size_t flight, const std::vector<std::size_t>& groups,
+                                  const Eigen::VectorXd& estimate) const {
+  return residuals_[flight] - columns_[flight](Eigen::all, places_of(groups)) * estimate;
 }
 
 std::vector<double> Analysis::added(std::size_t flight, const std::vector<std::size_t>& groups,
@@ -150,6 +174,7 @@ std::vector<double> Analysis::added_by(std::size_t flight, const std::vector<std
 
 void Analysis::replace_outliers(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate) {
   for (std::size_t f = 0; f < bins_.size(); ++f) {
+    if (!share_.owns(f)) continue;
     FlightColumns& flight = this->flight(f);
     std::size_t count = 0;
     const std::vector<double> predicted = added(f, groups, estimate);
@@ -162,37 +187,62 @@ void Analysis::replace_outliers(const std::vector<std::size_t>& groups, const Ei
 }
 
 template <class Find>
-void Analysis::for_each_reference(const Find& find) {
+void Analysis::for_each_reference(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate,
+                                  const Find& find) {
+  constexpr std::size_t enough = 16;
   noise_.resize(bins_.size());
   for (std::size_t first = 0; first < bins_.size();) {
     std::size_t last = first;
     while (last < bins_.size() && flight(last).reference == flight(first).reference) ++last;
-    const NoiseModel model = find(first, last);
-    if (first == 0) first_noise_ = model;
+    const std::size_t every = (last - first + enough - 1) / enough;
+    const auto is_one = [&](std::size_t f) { return f >= first && f < last && (f - first) % every == 0; };
+    const std::vector<Eigen::Index> places = places_of(groups);
+    const auto rows_of = share_.of_each_flight<BinnedRows>([&](std::size_t f) {
+      if (!is_one(f)) return BinnedRows{};
+      BinnedRows some{bins_[f], {columns_[f].rows(), as_index(places.size()) + 1}};
+      some.rows << columns_[f](Eigen::all, places), left_of(f, groups, estimate);
+      return some;
+    });
+    std::vector<Binning> bins;
+    std::vector<Eigen::MatrixXd> columns;
+    std::vector<Eigen::VectorXd> residuals;
+    for (std::size_t f = first; f < last; f += every) {
+      bins.push_back(rows_of[f].bins);
+      columns.emplace_back(rows_of[f].rows.leftCols(as_index(places.size())));
+      residuals.emplace_back(rows_of[f].rows.rightCols(1));
+    }
+    NoiseModel shared = find(bins, columns, residuals);
+    shared.level.clear();
     for (std::size_t f = first; f < last; ++f) {
-      noise_[f] = model;
-      noise_[f].level = {model.level[f - first]};
+      noise_[f] = shared;
+      noise_[f].level.resize(1);
+      if (!share_.owns(f)) continue;
+      noise_[f].level[0] =
+          level_of_bins(noise_levels(bins_[f], left_of(f, groups, estimate), shared), bins_[f]);
     }
     first = last;
   }
+  first_noise_ = noise_.front();
+  first_noise_.level.clear();
+  for (std::size_t f = 0; f < flights_.size(); ++f) first_noise_.level.push_back(noise_[f].level[0]);
 }
 
 void Analysis::find_first_noise(const Eigen::VectorXd& estimate) {
-  const std::vector<Eigen::VectorXd> left = left_by({}, estimate);
-  for_each_reference([&](std::size_t first, std::size_t last) {
-    return estimate_noise(part(bins_, first, last), part(left, first, last));
+  for_each_reference({}, estimate, [](const auto& bins, const auto& /*columns*/, const auto& residuals) {
+    return estimate_noise(bins, residuals);
   });
   keep_coefficients({}, estimate);
 }
 
 void Analysis::find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate) {
-  const std::vector<Eigen::VectorXd> left = left_by(groups, estimate);
-  const std::vector<Eigen::MatrixXd> columns = all_columns_of(groups);
+  // In a team of several each processor has a member of its own.
+  const std::size_t threads = share_.team().size() > 1 ? 1 : 0;
+  bool is_first = true;
   likelihood_ = 0.0;
-  for_each_reference([&](std::size_t first, std::size_t last) {
-    const FoundNoise found =
-        internal::find_noise(part(bins_, first, last), part(columns, first, last), part(left, first, last));
-    if (first == 0) drift_gain_ = found.drift_gain;
+  for_each_reference(groups, estimate, [&](const auto& bins, const auto& columns, const auto& residuals) {
+    const FoundNoise found = internal::find_noise(bins, columns, residuals, threads);
+    if (is_first) drift_gain_ = found.drift_gain;
+    is_first = false;
     likelihood_ += found.likelihood;
     return with_slower_noise(found.model);  // the likelihood is that of what the flights tell
   });
@@ -211,9 +261,11 @@ void Analysis::keep_coefficients(const std::vector<std::size_t>& groups, const E
 }
 
 void Analysis::find_search() {
-  scores_ = std::make_unique<Scores>(find_scores(bins_, columns_, residuals_, noise_));
-  white_noise_.clear();
-  for (std::size_t f = 0; f < bins_.size(); ++f) white_noise_.push_back(scores_->left(f, coefficients_));
+  scores_ = std::make_unique<Scores>(find_scores(share_, bins_, columns_, residuals_, noise_));
+  white_noise_.assign(bins_.size(), {});
+  for (std::size_t f = 0; f < bins_.size(); ++f) {
+    if (share_.owns(f)) white_noise_[f] = scores_->left(f, coefficients_);
+  }
   take_out_common_noise(*scores_);
   search_ = std::make_unique<Search>(*scores_, base_, groups_);
 }
@@ -222,9 +274,9 @@ void Analysis::take_out_common_noise(Scores& scores) const {
   if (further_.empty()) return;
   std::vector<Eigen::VectorXd> left = white_noise_;
   for (std::size_t later = flights_.size(); later < bins_.size(); ++later) {
+    if (!share_.owns(later)) continue;
     for (std::size_t earlier = 0; earlier < later; ++earlier) {
-      if (flight(earlier).samples->name == flight(later).samples->name &&
-          flight(earlier).window == flight(later).window)
+      if (flight(earlier).file == flight(later).file && flight(earlier).window == flight(later).window)
         internal::take_out_common_noise(bins_, earlier, later, left, scores);
     }
   }
@@ -237,62 +289,66 @@ Scores Analysis::scores_with(const std::vector<Eigen::MatrixXd>& more) const {
     Eigen::MatrixXd& both = columns.emplace_back(more[f].rows(), base_ + more[f].cols());
     both << columns_[f].leftCols(base_), more[f];
   }
-  Scores scores = find_scores(bins_, columns, residuals_, noise_);
+  Scores scores = find_scores(share_, bins_, columns, residuals_, noise_);
   take_out_common_noise(scores);
   return scores;
 }
 
 HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
-  const std::vector<Eigen::MatrixXd> columns = all_columns_of(groups);
-  const Eigen::Index width = columns.front().cols() + 1;
-  std::vector<Eigen::MatrixXd> information(held_out_parts, Eigen::MatrixXd::Zero(width, width));
+  const std::vector<Eigen::Index> places = places_of(groups);
+  const Eigen::Index width = as_index(places.size()) + 1;
   const auto part_of = [this](std::size_t f, double time) { return held_out_part(*flight(f).samples, time); };
-  std::vector<Eigen::MatrixXd> white;
-  for (std::size_t f = 0; f < columns.size(); ++f) {
-    Eigen::MatrixXd all(columns[f].rows(), width);
-    all << columns[f], residuals_[f];
-    white.push_back(whitened(all, bins_[f], noise_[f], 0));
+  std::vector<Eigen::MatrixXd> white(bins_.size());
+  // The sums of the parts side by side.
+  const auto information = share_.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
+    Eigen::MatrixXd all(columns_[f].rows(), width);
+    all << columns_[f](Eigen::all, places), residuals_[f];
+    white[f] = whitened(all, bins_[f], noise_[f], 0);
+    Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(width, width * as_index(held_out_parts));
     for (Eigen::Index i = 0; i < white[f].rows(); ++i) {
-      information[part_of(f, bins_[f].time()[static_cast<std::size_t>(i)])]
+      const std::size_t part = part_of(f, bins_[f].time()[static_cast<std::size_t>(i)]);
+      sums.middleCols(width * as_index(part), width)
           .selfadjointView<Eigen::Lower>()
           .rankUpdate(white[f].row(i).transpose());
     }
-  }
+    return sums;
+  });
+  std::vector<Eigen::MatrixXd> parts;
   Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(width, width);
-  for (Eigen::MatrixXd& part : information) {
-    part = part.selfadjointView<Eigen::Lower>();
-    whole += part;
+  for (std::size_t part = 0; part < held_out_parts; ++part) {
+    const Eigen::MatrixXd lower = information.middleCols(width * as_index(part), width);
+    whole += parts.emplace_back(lower.selfadjointView<Eigen::Lower>());
   }
   std::vector<Eigen::VectorXd> estimates;
-  for (const Eigen::MatrixXd& part : information) {
+  for (const Eigen::MatrixXd& part : parts) {
     const Eigen::MatrixXd rest = whole - part;
     estimates.push_back(pseudo_solution(rest.topLeftCorner(width - 1, width - 1),
                                         rest.col(width - 1).head(width - 1), least_eigenvalue));
   }
   HeldOut result;
-  result.chi2 = Eigen::VectorXd::Zero(scores_->blocks);
-  for (std::size_t f = 0; f < columns.size(); ++f) {
+  result.chi2 = scores_->by_minutes([&](std::size_t f) {
+    Eigen::VectorXd squares(white[f].rows());
     for (Eigen::Index i = 0; i < white[f].rows(); ++i) {
-      const auto bin = static_cast<std::size_t>(i);
-      const Eigen::VectorXd& estimate = estimates[part_of(f, bins_[f].time()[bin])];
+      const Eigen::VectorXd& estimate = estimates[part_of(f, bins_[f].time()[static_cast<std::size_t>(i)])];
       const double left = white[f](i, width - 1) - white[f].row(i).head(width - 1) * estimate;
-      result.chi2[scores_->block[f][bin]] += left * left;
+      squares[i] = left * left;
     }
-  }
-  double squares = 0.0;
-  double count = 0.0;
-  for (std::size_t f = 0; f < flights_.size(); ++f) {
-    std::vector<std::vector<double>> predicted;
-    for (const Eigen::VectorXd& estimate : estimates) predicted.push_back(added(f, groups, estimate));
-    for (const std::size_t record : bins_[f].records()) {
-      if (flights_[f].residual[record] != flights_[f].given[record]) continue;  // an outlier
-      const std::size_t part = part_of(f, flights_[f].samples->time[record]);
-      const double left = flights_[f].given[record] - predicted[part][record];
-      squares += left * left;
-      count += 1.0;
-    }
-  }
-  result.rms = std::sqrt(squares / count);
+    return squares;
+  });
+  result.rms = first_share_
+                   .sum_of_each_flight<SquareSum>([&](std::size_t f) {
+                     SquareSum sum;
+                     std::vector<std::vector<double>> predicted;
+                     for (const Eigen::VectorXd& estimate : estimates)
+                       predicted.push_back(added(f, groups, estimate));
+                     for (const std::size_t record : bins_[f].records()) {
+                       if (flights_[f].residual[record] != flights_[f].given[record]) continue;  // an outlier
+                       const std::size_t part = part_of(f, flights_[f].samples->time[record]);
+                       sum.add(flights_[f].given[record] - predicted[part][record]);
+                     }
+                     return sum;
+                   })
+                   .rms();
   return result;
 }
 
@@ -303,7 +359,7 @@ std::vector<double> Analysis::drift(std::size_t flight, const std::vector<std::s
   Eigen::MatrixXd covariance;
   search_->fit(groups, estimate, covariance);
   const Whitening whitening(bins, noise_[flight], 0);
-  const Eigen::VectorXd series = whitening.slow_parts(left_by(groups, estimate)[flight]);
+  const Eigen::VectorXd series = whitening.slow_parts(left_of(flight, groups, estimate));
   for (std::size_t k = 0; k < bins.records().size(); ++k) result[bins.records()[k]] = series[bins.bins()[k]];
   return result;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "diagnose/columns.hpp"
+#include "diagnose/flight_columns.hpp"
 #include "diagnose/scores.hpp"
 #include "diagnose/search.hpp"
 #include "numerics/noise_model.hpp"
@@ -29,14 +30,18 @@ struct HeldOut {
 ///
 /// A flight is there once for each reference, those against the first reference first; each reference has a
 /// noise of its own. What is told of flights without a number is told of the first reference; a number of a
-/// flight counts them all.
+/// flight counts them all. A member of a team has the records, bins and rows of its own flights; of the
+/// others it has the outlines, and none.
 class Analysis {
  public:
   /// @param groups of columns of the flights' candidates, one for each effect that is tested
   /// @param explained chi2 by effects that were found before and are in the model now
-  Analysis(std::vector<FlightColumns> flights, std::vector<ColumnGroup> groups, std::uint64_t seed,
-           double explained = 0.0);
+  Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::uint64_t seed, double explained = 0.0);
 
+  /// Of the flights against the first reference.
+  const FlightShare& share() const { return first_share_; }
+  /// Of all flights, each counted for each reference.
+  const FlightShare& whole_share() const { return share_; }
   const std::vector<FlightColumns>& flights() const { return flights_; }
   /// How many flights there are, each counted for each reference.
   std::size_t flight_count() const { return bins_.size(); }
@@ -45,7 +50,7 @@ class Analysis {
   }
   const std::vector<Binning>& bins() const { return first_bins_; }
   const Binning& bins(std::size_t flight) const { return bins_[flight]; }
-  /// Of the flights against the first reference.
+  /// Of the flights against the first reference, with the levels of the own.
   const NoiseModel& noise() const { return first_noise_; }
   /// Twice the gain in log-likelihood by slow drift against the first reference.
   double drift_gain() const { return drift_gain_; }
@@ -85,21 +90,28 @@ class Analysis {
   void replace_outliers(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate);
   void find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate);
   void find_first_noise(const Eigen::VectorXd& estimate);
-  /// The noise of the flights against each reference: `find(first, last)` of them, counted here.
+  /// The noise of the flights against each reference. What flights share of it is found from a few of them,
+  /// by `find(bins, columns, residuals)`; the levels of a flight follow from that and its own residual.
   template <class Find>
-  void for_each_reference(const Find& find);
+  void for_each_reference(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate,
+                          const Find& find);
   void keep_coefficients(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate);
   void find_search();
   /// Out of the rows against further references.
   void take_out_common_noise(Scores& scores) const;
-  std::vector<Eigen::VectorXd> left_by(const std::vector<std::size_t>& groups,
-                                       const Eigen::VectorXd& estimate) const;
-
   FlightColumns& flight(std::size_t number) {
     return number < flights_.size() ? flights_[number] : further_[number - flights_.size()];
   }
   std::vector<Eigen::MatrixXd> all_columns_of(const std::vector<std::size_t>& groups) const;
 
+  /// What base and groups leave of the residual of a flight, in bins.
+  Eigen::VectorXd left_of(std::size_t flight, const std::vector<std::size_t>& groups,
+                          const Eigen::VectorXd& estimate) const;
+  /// The places of the columns of base and groups.
+  std::vector<Eigen::Index> places_of(const std::vector<std::size_t>& groups) const;
+
+  FlightShare share_;
+  FlightShare first_share_;
   std::vector<FlightColumns> flights_{};
   std::vector<FlightColumns> further_{};  // against other references
   std::vector<ColumnGroup> groups_;

@@ -23,28 +23,41 @@ bool has_effect(const ModelFile& model, std::string_view id) {
   return std::any_of(effects.begin(), effects.end(), [id](const ModelEffect& e) { return e.id == id; });
 }
 
-/// Whether every flight records `variable` in a unit that fits the role.
-bool is_recorded(const std::vector<const Flight*>& flights, const std::string& variable, Quantity role) {
-  return std::all_of(flights.begin(), flights.end(), [&](const Flight* flight) {
-    return has_values(*flight, variable, std::string(facts_of(role).unit));
-  });
+/// The aircraft family whose names a model uses on some flights.
+const AircraftFamily& family_of(const ModelFile& file, const FlightFiles& flights) {
+  if (!file.roles_from.empty()) return family_named(file.roles_from);
+  return flights.count() == 0 ? aircraft_families().front() : family_named(flights.outlines().front().family);
 }
 
-/// Names the usual variables of the roles that the model leaves open. The flow angles stay as they are where
-/// the model computes them from the radome.
-void name_usual_variables(ModelFile& file, const std::vector<const Flight*>& flights) {
-  const AircraftFamily& family =
-      flights.empty() ? aircraft_families().front() : family_of(file, *flights.front());
+/// Names the usual variables of the roles that the model leaves open, where every flight records them in a
+/// unit that fits. The flow angles stay as they are where the model computes them from the radome.
+void name_usual_variables(ModelFile& file, const FlightFiles& flights) {
+  const AircraftFamily& family = family_of(file, flights);
+  std::vector<std::pair<Quantity, std::vector<std::string>>> open;
   for (std::size_t i = 0; i < role_count; ++i) {
     const auto role = static_cast<Quantity>(i);
     if (file.variables.count(role) != 0) continue;
     if (role == Quantity::attack && file.model.attack_radome.is_calibrated()) continue;
     if (role == Quantity::sideslip && file.model.sideslip_radome.is_calibrated()) continue;
-    for (const std::string& variable : usual_variables(family, role)) {
-      if (!is_recorded(flights, variable, role)) continue;
-      file.variables[role] = variable;
-      if (std::string unit = family.unit_of(variable); !unit.empty()) file.units[role] = std::move(unit);
-      break;
+    open.emplace_back(role, usual_variables(family, role));
+  }
+  for (std::size_t place = 0; !open.empty(); ++place) {  // the most usual first
+    open.erase(std::remove_if(open.begin(), open.end(),
+                              [&](const auto& each) { return place >= each.second.size(); }),
+               open.end());
+    const auto recorded = flights.share().of_each_flight<std::vector<bool>>([&](std::size_t number) {
+      std::vector<bool> has;
+      for (const auto& [role, variables] : open)
+        has.push_back(has_values(flights[number], variables[place], std::string(facts_of(role).unit)));
+      return has;
+    });
+    for (std::size_t k = open.size(); k-- > 0;) {
+      if (!std::all_of(recorded.begin(), recorded.end(), [k](const auto& has) { return has[k]; })) continue;
+      const std::string& variable = open[k].second[place];
+      file.variables[open[k].first] = variable;
+      if (std::string unit = family.unit_of(variable); !unit.empty())
+        file.units[open[k].first] = std::move(unit);
+      open.erase(open.begin() + static_cast<std::ptrdiff_t>(k));
     }
   }
 }
@@ -67,11 +80,11 @@ Candidate candidate_of(const EffectFacts& facts) {
 }
 
 /// The begins of the flights after the first, in the unit of the role date.
-std::vector<double> later_begins(const std::vector<const Flight*>& flights) {
+std::vector<double> later_begins(const FlightFiles& flights) {
   const UnitConversion to_date =
       UnitConversion::between("seconds since 1970-01-01", std::string(facts_of(Quantity::date).unit), {});
   std::set<double> begins;
-  for (const Flight* flight : flights) begins.insert(to_date(flight->time().first));
+  for (const FileOutline& file : flights.outlines()) begins.insert(to_date(file.begin));
   if (!begins.empty()) begins.erase(begins.begin());
   return {begins.begin(), begins.end()};
 }
@@ -80,13 +93,13 @@ bool reads_date(const EffectFacts& facts) { return facts.needs[0] == Quantity::d
 
 /// What a shape parameter is tried at: what its facts say, a date at the begins of flights.
 std::vector<double> tried_values(const EffectFacts& facts, const ParameterFacts& shape,
-                                 const std::vector<const Flight*>& flights) {
+                                 const FlightFiles& flights) {
   if (reads_date(facts)) return later_begins(flights);
   return {shape.tried.begin(), std::find(shape.tried.begin(), shape.tried.end(), 0.0)};
 }
 
 /// The candidate in other shapes.
-std::vector<Candidate> variants_of(const Candidate& candidate, const std::vector<const Flight*>& flights) {
+std::vector<Candidate> variants_of(const Candidate& candidate, const FlightFiles& flights) {
   std::vector<Candidate> variants;
   if (candidate.effect.is_formula()) return variants;
   const EffectFacts& facts = effect_facts[effect_named(candidate.effect.id)];
@@ -120,20 +133,27 @@ Candidate candidate_of(const ModelEffect& formula) {
   return candidate;
 }
 
+/// Why a flight has no values of a variable; empty where it has.
+std::string trouble_with(const Flight& flight, const std::string& variable) {
+  if (!flight.has(variable)) return fmt::format("{} has no variable {}", flight.path().string(), variable);
+  try {
+    flight.require_values(variable);
+  } catch (const Error& error) {
+    if (error.code() == Error::Code::file) throw;
+    return error.what();
+  }
+  return "";
+}
+
 /// Of a formula: the variable that some flight lacks; empty where there is none.
-std::string missing_variable(const ModelEffect& effect, const std::vector<const Flight*>& flights) {
+std::string missing_variable(const ModelEffect& effect, const FlightFiles& flights) {
   const auto formula = Formula::parse(effect.formula, effect.parameter_names, nullptr);
   if (!formula) return "";
   for (const std::string& name : formula->variables()) {
     if (quantity_named(name) != Quantity::count) continue;
-    for (const Flight* flight : flights) {
-      if (!flight->has(name)) return fmt::format("{} has no variable {}", flight->path().string(), name);
-      try {
-        flight->require_values(name);
-      } catch (const Error& error) {
-        if (error.code() == Error::Code::file) throw;
-        return error.what();
-      }
+    for (std::string& trouble : flights.share().of_each_flight<std::string>(
+             [&](std::size_t number) { return trouble_with(flights[number], name); })) {
+      if (!trouble.empty()) return std::move(trouble);
     }
   }
   return "";
@@ -220,7 +240,7 @@ std::vector<BaseCoefficient> base_of(const ModelFile& model) {
 /// Everything that the own system may have, a system that it is held against may have too. One residual of
 /// both knows their difference alone.
 void add_those_of_the_references(CandidateSet& set, const References& references,
-                                 const std::vector<const Flight*>& flights) {
+                                 const FlightFiles& flights) {
   for (std::size_t r = 0; r < references.size(); ++r) {
     const ModelFile* const model = references[r]->model();
     std::optional<ModelFile>& other = set.others.emplace_back();
@@ -291,7 +311,7 @@ std::vector<std::size_t> free_parameters(const ModelFile& model) {
 }
 
 CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffect>& formulas,
-                             const std::vector<const Flight*>& flights, const References& references) {
+                             const FlightFiles& flights, const References& references) {
   CandidateSet set;
   set.extended = model;
   name_usual_variables(set.extended, flights);

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include <pcor/diagnose/diagnose.hpp>
-#include <pcor/flight/flight.hpp>
 #include <pcor/laws/model_file.hpp>
 #include <pcor/residuals/reference.hpp>
+#include "diagnose/flight_files.hpp"
 
 namespace pcor::internal {
 
@@ -73,7 +73,7 @@ struct CandidateSet {
 /// The effects of the catalogue that are not in the model, and the formulas. An effect whose inputs some
 /// flight lacks is not testable, and told so. @throws Error if the model cannot be used.
 CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffect>& formulas,
-                             const std::vector<const Flight*>& flights, const References& references);
+                             const FlightFiles& flights, const References& references);
 
 /// The places among all parameters of a model of those that are fitted.
 std::vector<std::size_t> free_parameters(const ModelFile& model);

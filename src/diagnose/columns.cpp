@@ -292,6 +292,23 @@ Eigen::MatrixXd binned_columns(const FlightColumns& flight, const Binning& bins)
   return columns;
 }
 
+FlightColumns outline_of(const FlightColumns& flight) {
+  FlightColumns outline;
+  outline.file = flight.file;
+  outline.reference = flight.reference;
+  outline.window = flight.window;
+  auto samples = std::make_shared<FlightSamples>();
+  samples->name = flight.samples->name;
+  samples->flaps_variable = flight.samples->flaps_variable;
+  samples->notes = flight.samples->notes;
+  outline.samples = std::move(samples);
+  outline.base.resize(0, flight.base.cols());
+  outline.candidates.resize(0, flight.candidates.cols());
+  for (const auto& each : flight.quantities)
+    outline.quantities.emplace_back(each.first, std::vector<double>());
+  return outline;
+}
+
 FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended, const ModelFile& model,
                            const CandidateSet& set, std::size_t reference, const MaskOptions& mask,
                            double first_part) {

@@ -8,6 +8,7 @@
 #include <pcor/residuals/residuals.hpp>
 #include "diagnose/candidates.hpp"
 #include "numerics/binning.hpp"
+#include "residuals/packed_residuals.hpp"
 
 namespace pcor::internal {
 
@@ -17,6 +18,7 @@ namespace pcor::internal {
 /// are derivatives through the whole chain where the model says that the air is, never at the noisy speed of
 /// the laser, whose noise is that of the residual.
 struct FlightColumns {
+  std::size_t file = 0;       ///< which of the files
   std::size_t reference = 0;  ///< which of the references
   /// Over how long a mean of the residual tells something new, s; zero: of every sample.
   double window = 0.0;
@@ -36,7 +38,16 @@ struct FlightColumns {
   std::vector<double> corrected_pressure{};  ///< static, hPa
 
   const std::vector<double>& quantity(Quantity quantity) const;
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(file, reference, window, samples, mask, given, residual, exact, flaps_out, base, candidates,
+            quantities, corrected_pressure);
+  }
 };
+
+/// The same without a record: what the members of a team know of a flight that another owns.
+FlightColumns outline_of(const FlightColumns& flight);
 
 /// Finds the columns of one flight against one of the set's references.
 ///

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include <pcor/effects/catalogue.hpp>
@@ -16,6 +17,7 @@
 #include "diagnose/findings.hpp"
 #include "diagnose/flaps.hpp"
 #include "diagnose/flight_columns.hpp"
+#include "diagnose/packed_diagnosis.hpp"
 #include "diagnose/rms.hpp"
 #include "diagnose/unexplained.hpp"
 #include "numerics/missing.hpp"
@@ -49,6 +51,7 @@ std::set<std::string> inputs_of(const std::vector<Finding>& findings, const Mode
   return names;
 }
 
+/// The own flights; of the others nothing.
 std::vector<FlightDiagnosis> flights_of(const Analysis& analysis) {
   const std::vector<std::size_t>& chosen = analysis.result().chosen;
   const Search& search = analysis.search();
@@ -57,10 +60,12 @@ std::vector<FlightDiagnosis> flights_of(const Analysis& analysis) {
   Eigen::MatrixXd covariance;
   search.fit({}, without, covariance);
   search.fit(chosen, with, covariance);
-  std::vector<FlightDiagnosis> flights;
-  for (std::size_t f = 0; f < analysis.flights().size(); ++f) {
+  const std::vector<Eigen::VectorXd> evidence = evidence_of_findings(analysis);
+  std::vector<FlightDiagnosis> flights(analysis.flights().size());
+  for (std::size_t f = 0; f < flights.size(); ++f) {
+    if (!analysis.share().owns(f)) continue;
     const FlightColumns& columns = analysis.flights()[f];
-    FlightDiagnosis& flight = flights.emplace_back();
+    FlightDiagnosis& flight = flights[f];
     flight.samples = columns.samples;
     flight.mask = columns.mask;
     const std::vector<double> base = analysis.added(f, {}, without);
@@ -71,9 +76,10 @@ std::vector<FlightDiagnosis> flights_of(const Analysis& analysis) {
       flight.before[i] -= base[i];
       flight.after[i] -= all[i];
     }
-    for (std::size_t k = 0; k < chosen.size(); ++k)
+    for (std::size_t k = 0; k < chosen.size(); ++k) {
       flight.added.push_back(analysis.added_by(f, chosen, k, with));
-    flight.evidence = evidence_along(analysis, f);
+      flight.evidence.push_back(evidence_along(analysis, f, evidence[k]));
+    }
     flight.drift = analysis.drift(f, chosen);
     flight.static_pressure = columns.corrected_pressure;
     flight.mach = columns.quantity(Quantity::corrected_mach);
@@ -97,38 +103,67 @@ std::vector<Estimate> own_of(const Analysis& analysis, const std::vector<BaseCoe
   return own;
 }
 
-double noise_with_findings(const std::vector<FlightDiagnosis>& flights) {
+double noise_with_findings(const FlightShare& share, const std::vector<FlightDiagnosis>& flights) {
   ResidualSums sums;
-  for (const FlightDiagnosis& flight : flights) {
-    const ResidualSums one = sums_of_flight(*flight.samples, flight.after);
+  for (const ResidualSums& one : share.of_each_flight<ResidualSums>(
+           [&flights](std::size_t f) { return sums_of_flight(*flights[f].samples, flights[f].after); })) {
     if (std::isfinite(one.noise_squares)) sums.add(one);
   }
   return sums.statistics().noise_rms;
 }
 
+/// What the model as it is given leaves of a flight.
+struct GivenStatistics {
+  ResidualSums used{};
+  std::optional<ResidualSums> with_flaps{};
+  std::vector<double> blocks{};  // means
+  std::optional<Statistics> held_out{};
+  std::size_t held_out_blocks = 0;
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(used, with_flaps, blocks, held_out, held_out_blocks);
+  }
+};
+
+GivenStatistics statistics_of(const FlightColumns& flight, double share) {
+  GivenStatistics found;
+  const FlightSamples& samples = *flight.samples;
+  const std::vector<std::size_t> first = used_samples(flight.mask, share);
+  std::vector<std::size_t> later = used_samples(flight.mask);
+  later.erase(later.begin(), later.begin() + static_cast<std::ptrdiff_t>(first.size()));
+  const NoiseFloor noise = noise_of_flight(samples, only_where(flight.exact, flight.mask, Mask::none));
+  const std::vector<double> residual = only_at(flight.exact, first);
+  found.used = sums_of_flight(samples, residual, noise);
+  found.blocks = means_of_blocks(samples, residual);
+  const std::vector<double> out = only_where(flight.exact, flight.mask, Mask::flaps);
+  if (has_value(out)) found.with_flaps = sums_of_flight(samples, out);
+  if (later.empty()) return found;
+  const std::vector<double> held_out = only_at(flight.exact, later);
+  found.held_out = sums_of_flight(samples, held_out, noise).statistics();
+  found.held_out_blocks = means_of_blocks(samples, held_out).size();
+  return found;
+}
+
 /// What the model as it is given leaves: of the samples that are used, of the later parts of the flights, and
 /// of those with flaps out.
-void add_statistics(const std::vector<FlightColumns>& flights, double share, Diagnosis& diagnosis) {
+void add_statistics(const TeamColumns& columns, double share, Diagnosis& diagnosis) {
   ResidualSums used;
   ResidualSums with_flaps;
   std::vector<std::vector<double>> blocks;
   std::vector<std::size_t> held_out_blocks;
-  for (const FlightColumns& flight : flights) {
-    if (flight.reference != 0) continue;
-    const FlightSamples& samples = *flight.samples;
-    const std::vector<std::size_t> first = used_samples(flight.mask, share);
-    std::vector<std::size_t> later = used_samples(flight.mask);
-    later.erase(later.begin(), later.begin() + static_cast<std::ptrdiff_t>(first.size()));
-    const NoiseFloor noise = noise_of_flight(samples, only_where(flight.exact, flight.mask, Mask::none));
-    const std::vector<double> residual = only_at(flight.exact, first);
-    used.add(sums_of_flight(samples, residual, noise));
-    blocks.push_back(means_of_blocks(samples, residual));
-    const std::vector<double> out = only_where(flight.exact, flight.mask, Mask::flaps);
-    if (has_value(out)) with_flaps.add(sums_of_flight(samples, out));
-    if (later.empty()) continue;
-    const std::vector<double> held_out = only_at(flight.exact, later);
-    diagnosis.held_out.push_back({samples.name, sums_of_flight(samples, held_out, noise).statistics(), 0.0});
-    held_out_blocks.push_back(means_of_blocks(samples, held_out).size());
+  const auto found = columns.share.of_each_flight<GivenStatistics>([&](std::size_t f) {
+    const FlightColumns& flight = columns.flights[f];
+    return flight.reference == 0 ? statistics_of(flight, share) : GivenStatistics();
+  });
+  for (std::size_t f = 0; f < found.size(); ++f) {
+    if (columns.flights[f].reference != 0) continue;
+    used.add(found[f].used);
+    blocks.push_back(found[f].blocks);
+    if (found[f].with_flaps) with_flaps.add(*found[f].with_flaps);
+    if (!found[f].held_out) continue;
+    diagnosis.held_out.push_back({columns.flights[f].samples->name, *found[f].held_out, 0.0});
+    held_out_blocks.push_back(found[f].held_out_blocks);
   }
   const Statistics statistics = used.statistics();
   diagnosis.samples = statistics.samples;
@@ -137,6 +172,21 @@ void add_statistics(const std::vector<FlightColumns>& flights, double share, Dia
   diagnosis.flaps_out = with_flaps.statistics();
   for (std::size_t i = 0; i < diagnosis.held_out.size(); ++i)
     diagnosis.held_out[i].expected = expected_bias(blocks, held_out_blocks[i]);
+}
+
+/// The samples of all flights by what they are left out for.
+std::array<std::size_t, mask_count> count_masks(const TeamColumns& columns) {
+  using Counts = std::array<std::size_t, mask_count>;
+  Counts all{};
+  for (const Counts& part : columns.share.of_each_flight<Counts>([&columns](std::size_t f) {
+         Counts own{};
+         if (columns.flights[f].reference != 0) return own;
+         for (const Mask mask : columns.flights[f].mask) ++own[static_cast<std::size_t>(mask)];
+         return own;
+       })) {
+    for (std::size_t m = 0; m < mask_count; ++m) all[m] += part[m];
+  }
+  return all;
 }
 
 Verdict verdict_of(const Diagnosis& diagnosis, double explained, double left) {
@@ -217,25 +267,18 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
                    const References& all_references, const DiagnoseOptions& options) {
   if (paths.empty()) throw Error("nothing to diagnose; give at least one flight");
   require_each_once(paths);
-  std::vector<Flight> files;
+  const FlightFiles files(*options.team, paths, options.time_stamp);
   std::vector<std::pair<std::string, std::string>> aircraft;
-  for (const std::filesystem::path& path : paths) {
-    files.emplace_back(path, options.time_stamp);
-    aircraft.emplace_back(path.filename().string(), files.back().aircraft());
-  }
+  for (std::size_t f = 0; f < paths.size(); ++f)
+    aircraft.emplace_back(paths[f].filename().string(), files.outlines()[f].aircraft);
   require_one_aircraft(aircraft);
-  std::vector<const Flight*> flights;
-  for (const Flight& file : files) flights.push_back(&file);
 
   Diagnosis diagnosis;
   const References references = usable_references(all_references, diagnosis.notes);
   diagnosis.reference = description_of(references);
-  CandidateSet set = find_candidates(model, options.formulas, flights, references);
-  std::vector<FlightColumns> columns = columns_of_flights(files, model, set, options, diagnosis.notes);
-  for (const FlightColumns& flight : columns) {
-    if (flight.reference != 0) continue;
-    for (const Mask mask : flight.mask) ++diagnosis.masks[static_cast<std::size_t>(mask)];
-  }
+  CandidateSet set = find_candidates(model, options.formulas, files, references);
+  TeamColumns columns = columns_of_flights(files, paths.size(), model, set, options, diagnosis.notes);
+  diagnosis.masks = count_masks(columns);
   leave_out_empty(columns);
   add_statistics(columns, options.training_share, diagnosis);
   if (diagnosis.samples < diagnosis.masks[0]) {
@@ -262,10 +305,13 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
   diagnosis.not_testable = std::move(set.not_testable);
   diagnosis.own = own_of(analysis, set.base);
   diagnosis.flights = flights_of(analysis);
-  diagnosis.residual_rms = rms_of(diagnosis.flights, &FlightDiagnosis::before);
+  using Series = const std::vector<double>&;
+  diagnosis.residual_rms =
+      rms_of(analysis.share(), [&](std::size_t f) -> Series { return diagnosis.flights[f].before; });
   diagnosis.residual_rms_held_out = analysis.held_out({}).rms;
-  diagnosis.noise_rms_with_findings = noise_with_findings(diagnosis.flights);
-  const double rms_after = rms_of(diagnosis.flights, &FlightDiagnosis::after);
+  diagnosis.noise_rms_with_findings = noise_with_findings(analysis.share(), diagnosis.flights);
+  const double rms_after =
+      rms_of(analysis.share(), [&](std::size_t f) -> Series { return diagnosis.flights[f].after; });
   UnexplainedStructure structure =
       find_unexplained(analysis, files, model, references, inputs_of(diagnosis.findings, set.extended),
                        options, rms_after, diagnosis.noise_rms_with_findings);
@@ -275,6 +321,12 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
   if (structure.overrules) overrule(diagnosis);
   if (!flaps.empty())
     diagnose_flaps(analysis, flaps, groups_of(model, flaps.candidates), options.seed, diagnosis);
+  if (options.series) {
+    diagnosis.flights = analysis.share().of_each_flight<FlightDiagnosis>(
+        [&diagnosis](std::size_t f) { return std::move(diagnosis.flights[f]); });
+  } else {
+    diagnosis.flights.clear();
+  }
   double explained = 0.0;
   for (const Finding& finding : diagnosis.findings) explained += finding.chi2;
   diagnosis.verdict = verdict_of(diagnosis, explained, structure.left);

@@ -8,6 +8,7 @@
 #include <set>
 
 #include <pcor/effects/catalogue.hpp>
+#include "diagnose/rms.hpp"
 #include "diagnose/shape_doubt.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
@@ -57,6 +58,12 @@ struct Event {
   double begin = 0.0;
   double end = 0.0;
   double evidence = 0.0;
+  std::string regimes{};  // that were flown
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(flight, begin, end, evidence, regimes);
+  }
 };
 
 /// The evidence of every minute for a group: of the rows that only it could explain, the product with what is
@@ -69,12 +76,7 @@ Eigen::VectorXd evidence_of(const Analysis& analysis, std::size_t group,
   others.erase(std::find(others.begin(), others.end(), group));
   const std::vector<Eigen::VectorXd> left = analysis.search().left(others);
   const double variance = analysis.search().variance(chosen);
-  Eigen::VectorXd evidence = Eigen::VectorXd::Zero(scores.blocks);
-  for (std::size_t f = 0; f < rows.size(); ++f) {
-    for (Eigen::Index i = 0; i < rows[f].size(); ++i)
-      evidence[scores.block[f][static_cast<std::size_t>(i)]] += rows[f][i] * left[f][i] / variance;
-  }
-  return evidence;
+  return scores.by_minutes([&](std::size_t f) { return rows[f].cwiseProduct(left[f]) / variance; });
 }
 
 std::vector<Event> events_of(const Analysis& analysis, const Eigen::VectorXd& evidence) {
@@ -83,22 +85,29 @@ std::vector<Event> events_of(const Analysis& analysis, const Eigen::VectorXd& ev
   // A minute counts as part of an event where it has more than its share.
   const double share = evidence.cwiseMax(0.0).sum() / static_cast<double>(evidence.size());
   std::vector<Event> events;
-  for (std::size_t f = 0; f < scores.block.size(); ++f) {
-    const std::vector<double>& time = analysis.bins(f).time();
-    Eigen::Index before = -1;
-    bool open = false;
-    for (std::size_t i = 0; i < time.size(); ++i) {
-      const Eigen::Index block = scores.block[f][i];
-      if (block == before) continue;
-      before = block;
-      if (evidence[block] > share) {
-        if (!open || time[i] > events.back().end + minute) events.push_back({f, time[i], time[i], 0.0});
-        open = true;
-        events.back().end = time[i] + minute;
-        events.back().evidence += evidence[block];
-      }
-    }
-  }
+  for (const std::vector<Event>& more :
+       analysis.whole_share().of_each_flight<std::vector<Event>>([&](std::size_t f) {
+         std::vector<Event> of_flight;
+         const std::vector<double>& time = analysis.bins(f).time();
+         Eigen::Index before = -1;
+         bool open = false;
+         for (std::size_t i = 0; i < time.size(); ++i) {
+           const Eigen::Index block = scores.block[f][i];
+           if (block == before) continue;
+           before = block;
+           if (evidence[block] > share) {
+             if (!open || time[i] > of_flight.back().end + minute)
+               of_flight.push_back({f, time[i], time[i], 0.0});
+             open = true;
+             of_flight.back().end = time[i] + minute;
+             of_flight.back().evidence += evidence[block];
+           }
+         }
+         for (Event& event : of_flight)
+           event.regimes = regimes_between(*analysis.flight(f).samples, event.begin, event.end);
+         return of_flight;
+       }))
+    events.insert(events.end(), more.begin(), more.end());
   return events;
 }
 
@@ -195,9 +204,10 @@ bool corrects_static_pressure(const Candidate& candidate) {
   return where == Where::static_defect || where == Where::static_line || where == Where::static_transducer;
 }
 
-/// What base and groups add to the corrected static pressure of every record used, beyond the base alone.
-std::vector<double> static_change(const Analysis& analysis, const std::vector<Candidate>& candidates,
-                                  const std::vector<std::size_t>& groups) {
+/// What base and groups change of the corrected static pressure, beyond the base alone: an estimate of the
+/// columns of both.
+Eigen::VectorXd static_estimate(const Analysis& analysis, const std::vector<Candidate>& candidates,
+                                const std::vector<std::size_t>& groups) {
   Eigen::VectorXd with;
   Eigen::VectorXd alone;
   Eigen::MatrixXd covariance;
@@ -210,24 +220,20 @@ std::vector<double> static_change(const Analysis& analysis, const std::vector<Ca
     if (!corrects_static_pressure(candidates[group])) with.segment(place, count).setZero();
     place += count;
   }
-  std::vector<double> change;
-  for (std::size_t f = 0; f < analysis.flights().size(); ++f) {
-    const std::vector<double> added = analysis.added(f, groups, with);
-    for (const std::size_t record : analysis.bins()[f].records()) change.push_back(added[record]);
-  }
-  return change;
+  return with;
 }
 
-double rms_of(const std::vector<double>& values) {
-  double squares = 0.0;
-  for (const double value : values) squares += value * value;
-  return values.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(values.size()));
+/// The rms of that over every record used.
+double static_change(const Analysis& analysis, const std::vector<Candidate>& candidates,
+                     const std::vector<std::size_t>& groups) {
+  const Eigen::VectorXd estimate = static_estimate(analysis, candidates, groups);
+  return rms_of(analysis.share(), [&](std::size_t f) { return analysis.added(f, groups, estimate); });
 }
 
 double static_risk(const Analysis& analysis, const std::vector<Candidate>& candidates, std::size_t winner,
                    const std::vector<std::size_t>& chosen, const std::vector<Alias>& aliases) {
   if (aliases.empty()) return 0.0;
-  const std::vector<double> own = static_change(analysis, candidates, chosen);
+  const Eigen::VectorXd own = static_estimate(analysis, candidates, chosen);
   double risk = 0.0;
   for (std::size_t g = 0; g < candidates.size(); ++g) {
     const bool is_alias = std::any_of(aliases.begin(), aliases.end(), [&](const Alias& alias) {
@@ -236,33 +242,55 @@ double static_risk(const Analysis& analysis, const std::vector<Candidate>& candi
     if (!is_alias) continue;
     std::vector<std::size_t> instead = chosen;
     std::replace(instead.begin(), instead.end(), winner, g);
-    std::vector<double> difference = static_change(analysis, candidates, instead);
-    for (std::size_t i = 0; i < own.size(); ++i) difference[i] -= own[i];
-    risk = std::max(risk, rms_of(difference));
+    const Eigen::VectorXd other = static_estimate(analysis, candidates, instead);
+    const auto difference = [&](std::size_t f) {
+      std::vector<double> values = analysis.added(f, instead, other);
+      const std::vector<double> by_own = analysis.added(f, chosen, own);
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] -= by_own[i];
+      return values;
+    };
+    risk = std::max(risk, rms_of(analysis.share(), difference));
   }
   return risk;
 }
+
+/// What an effect adds on a flight.
+struct Added {
+  SquareSum sum{};
+  double worst = 0.0;  // with sign, hPa
+  double worst_time = 0.0;
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(sum, worst, worst_time);
+  }
+};
 
 /// Its rms and its extreme over all records used: against the first reference, or, of an effect on another
 /// system, against those that have it.
 void measure(const Analysis& analysis, const std::vector<std::size_t>& chosen, std::size_t which,
              const Eigen::VectorXd& estimate, const Candidate& candidate, Finding& finding) {
-  double squares = 0.0;
-  double count = 0.0;
-  for (std::size_t f = 0; f < analysis.flight_count(); ++f) {
-    if (!candidate.is_measured_by(analysis.flight(f).reference)) continue;
+  const auto of_flights = analysis.whole_share().of_each_flight<Added>([&](std::size_t f) {
+    Added own;
+    if (!candidate.is_measured_by(analysis.flight(f).reference)) return own;
     const std::vector<double> added = analysis.added_by(f, chosen, which, estimate);
-    const FlightSamples& samples = *analysis.flight(f).samples;
     for (const std::size_t record : analysis.bins(f).records()) {
-      squares += added[record] * added[record];
-      count += 1.0;
-      if (std::abs(added[record]) <= std::abs(finding.worst)) continue;
-      finding.worst = added[record];
-      finding.worst_flight = samples.name;
-      finding.worst_time = samples.time[record];
+      own.sum.add(added[record]);
+      if (std::abs(added[record]) <= std::abs(own.worst)) continue;
+      own.worst = added[record];
+      own.worst_time = analysis.flight(f).samples->time[record];
     }
+    return own;
+  });
+  SquareSum sum;
+  for (std::size_t f = 0; f < of_flights.size(); ++f) {
+    sum += of_flights[f].sum;
+    if (std::abs(of_flights[f].worst) <= std::abs(finding.worst)) continue;
+    finding.worst = of_flights[f].worst;
+    finding.worst_flight = analysis.flight(f).samples->name;
+    finding.worst_time = of_flights[f].worst_time;
   }
-  finding.rms = count > 0.0 ? std::sqrt(squares / count) : 0.0;
+  finding.rms = sum.rms();
 }
 
 /// What no model file can hold of the shape that a candidate is tried in; empty where it can hold all.
@@ -326,6 +354,27 @@ void describe(const std::vector<Candidate>& candidates, std::size_t winner, cons
   }
 }
 
+/// The largest that the columns of an effect at its limits add to each sample of a flight.
+SquareSum at_limit(const Analysis& analysis, const Candidate& candidate, std::size_t group,
+                   const UpperLimit& limit, std::size_t number) {
+  const FlightColumns& flight = analysis.flight(number);
+  const Eigen::Index first = analysis.groups()[group].first;
+  const std::vector<Eigen::Index>& told = analysis.search().told(group);
+  SquareSum sums;
+  if (!candidate.is_measured_by(flight.reference)) return sums;
+  for (std::size_t i = 0; i < flight.given.size(); ++i) {
+    if (std::isnan(flight.given[i])) continue;
+    double largest = 0.0;
+    for (std::size_t k = 0; k < limit.limits.size(); ++k) {
+      const double value =
+          limit.limits[k] * static_cast<double>(flight.candidates(as_index(i), first + told[k]));
+      largest = std::max(largest, std::abs(value));
+    }
+    sums.add(largest);
+  }
+  return sums;
+}
+
 }  // namespace
 
 std::string regimes_between(const FlightSamples& samples, double begin, double end) {
@@ -377,33 +426,36 @@ std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Can
     std::sort(events.begin(), events.end(),
               [](const Event& a, const Event& b) { return a.evidence > b.evidence; });
     for (std::size_t k = 0; k < std::min(events.size(), most_evidence); ++k) {
-      const FlightSamples& samples = *analysis.flight(events[k].flight).samples;
-      finding.evidence.push_back({samples.name, events[k].begin, events[k].end,
-                                  regimes_between(samples, events[k].begin, events[k].end),
+      finding.evidence.push_back({analysis.flight(events[k].flight).samples->name, events[k].begin,
+                                  events[k].end, events[k].regimes,
                                   events[k].evidence / evidence.cwiseMax(0.0).sum()});
     }
     const std::vector<Rival> rivals = rivals_of(analysis, candidates, group, chosen);
     finding.aliases = aliases_of(analysis, candidates, group, chosen, rivals);
     describe(candidates, group, rivals, finding);
-    finding.static_change = rms_of(static_change(analysis, candidates, chosen));
+    finding.static_change = static_change(analysis, candidates, chosen);
     finding.static_risk = static_risk(analysis, candidates, group, chosen, finding.aliases);
     findings.push_back(std::move(finding));
   }
   return findings;
 }
 
-std::vector<std::vector<double>> evidence_along(const Analysis& analysis, std::size_t flight) {
+std::vector<Eigen::VectorXd> evidence_of_findings(const Analysis& analysis) {
+  std::vector<Eigen::VectorXd> evidence;
+  for (const std::size_t group : analysis.result().chosen)
+    evidence.push_back(evidence_of(analysis, group, analysis.result().chosen));
+  return evidence;
+}
+
+std::vector<double> evidence_along(const Analysis& analysis, std::size_t flight,
+                                   const Eigen::VectorXd& evidence) {
   const Binning& bins = analysis.bins(flight);
-  std::vector<std::vector<double>> along;
-  for (const std::size_t group : analysis.result().chosen) {
-    const Eigen::VectorXd evidence = evidence_of(analysis, group, analysis.result().chosen);
-    std::vector<double>& series = along.emplace_back(analysis.flights()[flight].given.size(), nan);
-    for (std::size_t k = 0; k < bins.records().size(); ++k) {
-      const auto bin = static_cast<std::size_t>(bins.bins()[k]);
-      series[bins.records()[k]] = evidence[analysis.scores().block[flight][bin]];
-    }
+  std::vector<double> series(analysis.flights()[flight].given.size(), nan);
+  for (std::size_t k = 0; k < bins.records().size(); ++k) {
+    const auto bin = static_cast<std::size_t>(bins.bins()[k]);
+    series[bins.records()[k]] = evidence[analysis.scores().block[flight][bin]];
   }
-  return along;
+  return series;
 }
 
 std::vector<AbsorbedEffect> absorbed_of(const Analysis& analysis, const std::vector<Candidate>& candidates,
@@ -437,6 +489,7 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
   const std::vector<std::size_t>& chosen = analysis.result().chosen;
   const Search& search = analysis.search();
   std::vector<UpperLimit> limits;
+  std::vector<std::size_t> groups;  // of each
   for (std::size_t g = 0; g < candidates.size(); ++g) {
     if (search.is_absorbed(g) || candidates[g].is_variant) continue;
     if (is_one_of(candidates[g].id, chosen, candidates)) continue;
@@ -461,31 +514,23 @@ std::vector<UpperLimit> limits_of(const Analysis& analysis, const std::vector<Ca
       seen = seen || statistical < largest;
     }
     if (!seen) limit.note = "these flights could not show it, as large as it can be";
-    // hPa that remain after base and chosen: rms of each leftover column at its limit.
-    double squares = 0.0;
-    double count = 0.0;
-    const Eigen::Index first = analysis.groups()[g].first;
-    const double kept = std::sqrt(search.remaining(g));
-    for (std::size_t f = 0; f < analysis.flight_count(); ++f) {
-      const FlightColumns& flight = analysis.flight(f);
-      if (!candidates[g].is_measured_by(flight.reference)) continue;
-      for (std::size_t i = 0; i < flight.given.size(); ++i) {
-        if (std::isnan(flight.given[i])) continue;
-        double sum = 0.0;
-        for (std::size_t k = 0; k < limit.limits.size(); ++k) {
-          const double value = limit.limits[k] *
-                               static_cast<double>(flight.candidates(as_index(i), first + search.told(g)[k]));
-          sum = std::max(sum, std::abs(value));
-        }
-        squares += sum * sum;
-        count += 1.0;
-      }
-    }
-    limit.rms = kept * std::sqrt(squares / count);
     if (!score.possible) {
       limit.note = "to explain what is left it would have to be larger, or of the other sign, than it can be";
     }
     limits.push_back(std::move(limit));
+    groups.push_back(g);
+  }
+  // hPa that remain after base and chosen: rms of each leftover column at its limit.
+  const auto of_flights = analysis.whole_share().of_each_flight<std::vector<SquareSum>>([&](std::size_t f) {
+    std::vector<SquareSum> sums;
+    for (std::size_t i = 0; i < limits.size(); ++i)
+      sums.push_back(at_limit(analysis, candidates[groups[i]], groups[i], limits[i], f));
+    return sums;
+  });
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    SquareSum sum;
+    for (const std::vector<SquareSum>& of_flight : of_flights) sum += of_flight[i];
+    limits[i].rms = std::sqrt(search.remaining(groups[i])) * std::sqrt(sum.squares / sum.count);
   }
   std::sort(limits.begin(), limits.end(),
             [](const UpperLimit& a, const UpperLimit& b) { return a.rms > b.rms; });

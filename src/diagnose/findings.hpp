@@ -12,9 +12,12 @@ namespace pcor::internal {
 /// The findings of an analysis, the strongest first, without advice.
 std::vector<Finding> findings_of(const Analysis& analysis, const std::vector<Candidate>& candidates);
 
-/// The evidence for each finding along a flight: the gain in chi2 of the minute that a record lies in; NaN
-/// where not used.
-std::vector<std::vector<double>> evidence_along(const Analysis& analysis, std::size_t flight);
+/// The evidence for each finding, of each minute of all flights: the gain in chi2.
+std::vector<Eigen::VectorXd> evidence_of_findings(const Analysis& analysis);
+
+/// That of one finding along an own flight: of the minute that a record lies in; NaN where not used.
+std::vector<double> evidence_along(const Analysis& analysis, std::size_t flight,
+                                   const Eigen::VectorXd& evidence);
 
 /// Candidates that the model's own coefficients imitate. @param base these
 std::vector<AbsorbedEffect> absorbed_of(const Analysis& analysis, const std::vector<Candidate>& candidates,

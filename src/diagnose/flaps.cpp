@@ -14,7 +14,7 @@ namespace pcor::internal {
 namespace {
 
 constexpr std::string_view flaps_effect = "flaps-gear";
-constexpr std::size_t fewest_samples = 60;
+constexpr std::size_t fewest_with_flaps_out = 60;  // samples
 
 bool looks_like_flaps(const ModelEffect& effect) {
   if (effect.is_formula()) return false;
@@ -33,28 +33,44 @@ std::vector<double> all_given(const FlightColumns& flight) {
   return given;
 }
 
-/// Whether columns have a value at every sample, and say something.
-bool can_be_tested(const std::vector<FlightColumns>& flights, Eigen::Index first, Eigen::Index count) {
-  bool varies = false;
-  for (const FlightColumns& flight : flights) {
-    if (flight.reference != 0) continue;
-    const std::vector<double> given = all_given(flight);
-    for (std::size_t i = 0; i < given.size(); ++i) {
-      if (std::isnan(given[i])) continue;
-      const auto values = flight.candidates.row(as_index(i)).segment(first, count);
-      if (!values.allFinite()) return false;
-      varies = varies || values.cwiseAbs().maxCoeff() > 0.0F;
-    }
+/// Whether columns have a value at every sample of a flight, and say something.
+struct Columns {
+  bool are_finite = true;
+  bool vary = false;
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(are_finite, vary);
   }
-  return varies;
+};
+
+Columns columns_of(const FlightColumns& flight, const std::vector<double>& given, Eigen::Index first,
+                   Eigen::Index count) {
+  Columns columns;
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    if (std::isnan(given[i])) continue;
+    const auto values = flight.candidates.row(as_index(i)).segment(first, count);
+    columns.are_finite = columns.are_finite && values.allFinite();
+    columns.vary = columns.vary || values.cwiseAbs().maxCoeff() > 0.0F;
+  }
+  return columns;
 }
 
+/// A candidate that may be tested, and its columns.
+struct Wanted {
+  const Candidate* candidate;
+  bool reads_flaps;
+  Eigen::Index first;
+  Eigen::Index count;
+};
+
 /// The flights as the test sees them: what was found is part of the model.
-std::vector<FlightColumns> flights_of(const Analysis& analysis, const FlapsCandidates& flaps) {
+TeamColumns flights_of(const Analysis& analysis, const FlapsCandidates& flaps) {
   std::vector<FlightColumns> flights;
   for (std::size_t f = 0; f < analysis.flights().size(); ++f) {
     const FlightColumns& from = analysis.flights()[f];
     FlightColumns& flight = flights.emplace_back();
+    flight.file = from.file;
     flight.samples = from.samples;
     flight.mask = from.mask;
     flight.given = all_given(from);
@@ -68,31 +84,48 @@ std::vector<FlightColumns> flights_of(const Analysis& analysis, const FlapsCandi
     }
     flight.candidates = flaps.columns[f];
   }
-  return flights;
+  return {analysis.share(), std::move(flights)};
 }
 
 }  // namespace
 
-FlapsCandidates find_flaps_candidates(const CandidateSet& set, const std::vector<FlightColumns>& flights) {
+FlapsCandidates find_flaps_candidates(const CandidateSet& set, const TeamColumns& columns) {
   FlapsCandidates flaps;
+  const std::vector<FlightColumns>& flights = columns.flights;
   std::size_t samples = 0;
-  for (const FlightColumns& flight : flights) {
-    if (flight.reference != 0) continue;
-    samples += static_cast<std::size_t>(std::count_if(flight.flaps_out.begin(), flight.flaps_out.end(),
-                                                      [](double x) { return !std::isnan(x); }));
-  }
-  if (samples < fewest_samples) return flaps;
-  std::vector<Eigen::Index> kept;
+  for (const std::size_t count : columns.share.of_each_flight<std::size_t>([&](std::size_t f) {
+         const auto is_out = [](double x) { return !std::isnan(x); };
+         const auto out = std::count_if(flights[f].flaps_out.begin(), flights[f].flaps_out.end(), is_out);
+         return flights[f].reference == 0 ? static_cast<std::size_t>(out) : 0U;
+       }))
+    samples += count;
+  if (samples < fewest_with_flaps_out) return flaps;
+  std::vector<Wanted> wanted;
   Eigen::Index first = 0;
   for (const Candidate& candidate : set.candidates) {
     const Eigen::Index count = as_index(candidate.tested.size());
     const bool reads = reads_flaps(candidate.effect, flights.front().samples->flaps_variable);
-    if ((reads || looks_like_flaps(candidate.effect)) && can_be_tested(flights, first, count)) {
-      for (Eigen::Index k = 0; k < count; ++k) kept.push_back(first + k);
-      flaps.candidates.push_back(candidate);
-      flaps.reads_flaps.push_back(reads);
-    }
+    if (reads || looks_like_flaps(candidate.effect)) wanted.push_back({&candidate, reads, first, count});
     first += count;
+  }
+  const auto found = columns.share.of_each_flight<std::vector<Columns>>([&](std::size_t f) {
+    std::vector<Columns> of_flight(wanted.size());
+    if (flights[f].reference != 0) return of_flight;
+    const std::vector<double> given = all_given(flights[f]);
+    for (std::size_t k = 0; k < wanted.size(); ++k)
+      of_flight[k] = columns_of(flights[f], given, wanted[k].first, wanted[k].count);
+    return of_flight;
+  });
+  std::vector<Eigen::Index> kept;
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    const auto are_finite = [k](const std::vector<Columns>& of_flight) { return of_flight[k].are_finite; };
+    const auto vary = [k](const std::vector<Columns>& of_flight) { return of_flight[k].vary; };
+    if (!std::all_of(found.begin(), found.end(), are_finite) ||
+        std::none_of(found.begin(), found.end(), vary))
+      continue;
+    for (Eigen::Index c = 0; c < wanted[k].count; ++c) kept.push_back(wanted[k].first + c);
+    flaps.candidates.push_back(*wanted[k].candidate);
+    flaps.reads_flaps.push_back(wanted[k].reads_flaps);
   }
   if (std::find(flaps.reads_flaps.begin(), flaps.reads_flaps.end(), true) == flaps.reads_flaps.end())
     return {};
@@ -105,6 +138,7 @@ void diagnose_flaps(const Analysis& analysis, const FlapsCandidates& flaps, std:
   const Analysis test(flights_of(analysis, flaps), std::move(groups), seed);
   const std::vector<std::size_t>& chosen = test.result().chosen;
   const std::vector<Finding> findings = findings_of(test, flaps.candidates);
+  const std::vector<Eigen::VectorXd> evidence = evidence_of_findings(test);
   Eigen::VectorXd estimate;
   Eigen::MatrixXd covariance;
   test.search().fit(chosen, estimate, covariance);
@@ -124,9 +158,10 @@ void diagnose_flaps(const Analysis& analysis, const FlapsCandidates& flaps, std:
       finding.advice.sentence = "fly this: " + finding.advice.manoeuvre;
     }
     for (std::size_t f = 0; f < diagnosis.flights.size(); ++f) {
+      if (!test.share().owns(f)) continue;
       FlightDiagnosis& flight = diagnosis.flights[f];
       flight.added.push_back(test.added_by(f, chosen, i, estimate));
-      flight.evidence.push_back(evidence_along(test, f)[i]);
+      flight.evidence.push_back(evidence_along(test, f, evidence[i]));
     }
   }
   for (UpperLimit& limit : limits_of(test, flaps.candidates, findings)) {

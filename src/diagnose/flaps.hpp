@@ -15,13 +15,13 @@ namespace pcor::internal {
 struct FlapsCandidates {
   std::vector<Candidate> candidates{};
   std::vector<bool> reads_flaps{};         ///< of each; the others are there as rivals
-  std::vector<Eigen::MatrixXf> columns{};  ///< of each flight
+  std::vector<Eigen::MatrixXf> columns{};  ///< of each flight; of those of others, without a record
 
   bool empty() const { return candidates.empty(); }
 };
 
 /// Nothing where too few samples have their flaps out.
-FlapsCandidates find_flaps_candidates(const CandidateSet& set, const std::vector<FlightColumns>& flights);
+FlapsCandidates find_flaps_candidates(const CandidateSet& set, const TeamColumns& columns);
 
 /// Tests them beside the model and what `analysis` found, and adds what is found, or its upper limit, to the
 /// diagnosis. @param groups of the columns of `flaps`

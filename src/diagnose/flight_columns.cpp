@@ -16,22 +16,51 @@
 namespace pcor::internal {
 namespace {
 
-/// Why a candidate cannot be tested on these columns; empty where it can.
-std::string trouble_of(const std::vector<FlightColumns>& flights, Eigen::Index first, Eigen::Index count) {
-  bool varies = false;
-  for (const FlightColumns& flight : flights) {
+/// What a flight says of whether candidates can be tested.
+struct Testability {
+  std::size_t used = 0;                // samples
+  std::vector<std::size_t> missing{};  // of each candidate, of these
+  std::vector<bool> varies{};          // of each candidate
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(used, missing, varies);
+  }
+};
+
+Testability testability_of(const FlightColumns& flight, const std::vector<Candidate>& candidates) {
+  Testability found;
+  std::vector<std::size_t> used;
+  for (std::size_t i = 0; i < flight.given.size(); ++i) {
+    if (!std::isnan(flight.given[i])) used.push_back(i);
+  }
+  found.used = used.size();
+  Eigen::Index first = 0;
+  for (const Candidate& candidate : candidates) {
+    const Eigen::Index count = as_index(candidate.tested.size());
     std::size_t missing = 0;
-    std::size_t used = 0;
-    for (std::size_t i = 0; i < flight.given.size(); ++i) {
-      if (std::isnan(flight.given[i])) continue;
-      ++used;
+    bool varies = false;
+    for (const std::size_t i : used) {
       const auto values = flight.candidates.row(as_index(i)).segment(first, count);
       missing += values.allFinite() ? 0 : 1;
       varies = varies || values.cwiseAbs().maxCoeff() > 0.0F;
     }
-    if (missing > 0) {
-      return fmt::format("an input has no value, or an impossible one, in {} of {} samples of {}", missing,
-                         used, flight.samples->name);
+    found.missing.push_back(missing);
+    found.varies.push_back(varies);
+    first += count;
+  }
+  return found;
+}
+
+/// Why a candidate cannot be tested on these columns; empty where it can.
+std::string trouble_of(const std::vector<FlightColumns>& flights, const std::vector<Testability>& found,
+                       std::size_t candidate) {
+  bool varies = false;
+  for (std::size_t f = 0; f < flights.size(); ++f) {
+    varies = varies || found[f].varies[candidate];
+    if (found[f].missing[candidate] > 0) {
+      return fmt::format("an input has no value, or an impossible one, in {} of {} samples of {}",
+                         found[f].missing[candidate], found[f].used, flights[f].samples->name);
     }
   }
   if (!varies)
@@ -92,47 +121,67 @@ References usable_references(const References& references, std::vector<std::stri
   return result;
 }
 
-std::vector<FlightColumns> columns_of_flights(const std::vector<Flight>& files, const ModelFile& model,
-                                              const CandidateSet& set, const DiagnoseOptions& options,
-                                              std::vector<std::string>& notes) {
-  std::vector<FlightColumns> columns;
+TeamColumns columns_of_flights(const FlightFiles& files, std::size_t count, const ModelFile& model,
+                               const CandidateSet& set, const DiagnoseOptions& options,
+                               std::vector<std::string>& notes) {
+  std::vector<std::size_t> file_of_each;
   for (std::size_t r = 0; r < set.references.size(); ++r) {
-    for (std::size_t f = 0; f < files.size(); ++f) {
-      auto samples = std::make_shared<FlightSamples>(
-          r == 0 ? read_samples(files[f], set.extended, *set.references[0], options.mask)
-                 : *columns[f].samples);
-      if (r > 0) {
-        samples->notes.clear();
-        samples->reference = set.references[r]->read(files[f], samples->time, samples->notes);
-        mark_frozen(*samples, &FlightSamples::reference, options.mask.least_airspeed);
-      }
-      notes.insert(notes.end(), samples->notes.begin(), samples->notes.end());
-      columns.push_back(
-          find_columns(std::move(samples), model, set, r, options.mask, options.training_share));
-      if (r == 0 && options.progress) options.progress(columns.size(), files.size());
+    for (std::size_t file = 0; file < count; ++file) file_of_each.push_back(file);
+  }
+  std::vector<FlightColumns> own(file_of_each.size());
+  std::size_t done = 0;
+  TeamColumns columns{files.share().of_entries(file_of_each)};
+  columns.flights = columns.share.of_each_flight<FlightColumns>([&](std::size_t number) {
+    const std::size_t file = file_of_each[number];
+    const std::size_t r = number / count;
+    auto samples = std::make_shared<FlightSamples>(
+        r == 0 ? read_samples(files[file], set.extended, *set.references[0], options.mask)
+               : *own[file].samples);
+    if (r > 0) {
+      samples->notes.clear();
+      samples->reference = set.references[r]->read(files[file], samples->time, samples->notes);
+      mark_frozen(*samples, &FlightSamples::reference, options.mask.least_airspeed);
     }
+    own[number] = find_columns(std::move(samples), model, set, r, options.mask, options.training_share);
+    own[number].file = file;
+    if (r == 0 && options.progress) options.progress(++done, files.share().own());
+    return outline_of(own[number]);
+  });
+  for (std::size_t number = 0; number < own.size(); ++number) {
+    const std::vector<std::string>& more = columns.flights[number].samples->notes;
+    notes.insert(notes.end(), more.begin(), more.end());
+    if (columns.share.owns(number)) columns.flights[number] = std::move(own[number]);
   }
   return columns;
 }
 
-void leave_out_empty(std::vector<FlightColumns>& columns) {
-  columns.erase(
-      std::remove_if(columns.begin(), columns.end(),
-                     [](const FlightColumns& flight) {
-                       const auto used = std::count(flight.mask.begin(), flight.mask.end(), Mask::none);
-                       return !has_value(flight.given) ||
-                              (flight.reference != 0 && used < static_cast<std::ptrdiff_t>(fewest_samples));
-                     }),
-      columns.end());
+void leave_out_empty(TeamColumns& columns) {
+  const auto is_left = columns.share.of_each_flight<bool>([&](std::size_t number) {
+    const FlightColumns& flight = columns.flights[number];
+    const auto used = std::count(flight.mask.begin(), flight.mask.end(), Mask::none);
+    return has_value(flight.given) &&
+           (flight.reference == 0 || used >= static_cast<std::ptrdiff_t>(fewest_samples));
+  });
+  std::vector<std::size_t> left;
+  std::vector<FlightColumns> flights;
+  for (std::size_t number = 0; number < is_left.size(); ++number) {
+    if (!is_left[number]) continue;
+    left.push_back(number);
+    flights.push_back(std::move(columns.flights[number]));
+  }
+  columns = {columns.share.of_entries(left), std::move(flights)};
 }
 
-void drop_untestable(CandidateSet& set, std::vector<FlightColumns>& flights) {
+void drop_untestable(CandidateSet& set, TeamColumns& columns) {
+  const auto found = columns.share.of_each_flight<Testability>(
+      [&](std::size_t number) { return testability_of(columns.flights[number], set.candidates); });
   std::vector<Eigen::Index> kept;
   std::vector<Candidate> candidates;
   Eigen::Index first = 0;
-  for (Candidate& candidate : set.candidates) {
+  for (std::size_t c = 0; c < set.candidates.size(); ++c) {
+    Candidate& candidate = set.candidates[c];
     const Eigen::Index count = as_index(candidate.tested.size());
-    std::string trouble = trouble_of(flights, first, count);
+    std::string trouble = trouble_of(columns.flights, found, c);
     if (trouble.empty()) {
       for (Eigen::Index k = 0; k < count; ++k) kept.push_back(first + k);
       candidates.push_back(std::move(candidate));
@@ -142,7 +191,7 @@ void drop_untestable(CandidateSet& set, std::vector<FlightColumns>& flights) {
     first += count;
   }
   set.candidates = std::move(candidates);
-  for (FlightColumns& flight : flights)
+  for (FlightColumns& flight : columns.flights)
     flight.candidates = Eigen::MatrixXf(flight.candidates(Eigen::all, kept));
 }
 

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include <pcor/diagnose/diagnose.hpp>
-#include <pcor/flight/flight.hpp>
 #include "diagnose/candidates.hpp"
 #include "diagnose/columns.hpp"
+#include "diagnose/flight_files.hpp"
 #include "diagnose/search.hpp"
 
 namespace pcor::internal {
@@ -18,17 +18,24 @@ inline constexpr std::size_t fewest_samples = 300;
 /// others. @throws Error if none tells of each sample.
 References usable_references(const References& references, std::vector<std::string>& notes);
 
-/// The columns of all flights against each of the set's references, those against the first one first.
+/// Flights of a team, each against each of its references, those against the first one first. A member has
+/// the columns of its own, and of the others what all know (`outline_of`).
+struct TeamColumns {
+  FlightShare share;
+  std::vector<FlightColumns> flights{};
+};
+
+/// The columns of the first `count` flights against each of the set's references.
 /// @param notes get what a user should know of the flights
-std::vector<FlightColumns> columns_of_flights(const std::vector<Flight>& files, const ModelFile& model,
-                                              const CandidateSet& set, const DiagnoseOptions& options,
-                                              std::vector<std::string>& notes);
+TeamColumns columns_of_flights(const FlightFiles& files, std::size_t count, const ModelFile& model,
+                               const CandidateSet& set, const DiagnoseOptions& options,
+                               std::vector<std::string>& notes);
 
 /// Takes out the flights that have no residual, or hardly any against a further reference.
-void leave_out_empty(std::vector<FlightColumns>& columns);
+void leave_out_empty(TeamColumns& columns);
 
 /// Takes out the candidates that cannot be tested, and their columns.
-void drop_untestable(CandidateSet& set, std::vector<FlightColumns>& flights);
+void drop_untestable(CandidateSet& set, TeamColumns& columns);
 
 /// The columns of each candidate, one group after another.
 std::vector<ColumnGroup> groups_of(const ModelFile& model, const std::vector<Candidate>& candidates);

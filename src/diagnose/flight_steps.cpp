@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
-#include "diagnose/scores.hpp"
 #include "numerics/chi_squared.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/triangular_factor.hpp"
@@ -13,6 +13,17 @@ namespace {
 
 constexpr double least_eigenvalue = 1e-9;
 
+/// What a flight has of the sums over all.
+struct FlightSums {
+  std::size_t rows = 0;
+  Eigen::MatrixXd sums{};  // products of whitened columns, a constant and the residual
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(rows, sums);
+  }
+};
+
 /// Means of the flights beside a model, and their covariance. Of what the model explains, be it common to all
 /// or a step between them, the means have nothing.
 struct Means {
@@ -20,33 +31,33 @@ struct Means {
   Eigen::MatrixXd covariance;
 };
 
-Means find_means(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
-                 const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise) {
-  const Eigen::Index model = columns.front().cols();
-  const Eigen::Index flights = as_index(bins.size());
+/// @param sums of each flight: products of its whitened columns, a constant, and its residual
+Means find_means(const std::vector<Eigen::MatrixXd>& sums, double rows) {
+  const Eigen::Index model = sums.front().cols() - 2;
+  const Eigen::Index flights = as_index(sums.size());
   const Eigen::Index width = model + flights;
-  std::vector<Eigen::MatrixXd> with_means;
-  for (std::size_t f = 0; f < bins.size(); ++f) {
-    Eigen::MatrixXd& all = with_means.emplace_back(Eigen::MatrixXd::Zero(columns[f].rows(), width));
-    all.leftCols(model) = columns[f];
-    all.col(model + as_index(f)).setOnes();
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(width + 1, width + 1);
+  for (Eigen::Index f = 0; f < flights; ++f) {
+    const Eigen::MatrixXd& sum = sums[static_cast<std::size_t>(f)];
+    std::vector<Eigen::Index> places(static_cast<std::size_t>(model));
+    std::iota(places.begin(), places.end(), Eigen::Index{0});
+    places.insert(places.end(), {model + f, width});
+    information(places, places) += sum;
   }
-  const Scores scores = find_scores(bins, with_means, residuals, noise);
   const Eigen::VectorXd scale =
-      scores.information.diagonal().head(width).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+      information.diagonal().head(width).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled =
-      scale.asDiagonal() * scores.information.topLeftCorner(width, width) * scale.asDiagonal();
-  const Eigen::VectorXd right = scale.asDiagonal() * scores.information.col(width).head(width);
+      scale.asDiagonal() * information.topLeftCorner(width, width) * scale.asDiagonal();
+  const Eigen::VectorXd right = scale.asDiagonal() * information.col(width).head(width);
   const Eigen::MatrixXd of_model = pseudo_inverse(scaled.topLeftCorner(model, model), least_eigenvalue);
   const Eigen::MatrixXd by_model = of_model * scaled.topRightCorner(model, flights);
   const Eigen::VectorXd left = right.tail(flights) - by_model.transpose() * right.head(model);
   const Eigen::MatrixXd inverse = pseudo_inverse(
       scaled.bottomRightCorner(flights, flights) - scaled.bottomLeftCorner(flights, model) * by_model,
       least_eigenvalue);
-  const double squares = scores.information(width, width) -
-                         right.head(model).dot(of_model * right.head(model)) - left.dot(inverse * left);
-  const double variance =
-      squares / std::max(1.0, static_cast<double>(scores.row_count()) - static_cast<double>(width));
+  const double squares = information(width, width) - right.head(model).dot(of_model * right.head(model)) -
+                         left.dot(inverse * left);
+  const double variance = squares / std::max(1.0, rows - static_cast<double>(width));
   const Eigen::VectorXd unit = scale.tail(flights);
   return {unit.cwiseProduct(inverse * left), variance * (unit.asDiagonal() * inverse * unit.asDiagonal())};
 }
@@ -97,17 +108,27 @@ MeanStep step_of(std::size_t one, const std::vector<std::size_t>& flights, const
 
 }  // namespace
 
-std::vector<MeanStep> find_mean_steps(const std::vector<Binning>& bins,
+std::vector<MeanStep> find_mean_steps(const FlightShare& share, const std::vector<Binning>& bins,
                                       const std::vector<Eigen::MatrixXd>& columns,
                                       const std::vector<Eigen::VectorXd>& residuals,
                                       const NoiseModel& noise) {
   std::vector<MeanStep> steps(bins.size());
+  const auto found = share.of_each_flight<FlightSums>([&](std::size_t f) {
+    Eigen::MatrixXd all(columns[f].rows(), columns[f].cols() + 2);
+    all << columns[f], Eigen::VectorXd::Ones(columns[f].rows()), residuals[f];
+    const Eigen::MatrixXd white = whitened(all, bins[f], noise, f);
+    return FlightSums{bins[f].size(), white.transpose() * white};
+  });
   std::vector<std::size_t> flights;
-  for (std::size_t f = 0; f < bins.size(); ++f) {
-    if (bins[f].size() > 0) flights.push_back(f);
+  std::vector<Eigen::MatrixXd> sums;
+  std::size_t rows = 0;
+  for (std::size_t f = 0; f < found.size(); ++f) {
+    rows += found[f].rows;
+    sums.push_back(found[f].sums);
+    if (found[f].rows > 0) flights.push_back(f);
   }
   if (flights.size() < 2) return steps;
-  const Means means = find_means(bins, columns, residuals, noise);
+  const Means means = find_means(sums, static_cast<double>(rows));
   for (const std::size_t flight : flights) {
     const bool told_of_the_other = flights.size() == 2 && flight == flights.front();
     if (!told_of_the_other) steps[flight] = step_of(flight, flights, means);

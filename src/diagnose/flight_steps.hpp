@@ -5,6 +5,7 @@
 
 #include "numerics/binning.hpp"
 #include "numerics/noise_model.hpp"
+#include "team/flight_share.hpp"
 
 namespace pcor::internal {
 
@@ -20,10 +21,11 @@ struct MeanStep {
 /// freedom as there are flights (Satterthwaite 1946, Biometrics Bulletin 2, 110). A step that the model
 /// explains is none. The flights are those against one reference.
 ///
-/// @param columns of the model, in bins, of each flight; @param residuals likewise, hPa
+/// @param columns of the model, in bins, of each own flight; @param residuals likewise, hPa; @param noise
+/// likewise
 /// @return one for each flight; of chance 1 where there is nothing to compare it with. Of two flights the
 /// second alone has one, since both differ by the same.
-std::vector<MeanStep> find_mean_steps(const std::vector<Binning>& bins,
+std::vector<MeanStep> find_mean_steps(const FlightShare& share, const std::vector<Binning>& bins,
                                       const std::vector<Eigen::MatrixXd>& columns,
                                       const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise);
 

@@ -1,5 +1,6 @@
 #include "diagnose/scores.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -17,24 +18,66 @@ Eigen::MatrixXd joined(const Eigen::MatrixXd& columns, const Eigen::VectorXd& re
   return all;
 }
 
-}  // namespace
-
-std::size_t Scores::row_count() const {
-  std::size_t count = 0;
-  for (const Eigen::MatrixXd& part : rows) count += static_cast<std::size_t>(part.rows());
-  return count;
+/// Rows' products with each other.
+Eigen::MatrixXd squares_of(const Eigen::MatrixXd& rows) {
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows.cols(), rows.cols());
+  result.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
+  return result.selfadjointView<Eigen::Lower>();
 }
+
+/// What a flight has of the counts of all.
+struct RowCount {
+  std::size_t rows = 0;
+  Eigen::Index blocks = 0;
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(rows, blocks);
+  }
+};
+
+/// The number of the minute of each bin, from 0. @return how many there are
+Eigen::Index find_blocks(const Binning& bins, std::vector<Eigen::Index>& block) {
+  Eigen::Index blocks = 0;
+  double begin = -std::numeric_limits<double>::infinity();
+  for (const double time : bins.time()) {
+    if (time >= begin + block_time) {
+      begin = time;
+      ++blocks;
+    }
+    block.push_back(blocks - 1);
+  }
+  return blocks;
+}
+
+}  // namespace
 
 Eigen::VectorXd Scores::left(std::size_t flight, const Eigen::VectorXd& coefficients) const {
   return rows[flight].col(columns()) - rows[flight].leftCols(columns()) * coefficients;
 }
 
+Eigen::VectorXd Scores::by_minutes(const std::function<Eigen::VectorXd(std::size_t)>& of_rows) const {
+  const auto parts = share.of_each_flight<Eigen::VectorXd>([&](std::size_t f) {
+    if (block[f].empty()) return Eigen::VectorXd();
+    const Eigen::VectorXd values = of_rows(f);
+    const Eigen::Index first = block[f].front();
+    Eigen::VectorXd sums = Eigen::VectorXd::Zero(block[f].back() - first + 1);
+    for (Eigen::Index i = 0; i < values.size(); ++i)
+      sums[block[f][static_cast<std::size_t>(i)] - first] += values[i];
+    return sums;
+  });
+  Eigen::VectorXd all(blocks);
+  Eigen::Index first = 0;
+  for (const Eigen::VectorXd& part : parts) {
+    all.segment(first, part.size()) = part;
+    first += part.size();
+  }
+  return all;
+}
+
 void sum_up(Scores& scores) {
-  const Eigen::Index width = scores.rows.front().cols();
-  scores.information = Eigen::MatrixXd::Zero(width, width);
-  for (const Eigen::MatrixXd& rows : scores.rows)
-    scores.information.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
-  scores.information = scores.information.selfadjointView<Eigen::Lower>();
+  scores.information = scores.share.sum_of_each_flight<Eigen::MatrixXd>(
+      [&](std::size_t f) { return squares_of(scores.rows[f]); });
 }
 
 void take_out_common_noise(const std::vector<Binning>& bins, std::size_t earlier, std::size_t later,
@@ -73,38 +116,41 @@ void take_out_common_noise(const std::vector<Binning>& bins, std::size_t earlier
   }
 }
 
-Scores find_scores(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
-                   const std::vector<Eigen::VectorXd>& residuals, const std::vector<NoiseModel>& noise) {
+Scores find_scores(const FlightShare& share, const std::vector<Binning>& bins,
+                   const std::vector<Eigen::MatrixXd>& columns, const std::vector<Eigen::VectorXd>& residuals,
+                   const std::vector<NoiseModel>& noise) {
   Scores scores;
-  scores.plain = Eigen::MatrixXd::Zero(columns.front().cols() + 1, columns.front().cols() + 1);
-  for (std::size_t f = 0; f < bins.size(); ++f) {
-    const Eigen::MatrixXd all = joined(columns[f], residuals[f]);
-    scores.rows.push_back(whitened(all, bins[f], noise[f], 0));
-    NoiseModel still = noise[f];
-    still.slow = {};
-    scores.plain.selfadjointView<Eigen::Lower>().rankUpdate(
-        noise[f].drifts() ? Eigen::MatrixXd(whitened(all, bins[f], still, 0).transpose())
-                          : Eigen::MatrixXd(scores.rows.back().transpose()));
-    std::vector<Eigen::Index>& block = scores.block.emplace_back();
-    double begin = -std::numeric_limits<double>::infinity();
-    for (const double time : bins[f].time()) {
-      if (time >= begin + block_time) {
-        begin = time;
-        ++scores.blocks;
-      }
-      block.push_back(scores.blocks - 1);
-    }
+  scores.share = share;
+  scores.rows.resize(bins.size());
+  scores.block.resize(bins.size());
+  const auto counts = share.of_each_flight<RowCount>([&](std::size_t f) {
+    scores.rows[f] = whitened(joined(columns[f], residuals[f]), bins[f], noise[f], 0);
+    return RowCount{bins[f].size(), find_blocks(bins[f], scores.block[f])};
+  });
+  for (std::size_t f = 0; f < counts.size(); ++f) {
+    for (Eigen::Index& block : scores.block[f]) block += scores.blocks;
+    scores.blocks += counts[f].blocks;
+    scores.row_count += counts[f].rows;
   }
-  scores.plain = scores.plain.selfadjointView<Eigen::Lower>();
   sum_up(scores);
+  scores.plain = scores.information;
+  if (std::any_of(noise.begin(), noise.end(), [](const NoiseModel& each) { return each.drifts(); })) {
+    scores.plain = share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
+      NoiseModel still = noise[f];
+      still.slow = {};
+      return squares_of(noise[f].drifts() ? whitened(joined(columns[f], residuals[f]), bins[f], still, 0)
+                                          : scores.rows[f]);
+    });
+  }
   return scores;
 }
 
-Scores find_scores(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
-                   const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise) {
+Scores find_scores(const FlightShare& share, const std::vector<Binning>& bins,
+                   const std::vector<Eigen::MatrixXd>& columns, const std::vector<Eigen::VectorXd>& residuals,
+                   const NoiseModel& noise) {
   std::vector<NoiseModel> each(bins.size(), noise);
   for (std::size_t f = 0; f < bins.size(); ++f) each[f].level = {noise.level[f]};
-  return find_scores(bins, columns, residuals, each);
+  return find_scores(share, bins, columns, residuals, each);
 }
 
 }  // namespace pcor::internal

@@ -1,36 +1,45 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "numerics/noise_model.hpp"
+#include "team/flight_share.hpp"
 
 namespace pcor::internal {
 
-/// Whitened columns and residuals of all flights, each against each of its references, and the sums that a
-/// search needs: those of a generalised least-squares problem.
+/// Whitened columns and residuals of flights, each against each of its references, and the sums over all of
+/// them that a search needs: those of a generalised least-squares problem. A member of a team has the rows of
+/// its own.
 struct Scores {
+  FlightShare share = FlightShare(0);
   std::vector<Eigen::MatrixXd> rows{};             ///< of each flight, whitened columns and last the residual
   std::vector<std::vector<Eigen::Index>> block{};  ///< of each flight, the number of the minute of each row
   Eigen::Index blocks = 0;                         ///< minutes of all flights
+  std::size_t row_count = 0;                       ///< of all flights
   Eigen::MatrixXd information{};                   ///< columns and residual with columns and residual
   Eigen::MatrixXd plain{};                         ///< the same as if the noise had no slow parts
 
   Eigen::Index columns() const { return information.cols() - 1; }
-  std::size_t row_count() const;
 
-  /// What is left of the whitened residual of a flight after the columns with these coefficients.
+  /// What is left of the whitened residual of an own flight after the columns with these coefficients.
   Eigen::VectorXd left(std::size_t flight, const Eigen::VectorXd& coefficients) const;
+
+  /// The sums over the minutes of all flights of what each row has. @param of_rows gives it for an own flight
+  Eigen::VectorXd by_minutes(const std::function<Eigen::VectorXd(std::size_t flight)>& of_rows) const;
 };
 
-/// @param columns of each flight, in bins; @param residuals likewise, hPa; @param noise likewise, each of one
-/// flight alone
-Scores find_scores(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
-                   const std::vector<Eigen::VectorXd>& residuals, const std::vector<NoiseModel>& noise);
+/// Whitens the columns of each own flight. @param noise likewise, each of one flight alone
+Scores find_scores(const FlightShare& share, const std::vector<Binning>& bins,
+                   const std::vector<Eigen::MatrixXd>& columns, const std::vector<Eigen::VectorXd>& residuals,
+                   const std::vector<NoiseModel>& noise);
 
-/// The same with one noise for all flights.
-Scores find_scores(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
-                   const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise);
+/// The same with one noise for all flights, with the levels of the own.
+Scores find_scores(const FlightShare& share, const std::vector<Binning>& bins,
+                   const std::vector<Eigen::MatrixXd>& columns, const std::vector<Eigen::VectorXd>& residuals,
+                   const NoiseModel& noise);
 
 /// Takes out of the rows of `later` what their noise has in common with that of `earlier`, the same flight
 /// against another reference: both hold the noise of the aircraft's own sensors. What is left of the rows

@@ -169,7 +169,7 @@ Search::Conditional Search::given(const std::vector<std::size_t>& groups) const 
     result.score -= solution.transpose() * score;
     result.squares -= score.dot(inverse * score);
   }
-  const double freedom = static_cast<double>(scores_->row_count()) - static_cast<double>(base_) -
+  const double freedom = static_cast<double>(scores_->row_count) - static_cast<double>(base_) -
                          static_cast<double>(places.size());
   result.variance = std::max(result.squares, 0.0) / std::max(freedom, 1.0);
   return result;
@@ -273,18 +273,17 @@ std::vector<Eigen::VectorXd> Search::leftover_rows(std::size_t group,
   const Eigen::VectorXd target = scaled(rest, Eigen::all) * weight.cwiseQuotient(scale_.cwiseMax(1e-300));
   const Eigen::VectorXd fitted = pseudo_inverse(scaled(rest, rest), 1e-12) * target;
   for (std::size_t k = 0; k < rest.size(); ++k) weight[rest[k]] = -fitted[as_index(k)] * scale_[rest[k]];
-  std::vector<Eigen::VectorXd> rows;
-  for (const Eigen::MatrixXd& part : scores_->rows) rows.emplace_back(part.leftCols(columns) * weight);
+  std::vector<Eigen::VectorXd> rows(scores_->rows.size());
+  for (std::size_t f = 0; f < rows.size(); ++f) {
+    if (scores_->share.owns(f)) rows[f] = scores_->rows[f].leftCols(columns) * weight;
+  }
   return rows;
 }
 
 double Search::effective_blocks(std::size_t group, const std::vector<std::size_t>& others) const {
-  Eigen::VectorXd information = Eigen::VectorXd::Zero(scores_->blocks);
   const std::vector<Eigen::VectorXd> rows = leftover_rows(group, others);
-  for (std::size_t f = 0; f < rows.size(); ++f) {
-    for (Eigen::Index i = 0; i < rows[f].size(); ++i)
-      information[scores_->block[f][static_cast<std::size_t>(i)]] += rows[f][i] * rows[f][i];
-  }
+  const Eigen::VectorXd information =
+      scores_->by_minutes([&rows](std::size_t f) { return rows[f].cwiseAbs2(); });
   const double squares = information.squaredNorm();
   return squares > 0.0 ? information.sum() * information.sum() / squares : 0.0;
 }
@@ -310,8 +309,10 @@ std::vector<Eigen::VectorXd> Search::left(const std::vector<std::size_t>& chosen
     coefficients.segment(base_ + columns.first, columns.count) = estimate.segment(place, columns.count);
     place += columns.count;
   }
-  std::vector<Eigen::VectorXd> result;
-  for (std::size_t f = 0; f < scores_->rows.size(); ++f) result.push_back(scores_->left(f, coefficients));
+  std::vector<Eigen::VectorXd> result(scores_->rows.size());
+  for (std::size_t f = 0; f < result.size(); ++f) {
+    if (scores_->share.owns(f)) result[f] = scores_->left(f, coefficients);
+  }
   return result;
 }
 
@@ -320,13 +321,10 @@ Eigen::VectorXd Search::own_noise(std::size_t group, const std::vector<std::size
   with.push_back(group);
   const std::vector<Eigen::VectorXd> rows = leftover_rows(group, others);
   const std::vector<Eigen::VectorXd> noise = left(with);
-  Eigen::VectorXd sums = Eigen::VectorXd::Zero(scores_->blocks);
-  double squares = 0.0;
-  for (std::size_t f = 0; f < rows.size(); ++f) {
-    for (Eigen::Index i = 0; i < rows[f].size(); ++i)
-      sums[scores_->block[f][static_cast<std::size_t>(i)]] += rows[f][i] * noise[f][i];
-    squares += rows[f].squaredNorm();
-  }
+  const Eigen::VectorXd sums =
+      scores_->by_minutes([&](std::size_t f) { return rows[f].cwiseProduct(noise[f]); });
+  const double squares =
+      scores_->share.sum_of_each_flight<double>([&rows](std::size_t f) { return rows[f].squaredNorm(); });
   return squares > 0.0 ? Eigen::VectorXd(sums / std::sqrt(squares)) : sums;
 }
 
@@ -351,7 +349,7 @@ Eigen::VectorXd Search::precision_of(std::size_t group, double times) const {
   const ColumnGroup& columns = groups_[group];
   // A size that nobody knows: as much as all the rest of the residual.
   Eigen::VectorXd precision =
-      Eigen::VectorXd::Constant(columns.count, 1.0 / static_cast<double>(scores_->row_count()));
+      Eigen::VectorXd::Constant(columns.count, 1.0 / static_cast<double>(scores_->row_count));
   for (std::size_t k = 0; k < columns.usual.size(); ++k) {
     if (columns.usual[k] == 0.0) continue;
     const double deviation = spread_of_sizes * columns.usual[k] * times;
@@ -367,7 +365,7 @@ double Search::log_ratio(const std::vector<Eigen::Index>& columns, const Eigen::
   const Eigen::LLT<Eigen::MatrixXd> factor(Eigen::MatrixXd::Identity(inner.rows(), inner.cols()) + inner);
   const Eigen::VectorXd right = deviation.cwiseProduct(left_score_(columns));
   const double explained = right.dot(factor.solve(right));
-  const double freedom = static_cast<double>(scores_->row_count()) - static_cast<double>(base_);
+  const double freedom = static_cast<double>(scores_->row_count) - static_cast<double>(base_);
   const double determinant = factor.matrixLLT().diagonal().array().log().sum();
   return -0.5 * freedom * std::log1p(-std::min(explained / squares_, 1.0 - 1e-12)) - determinant;
 }

@@ -87,10 +87,10 @@ class Search {
   /// The variance of the whitened residuals after a fit of base and `chosen`; 1 where the noise model holds.
   double variance(const std::vector<std::size_t>& chosen) const;
 
-  /// What is left of the whitened residuals of all flights after a fit of base and `chosen`.
+  /// What is left of the whitened residuals of each own flight after a fit of base and `chosen`.
   std::vector<Eigen::VectorXd> left(const std::vector<std::size_t>& chosen) const;
 
-  /// The rows of a group's best direction after base and others, flight by flight: where its evidence lies.
+  /// The rows of a group's best direction after base and others, of each own flight: where its evidence lies.
   std::vector<Eigen::VectorXd> leftover_rows(std::size_t group, const std::vector<std::size_t>& others) const;
 
  private:

@@ -11,7 +11,6 @@
 #include <pcor/effects/catalogue.hpp>
 #include "diagnose/columns.hpp"
 #include "numerics/decompositions.hpp"
-#include "numerics/median.hpp"
 #include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
@@ -46,16 +45,11 @@ double power_of(double distinct) {
 }  // namespace
 
 std::vector<Prospect> prospects_of(const std::vector<std::shared_ptr<const FlightSamples>>& flights,
-                                   NoiseModel noise, const CandidateSet& set, const ModelFile& model,
-                                   const MaskOptions& mask) {
+                                   NoiseModel noise, double usual_level, const CandidateSet& set,
+                                   const ModelFile& model, const MaskOptions& mask) {
   MaskOptions all = mask;
   all.exclude.clear();
   all.intervals.reset();
-  std::vector<double> levels;
-  for (const Eigen::VectorXd& level : noise.level)
-    levels.insert(levels.end(), level.data(), level.data() + level.size());
-  const double usual_level = median(levels);
-
   std::vector<Prospect> prospects;
   for (Manoeuvre& manoeuvre : standard_manoeuvres(flights)) {
     const FlightColumns columns = find_columns(manoeuvre.samples, model, set, 0, all, 1.0);
@@ -108,6 +102,13 @@ std::string text_of(const Plan& plan, const std::string& id, const ModelEffect& 
       "fly this: {}{} ({}; {:.0f} min): it would tell {} from {} with a probability of {:.0f} %",
       plan.manoeuvre->name, times, plan.manoeuvre->how, std::max(1.0, plan.duration() / seconds_per_minute),
       id, names, std::min(99.0, 100.0 * plan.power));
+}
+
+std::vector<double> levels_of(const NoiseModel& noise) {
+  std::vector<double> levels;
+  for (const Eigen::VectorXd& level : noise.level)
+    levels.insert(levels.end(), level.data(), level.data() + level.size());
+  return levels;
 }
 
 std::vector<Eigen::Index> places_of(const ColumnGroup& group, Eigen::Index base) {

@@ -19,10 +19,10 @@ struct Prospect {
   Eigen::MatrixXd information;
 };
 
-/// What the aircraft of some flights could fly, with the usual level of their noise.
+/// What the aircraft of some flights could fly, with the usual level of their noise, hPa.
 std::vector<Prospect> prospects_of(const std::vector<std::shared_ptr<const FlightSamples>>& flights,
-                                   NoiseModel noise, const CandidateSet& set, const ModelFile& model,
-                                   const MaskOptions& mask);
+                                   NoiseModel noise, double usual_level, const CandidateSet& set,
+                                   const ModelFile& model, const MaskOptions& mask);
 
 /// An effect of an estimated size, and what it is to be told from.
 struct Rivalry {
@@ -51,6 +51,9 @@ Plan best_plan(const std::vector<Prospect>& prospects, const Rivalry& rivalry);
 /// @param id of the effect, as that of a finding
 std::string text_of(const Plan& plan, const std::string& id, const ModelEffect& effect,
                     const std::vector<std::string>& rivals);
+
+/// The levels of the noise of all flights' bins, hPa.
+std::vector<double> levels_of(const NoiseModel& noise);
 
 /// The columns of a group among those of base and candidates.
 std::vector<Eigen::Index> places_of(const ColumnGroup& group, Eigen::Index base);

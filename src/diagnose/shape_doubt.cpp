@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include "numerics/triangular_factor.hpp"
@@ -41,23 +42,21 @@ double chi2_where_they_differ(const Analysis& analysis, const std::vector<std::s
   const Eigen::VectorXd added = coefficients_of(analysis, with(others, effect), true);
   const Eigen::VectorXd difference =
       coefficients_of(analysis, with(others, effect)) - coefficients_of(analysis, with(others, rival));
-  struct Sums {
-    double added = 0.0;
-    double difference = 0.0;
-  };
-  std::map<std::size_t, Sums> against;  // each reference
-  double differences = 0.0;
-  for (std::size_t f = 0; f < analysis.flight_count(); ++f) {
+  using Squares = std::array<double, 2>;  // of what is added, and of the difference
+  const auto of_flights = analysis.whole_share().of_each_flight<Squares>([&](std::size_t f) {
     const auto columns = analysis.scores().rows[f].leftCols(analysis.scores().columns());
-    Sums& sums = against[analysis.flight(f).reference];
-    sums.added += (columns * added).squaredNorm();
-    const double here = (columns * difference).squaredNorm();
-    sums.difference += here;
-    differences += here;
+    return Squares{(columns * added).squaredNorm(), (columns * difference).squaredNorm()};
+  });
+  std::map<std::size_t, Squares> against;  // each reference
+  double differences = 0.0;
+  for (std::size_t f = 0; f < of_flights.size(); ++f) {
+    Squares& sums = against[analysis.flight(f).reference];
+    for (const std::size_t k : {0U, 1U}) sums[k] += of_flights[f][k];
+    differences += of_flights[f][1];
   }
   if (!(differences > 0.0)) return whole;
   double chi2 = 0.0;
-  for (const auto& [reference, sums] : against) chi2 += sums.added * sums.difference / differences;
+  for (const auto& [reference, sums] : against) chi2 += sums[0] * sums[1] / differences;
   return std::min(chi2, whole);
 }
 

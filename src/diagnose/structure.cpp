@@ -73,17 +73,19 @@ double chance_among(double value, const Eigen::VectorXd& others) {
 
 }  // namespace
 
-StructureTest::StructureTest(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
+StructureTest::StructureTest(const FlightShare& share, const std::vector<Binning>& bins,
+                             const std::vector<Eigen::MatrixXd>& columns,
                              const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise,
                              std::uint64_t seed, const std::vector<Eigen::MatrixXd>& aside)
-    : bins_(&bins), largest_(Eigen::VectorXd::Zero(2 * draws)) {
+    : share_(share), bins_(&bins), largest_(Eigen::VectorXd::Zero(2 * draws)) {
   alone_ = std::numeric_limits<double>::infinity();
   for (const double part : parts_of_drift) {
     if (part < 1.0 && !noise.drifts()) break;
     Whitened& flights = whitened_.emplace_back();
     NoiseModel left = noise;
     for (double& slow : left.slow) slow *= part;
-    const Scores scores = find_scores(bins, columns, residuals, left);
+    const Scores scores = find_scores(share, bins, columns, residuals, left);
+    rows_ = scores.row_count;
     const Eigen::Index width = scores.columns();
     flights.scale = scores.information.diagonal().head(width).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     flights.inverse =
@@ -94,56 +96,60 @@ StructureTest::StructureTest(const std::vector<Binning>& bins, const std::vector
     const Eigen::VectorXd solution = flights.scale.asDiagonal() * (flights.inverse * right);
     flights.squares = scores.information(width, width) - right.dot(flights.inverse * right);
     for (std::size_t f = 0; f < bins.size(); ++f) {
-      flights.model.emplace_back(scores.rows[f].leftCols(width));
-      flights.left.push_back(scores.left(f, solution));
-      flights.determinant += flights.whitening.emplace_back(bins[f], left, f).log_determinant();
+      flights.whitening.emplace_back(bins[f], left, f);
+      flights.model.emplace_back();
+      flights.left.emplace_back();
+      if (!share.owns(f)) continue;
+      flights.model[f] = scores.rows[f].leftCols(width);
+      flights.left[f] = scores.left(f, solution);
     }
+    flights.determinant = share.sum_of_each_flight<double>(
+        [&flights](std::size_t f) { return flights.whitening[f].log_determinant(); });
     const std::vector<Eigen::VectorXd> noise_alone = left_by(aside, flights);
-    flights.model_with_drawn = Eigen::MatrixXd::Zero(width, 2 * draws);
-    for (std::size_t f = 0; f < bins.size(); ++f) {
-      flights.drawn.push_back(drawn(noise_alone[f], bins[f], seed + f, seed));
-      flights.model_with_drawn += flights.model[f].transpose() * flights.drawn[f];
-    }
+    flights.drawn.resize(bins.size());
+    flights.model_with_drawn = share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
+      flights.drawn[f] = drawn(noise_alone[f], bins[f], seed + f, seed);
+      return Eigen::MatrixXd(flights.model[f].transpose() * flights.drawn[f]);
+    });
     alone_ = std::min(alone_, minus_likelihood(flights, 0.0));
   }
-}
-
-std::size_t StructureTest::rows() const {
-  std::size_t rows = 0;
-  for (const Binning& bins : *bins_) rows += bins.size();
-  return rows;
 }
 
 std::vector<Eigen::VectorXd> StructureTest::left_by(const std::vector<Eigen::MatrixXd>& aside,
                                                     const Whitened& flights) const {
   if (aside.empty()) return flights.left;
   const Eigen::Index count = aside.front().cols();
-  const Eigen::Index width = flights.scale.size();
-  std::vector<Eigen::MatrixXd> all;
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(width + count, width + count);
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(width + count);
-  for (std::size_t f = 0; f < bins_->size(); ++f) {
-    Eigen::MatrixXd& columns = all.emplace_back(flights.model[f].rows(), width + count);
-    columns << flights.model[f], flights.whitening[f](aside[f]);
-    information += columns.transpose() * columns;
-    right += columns.transpose() * flights.left[f];
-  }
-  const Eigen::VectorXd solution = pseudo_solution(information, right, 1e-11);
+  const Eigen::Index width = flights.scale.size() + count;
+  std::vector<Eigen::MatrixXd> all(bins_->size());
+  const auto normal = share_.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
+    all[f].resize(flights.model[f].rows(), width);
+    all[f] << flights.model[f], flights.whitening[f](aside[f]);
+    Eigen::MatrixXd part(width, width + 1);
+    part.leftCols(width) = all[f].transpose() * all[f];
+    part.rightCols(1) = all[f].transpose() * flights.left[f];
+    return part;
+  });
+  const Eigen::VectorXd solution = pseudo_solution(normal.leftCols(width), normal.rightCols(1), 1e-11);
   std::vector<Eigen::VectorXd> left = flights.left;
-  for (std::size_t f = 0; f < left.size(); ++f) left[f] -= all[f] * solution;
+  for (std::size_t f = 0; f < left.size(); ++f) {
+    if (share_.owns(f)) left[f] -= all[f] * solution;
+  }
   return left;
 }
 
 double StructureTest::minus_likelihood(const Whitened& flights, double taken) const {
   const double left = std::max(flights.squares - taken, 1e-9 * flights.squares);
-  return flights.determinant + static_cast<double>(rows()) * std::log(left);
+  return flights.determinant + static_cast<double>(rows_) * std::log(left);
 }
 
 std::vector<double> StructureTest::values_of(const std::vector<const double*>& values) const {
   std::vector<double> all;
-  for (std::size_t f = 0; f < bins_->size(); ++f) {
-    for (const std::size_t record : (*bins_)[f].records()) all.push_back(values[f][record]);
-  }
+  for (const std::vector<double>& part : share_.of_each_flight<std::vector<double>>([&](std::size_t f) {
+         std::vector<double> of_flight;
+         for (const std::size_t record : (*bins_)[f].records()) of_flight.push_back(values[f][record]);
+         return of_flight;
+       }))
+    all.insert(all.end(), part.begin(), part.end());
   const auto missing = std::count_if(all.begin(), all.end(), [](double x) { return !std::isfinite(x); });
   if (static_cast<double>(missing) > most_missing * static_cast<double>(all.size())) all.clear();
   return all;
@@ -151,12 +157,12 @@ std::vector<double> StructureTest::values_of(const std::vector<const double*>& v
 
 bool StructureTest::add(const std::string& name, const std::vector<const double*>& values, double turn) {
   if (turn > 0.0) return add(name, values, Smooth::periodic(values_of(values), turn));
-  const std::size_t most = std::clamp(rows() / bins_per_column, std::size_t{1}, most_columns);
+  const std::size_t most = std::clamp(rows_ / bins_per_column, std::size_t{1}, most_columns);
   return add(name, values, Smooth::with_knots_at_values(values_of(values), most));
 }
 
 bool StructureTest::add_fine(const std::string& name, const std::vector<const double*>& values) {
-  const std::size_t most = std::min(rows() / bins_per_column, fine_columns);
+  const std::size_t most = std::min(rows_ / bins_per_column, fine_columns);
   if (most <= most_columns) return false;
   return add(name, values, Smooth::with_even_knots(values_of(values), most));
 }
@@ -183,20 +189,30 @@ std::vector<Eigen::MatrixXd> StructureTest::columns_of(const Smooth& smooth,
   return columns;
 }
 
-StructureTest::Taken StructureTest::taken_by(const std::vector<Eigen::MatrixXd>& columns,
-                                             const Whitened& flights) const {
-  const Eigen::Index count = columns.front().cols();
-  Eigen::MatrixXd own = Eigen::MatrixXd::Zero(count, count);
-  Eigen::MatrixXd with_model = Eigen::MatrixXd::Zero(flights.scale.size(), count);
-  Eigen::VectorXd score = Eigen::VectorXd::Zero(count);
-  Eigen::MatrixXd drawn = Eigen::MatrixXd::Zero(count, 2 * draws);
-  for (std::size_t f = 0; f < bins_->size(); ++f) {
-    const Eigen::MatrixXd white = flights.whitening[f](columns[f]);
-    own += white.transpose() * white;
-    with_model += flights.model[f].transpose() * white;
-    score += white.transpose() * flights.left[f];
-    drawn += white.transpose() * flights.drawn[f];
+Eigen::MatrixXd StructureTest::products(std::size_t flight, const Eigen::MatrixXd& columns) const {
+  const Eigen::Index count = columns.cols();
+  const Eigen::Index model = whitened_.front().scale.size();
+  const Eigen::Index width = count + model + 1 + 2 * draws;
+  Eigen::MatrixXd all(count, width * as_index(whitened_.size()));
+  for (std::size_t k = 0; k < whitened_.size(); ++k) {
+    const Whitened& flights = whitened_[k];
+    const Eigen::MatrixXd white = flights.whitening[flight](columns);
+    auto part = all.middleCols(width * as_index(k), width);
+    part.leftCols(count) = white.transpose() * white;
+    part.middleCols(count, model) = white.transpose() * flights.model[flight];
+    part.col(count + model) = white.transpose() * flights.left[flight];
+    part.rightCols(2 * draws) = white.transpose() * flights.drawn[flight];
   }
+  return all;
+}
+
+StructureTest::Taken StructureTest::taken_by(const Eigen::MatrixXd& products, const Whitened& flights) {
+  const Eigen::Index count = products.rows();
+  const Eigen::Index model = flights.scale.size();
+  Eigen::MatrixXd own = products.leftCols(count);
+  const Eigen::MatrixXd with_model = products.middleCols(count, model).transpose();
+  const Eigen::VectorXd score = products.col(count + model);
+  Eigen::MatrixXd drawn = products.rightCols(2 * draws);
   const Eigen::MatrixXd solution =
       flights.scale.asDiagonal() * (flights.inverse * (flights.scale.asDiagonal() * with_model));
   const Eigen::VectorXd before = own.diagonal();
@@ -227,17 +243,21 @@ bool StructureTest::add(const std::string& name, const std::vector<const double*
                         const Smooth& smooth) {
   if (smooth.columns() == 0) return false;
   const std::vector<Eigen::MatrixXd> columns = columns_of(smooth, values);
+  const auto sums =
+      share_.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) { return products(f, columns[f]); });
+  const Eigen::Index width = sums.cols() / as_index(whitened_.size());
   Structure structure;
   structure.name = name;
   structure.centre = smooth.centre();
   double with_all = std::numeric_limits<double>::infinity();
   double with_line = with_all;
   Eigen::VectorXd with_drawn = Eigen::VectorXd::Constant(2 * draws, with_all);
-  for (const Whitened& flights : whitened_) {
-    const Taken taken = taken_by(columns, flights);
+  for (std::size_t k = 0; k < whitened_.size(); ++k) {
+    const Whitened& flights = whitened_[k];
+    const Taken taken = taken_by(sums.middleCols(width * as_index(k), width), flights);
     if (taken.freedom == 0) return false;
     const double freedom =
-        std::max(1.0, static_cast<double>(rows()) - static_cast<double>(flights.scale.size()));
+        std::max(1.0, static_cast<double>(rows_) - static_cast<double>(flights.scale.size()));
     const double variance = flights.squares / freedom;
     structure.freedom = std::max(structure.freedom, static_cast<double>(taken.freedom));
     if (const double value = minus_likelihood(flights, taken.all); value < with_all) {
@@ -252,8 +272,8 @@ bool StructureTest::add(const std::string& name, const std::vector<const double*
       structure.slope = taken.line_score / taken.line_information / smooth.deviation();
       structure.slope_error = std::sqrt(variance / taken.line_information) / smooth.deviation();
     }
-    for (Eigen::Index k = 0; k < 2 * draws; ++k)
-      with_drawn[k] = std::min(with_drawn[k], minus_likelihood(flights, taken.drawn[k]));
+    for (Eigen::Index draw = 0; draw < 2 * draws; ++draw)
+      with_drawn[draw] = std::min(with_drawn[draw], minus_likelihood(flights, taken.drawn[draw]));
   }
   structure.gain = alone_ - with_all;
   structure.line_gain = std::isfinite(with_line) ? alone_ - with_line : 0.0;
@@ -295,13 +315,13 @@ double StructureTest::chance_of(double equivalent) const {
                   chance_among(equivalent, largest_.tail(draws)));
 }
 
-bool shares_noise(const std::vector<std::vector<double>>& residuals,
+bool shares_noise(const FlightShare& share, const std::vector<std::vector<double>>& residuals,
                   const std::vector<const double*>& values) {
   constexpr std::size_t window = 300;
   constexpr std::size_t fewest = 60;
   constexpr double level = 0.12;
-  std::vector<double> correlations;
-  for (std::size_t f = 0; f < residuals.size(); ++f) {
+  const auto of_flights = share.of_each_flight<std::vector<double>>([&](std::size_t f) {
+    std::vector<double> correlations;
     const std::vector<double>& residual = residuals[f];
     for (std::size_t first = 1; first < residual.size(); first += window) {
       double rr = 0.0;
@@ -320,7 +340,11 @@ bool shares_noise(const std::vector<std::vector<double>>& residuals,
       if (count < fewest) continue;
       correlations.push_back(rr > 0.0 && vv > 0.0 ? rv / std::sqrt(rr * vv) : 0.0);
     }
-  }
+    return correlations;
+  });
+  std::vector<double> correlations;
+  for (const std::vector<double>& part : of_flights)
+    correlations.insert(correlations.end(), part.begin(), part.end());
   if (correlations.empty()) return false;
   return std::abs(median(std::move(correlations))) > level;
 }

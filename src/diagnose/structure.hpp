@@ -10,6 +10,7 @@
 #include "numerics/binning.hpp"
 #include "numerics/noise_model.hpp"
 #include "numerics/whitening.hpp"
+#include "team/flight_share.hpp"
 
 namespace pcor::internal {
 
@@ -39,12 +40,14 @@ struct Structure {
 /// shifted or with other signs, is no noise, so it may be set aside before chance is told by what is left.
 class StructureTest {
  public:
+  /// @param share of the flights: a member of a team has the bins, and whatever else is said of each flight,
+  /// of its own
   /// @param columns of the model, base and chosen effects, in bins; @param residuals likewise
   /// @param noise with all the drift that there is beside the model; @param seed of shifts and signs
   /// @param aside columns of what is taken off the residuals that tell chance; empty for nothing
-  StructureTest(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
-                const std::vector<Eigen::VectorXd>& residuals, const NoiseModel& noise, std::uint64_t seed,
-                const std::vector<Eigen::MatrixXd>& aside = {});
+  StructureTest(const FlightShare& share, const std::vector<Binning>& bins,
+                const std::vector<Eigen::MatrixXd>& columns, const std::vector<Eigen::VectorXd>& residuals,
+                const NoiseModel& noise, std::uint64_t seed, const std::vector<Eigen::MatrixXd>& aside = {});
 
   /// Tries functions of a variable: its values of each flight, one for each record. Returns false, and leaves
   /// it out, where it does not vary or has no value in more than a tenth of the records used.
@@ -64,12 +67,12 @@ class StructureTest {
   /// fitted to them.
   double chance_of(double equivalent) const;
 
-  /// The columns, in bins, of what gains most beyond its number of functions, to be set aside; nothing where
-  /// noise as the model of the noise has it would gain as much somewhere once in 10,000 times.
+  /// The columns of each flight, in bins, of what gains most beyond its number of functions, to be set aside;
+  /// nothing where noise as the model of the noise has it would gain as much somewhere once in 10,000 times.
   std::vector<Eigen::MatrixXd> strong_structure() const;
 
  private:
-  /// The flights whitened with some of the drift.
+  /// The flights whitened with some of the drift; of the own flights whatever is told of each.
   struct Whitened {
     std::vector<Whitening> whitening{};
     std::vector<Eigen::MatrixXd> model{};  // columns of each flight
@@ -91,18 +94,24 @@ class StructureTest {
     Eigen::Index freedom = 0;
   };
 
+  /// Of all flights.
   std::vector<double> values_of(const std::vector<const double*>& values) const;
-  std::size_t rows() const;
   bool add(const std::string& name, const std::vector<const double*>& values, const Smooth& smooth);
   std::vector<Eigen::MatrixXd> columns_of(const Smooth& smooth,
                                           const std::vector<const double*>& values) const;
-  Taken taken_by(const std::vector<Eigen::MatrixXd>& columns, const Whitened& flights) const;
+  /// The products of the whitened functions of a flight with themselves, the model, what is left of the
+  /// residuals and what is drawn, side by side for each part of the drift.
+  Eigen::MatrixXd products(std::size_t flight, const Eigen::MatrixXd& columns) const;
+  /// @param products of all flights, of one part of the drift
+  static Taken taken_by(const Eigen::MatrixXd& products, const Whitened& flights);
   /// What is left of the residuals when `aside` is taken off, of each flight.
   std::vector<Eigen::VectorXd> left_by(const std::vector<Eigen::MatrixXd>& aside,
                                        const Whitened& flights) const;
   double minus_likelihood(const Whitened& flights, double taken) const;
 
+  FlightShare share_;
   const std::vector<Binning>* bins_;
+  std::size_t rows_ = 0;              // of all flights
   std::vector<Whitened> whitened_{};  // by how much of the drift is left, all of it first
   double alone_ = 0.0;                // minus twice the log-likelihood of drift alone
   std::vector<Structure> structures_{};
@@ -114,7 +123,8 @@ class StructureTest {
 /// Whether the noise of a variable is the noise of the residual: their changes from one record to the next go
 /// together everywhere, in and out of manoeuvres. Such a variable was computed from what was measured with
 /// that noise; that structure goes with it says nothing.
-bool shares_noise(const std::vector<std::vector<double>>& residuals,
+/// @param residuals and @param values of the own flights
+bool shares_noise(const FlightShare& share, const std::vector<std::vector<double>>& residuals,
                   const std::vector<const double*>& values);
 
 }  // namespace pcor::internal

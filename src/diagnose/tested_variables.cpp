@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <pcor/physics/constants.hpp>
-#include <pcor/words/error.hpp>
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
@@ -42,34 +42,10 @@ bool is_truth(const VariableInfo& variable) {
   });
 }
 
-/// The place of the file of which a flight is a part.
-std::size_t file_of(const FlightColumns& flight, const std::vector<Flight>& files) {
-  const std::vector<double>& time = flight.samples->time;
-  for (std::size_t k = 0; k < files.size(); ++k) {
-    const TimeAxis& axis = files[k].time();
-    if (files[k].records() == time.size() && std::abs(time.front() - axis.first) <= axis.step) return k;
-  }
-  throw Error(fmt::format("{} is not one of the flights that were read", flight.samples->name));
-}
-
 double turn_of(const VariableInfo& info) {
   if (info.modulus_range) return (*info.modulus_range)[1] - (*info.modulus_range)[0];
   return info.units.compare(0, 3, "deg") == 0 && info.units != "deg_C" && info.units != "degC" ? full_turn
                                                                                                : 0.0;
-}
-
-/// An angle that takes less than half of all directions is as good as any other number.
-bool takes_all_directions(const std::vector<Values>& series, double turn) {
-  double least = turn;
-  double most = -turn;
-  for (const Values& values : series) {
-    for (const double value : *values) {
-      if (!std::isfinite(value)) continue;
-      least = std::min(least, value);
-      most = std::max(most, value);
-    }
-  }
-  return most - least > 0.5 * turn && most - least <= turn;
 }
 
 /// Records from one value to the next where a variable has one every so many records only; 1 elsewhere.
@@ -104,31 +80,78 @@ void fill_between(std::vector<double>& values, bool hold) {
   }
 }
 
-TestedVariable read_variable(const std::vector<Flight>& files, const std::vector<std::size_t>& file_of_flight,
-                             const std::string& name) {
-  const VariableInfo& info = files.front().variable(name);
+/// A variable, as the first file describes it.
+struct Described {
+  std::string name{};
+  std::string unit{};
+  std::string description{};
+  int rate = 0;
+  double turn = 0.0;  // of an angle; 0 for what is none
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(name, unit, description, rate, turn);
+  }
+};
+
+/// What a file has of a variable beside its values.
+struct Seen {
+  double least = std::numeric_limits<double>::infinity();
+  double most = -std::numeric_limits<double>::infinity();
+  std::size_t spacing = 1;  // records from one value to the next
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(least, most, spacing);
+  }
+};
+
+std::vector<Described> described_by(const Flight& file, const std::set<std::string>& without) {
+  std::vector<Described> result;
+  for (const std::string& name : file.variables()) {
+    const VariableInfo& info = file.variable(name);
+    if (info.is_series && without.count(name) == 0 && !is_truth(info))
+      result.push_back({name, info.units, info.long_name, info.rate, turn_of(info)});
+  }
+  return result;
+}
+
+/// Reads a variable, one value a record.
+Values read_variable(const Flight& file, const Described& variable, Seen& seen) {
+  std::vector<double> values(file.records());
+  for (const RecordBlock block : blocks_of(file.records()))
+    file.read_at_rate(1, variable.name, block, UnitConversion(), values.data() + block.first);
+  seen.spacing = spacing_of(values);
+  if (seen.spacing > 1) fill_between(values, variable.turn > 0.0);
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    seen.least = std::min(seen.least, value);
+    seen.most = std::max(seen.most, value);
+  }
+  return std::make_shared<const std::vector<double>>(std::move(values));
+}
+
+/// A variable without its values. @param seen in each file
+TestedVariable tested(const Described& described, const std::vector<Seen>& seen) {
   TestedVariable variable;
-  variable.name = name;
-  variable.unit = info.units;
-  variable.description = info.long_name;
+  variable.name = described.name;
+  variable.unit = described.unit;
+  variable.description = described.description;
   variable.in_file = true;
   variable.may_be_cause = true;
-  if (info.rate > 1) variable.sampling = fmt::format("means of {} samples a record", info.rate);
-  const double turn = turn_of(info);
-  std::vector<Values> of_files;
-  for (const Flight& file : files) {
-    std::vector<double> values(file.records());
-    for (const RecordBlock block : blocks_of(file.records()))
-      file.read_at_rate(1, name, block, UnitConversion(), values.data() + block.first);
-    if (const std::size_t spacing = spacing_of(values); spacing > 1) {
-      fill_between(values, turn > 0.0);
-      variable.sampling = fmt::format("one value in {} records, {} in between", spacing,
-                                      turn > 0.0 ? "held" : "interpolated");
-    }
-    of_files.push_back(std::make_shared<const std::vector<double>>(std::move(values)));
+  if (described.rate > 1) variable.sampling = fmt::format("means of {} samples a record", described.rate);
+  double least = described.turn;
+  double most = -described.turn;
+  for (const Seen& each : seen) {
+    least = std::min(least, each.least);
+    most = std::max(most, each.most);
+    if (each.spacing > 1)
+      variable.sampling = fmt::format("one value in {} records, {} in between", each.spacing,
+                                      described.turn > 0.0 ? "held" : "interpolated");
   }
-  if (turn > 0.0 && takes_all_directions(of_files, turn)) variable.turn = turn;
-  for (const std::size_t file : file_of_flight) variable.values.push_back(of_files[file]);
+  // An angle that takes less than half of all directions is as good as any other number.
+  if (described.turn > 0.0 && most - least > 0.5 * described.turn && most - least <= described.turn)
+    variable.turn = described.turn;
   return variable;
 }
 
@@ -185,18 +208,42 @@ std::vector<TestedVariable> flown_variables(const std::vector<FlightColumns>& fl
   return result;
 }
 
-std::vector<TestedVariable> recorded_variables(const std::vector<Flight>& files,
+std::vector<TestedVariable> recorded_variables(const FlightFiles& files,
                                                const std::vector<FlightColumns>& flights,
                                                const std::set<std::string>& without) {
-  std::vector<std::size_t> file_of_flight;
-  for (const FlightColumns& flight : flights) file_of_flight.push_back(file_of(flight, files));
+  const std::vector<Described> of_first =
+      files.share()
+          .of_each_flight<std::vector<Described>>([&](std::size_t number) {
+            return number == 0 ? described_by(files[0], without) : std::vector<Described>();
+          })
+          .front();
+  const auto has = files.share().of_each_flight<std::vector<bool>>([&](std::size_t number) {
+    std::vector<bool> all;
+    for (const Described& each : of_first)
+      all.push_back(files[number].has(each.name) && files[number].variable(each.name).is_series);
+    return all;
+  });
+  std::vector<Described> everywhere;
+  for (std::size_t k = 0; k < of_first.size(); ++k) {
+    if (std::all_of(has.begin(), has.end(), [k](const std::vector<bool>& of_file) { return of_file[k]; }))
+      everywhere.push_back(of_first[k]);
+  }
+  std::vector<std::vector<Values>> values(everywhere.size(), std::vector<Values>(files.count()));
+  const auto seen = files.share().of_each_flight<std::vector<Seen>>([&](std::size_t number) {
+    std::vector<Seen> of_file(everywhere.size());
+    for (std::size_t k = 0; k < everywhere.size(); ++k)
+      values[k][number] = read_variable(files[number], everywhere[k], of_file[k]);
+    return of_file;
+  });
   std::vector<TestedVariable> result;
-  for (const std::string& name : files.front().variables()) {
-    const bool everywhere = std::all_of(files.begin(), files.end(), [&name](const Flight& file) {
-      return file.has(name) && file.variable(name).is_series;
-    });
-    if (everywhere && without.count(name) == 0 && !is_truth(files.front().variable(name)))
-      result.push_back(read_variable(files, file_of_flight, name));
+  for (std::size_t k = 0; k < everywhere.size(); ++k) {
+    std::vector<Seen> of_variable;
+    for (const std::vector<Seen>& of_file : seen) of_variable.push_back(of_file[k]);
+    TestedVariable& variable = result.emplace_back(tested(everywhere[k], of_variable));
+    for (const FlightColumns& flight : flights) {
+      const Values& own = values[k][flight.file];
+      variable.values.push_back(own ? own : std::make_shared<const std::vector<double>>());
+    }
   }
   return result;
 }

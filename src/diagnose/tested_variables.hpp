@@ -5,12 +5,13 @@
 #include <string>
 #include <vector>
 
-#include <pcor/flight/flight.hpp>
 #include "diagnose/columns.hpp"
+#include "diagnose/flight_files.hpp"
 
 namespace pcor::internal {
 
-/// What unexplained structure may go with: a variable at every record of everything that is analysed.
+/// What unexplained structure may go with: a variable at every record of everything that is analysed, of the
+/// own flights of a member of a team.
 struct TestedVariable {
   std::string name;
   std::string unit{};
@@ -36,7 +37,7 @@ std::vector<TestedVariable> flown_variables(const std::vector<FlightColumns>& fl
 /// Of a variable with several samples a record the mean is taken (of an angle on the circle). What has a
 /// value in every so many records only is interpolated in between, an angle held.
 /// @param files of which each of `flights` is a part; @param without names that are left out
-std::vector<TestedVariable> recorded_variables(const std::vector<Flight>& files,
+std::vector<TestedVariable> recorded_variables(const FlightFiles& files,
                                                const std::vector<FlightColumns>& flights,
                                                const std::set<std::string>& without);
 

@@ -28,10 +28,10 @@ constexpr double least_drift_gain = 30.0;
 /// Of the noise: drift below it adds less than half a percent to the rms of the residual.
 constexpr double least_drift = 0.1;
 
-std::set<std::string> left_out(const std::vector<Flight>& files, const ModelFile& model,
-                               const Reference& reference, const DiagnoseOptions& options) {
+std::set<std::string> left_out(const FlightFiles& files, const ModelFile& model, const Reference& reference,
+                               const DiagnoseOptions& options) {
   std::set<std::string> names(options.not_variables.begin(), options.not_variables.end());
-  for (const Flight& file : files) names.insert(file.time_variable());
+  for (const FileOutline& file : files.outlines()) names.insert(file.time_variable);
   names.insert({"Time", "time", "time_offset", "base_time"});
   const auto is_read_by_model = [&model](const std::string& variable) {
     return std::any_of(model.variables.begin(), model.variables.end(),
@@ -84,30 +84,35 @@ TracedVariable traced_of(const Structure& structure, const TestedVariable& teste
 std::string worst_regime(const Analysis& analysis, const std::vector<std::vector<double>>& after,
                          double noise) {
   constexpr double fewest = 120.0;
-  std::array<double, regime_count> squares{};
-  std::array<double, regime_count> counts{};
-  for (std::size_t f = 0; f < after.size(); ++f) {
+  // Squares and their number, of each regime.
+  using Sums = Eigen::Matrix<double, static_cast<int>(regime_count), 2>;
+  const auto sums = analysis.share().sum_of_each_flight<Sums>([&](std::size_t f) {
+    Sums own = Sums::Zero();
     const FlightSamples& samples = *analysis.flights()[f].samples;
     const std::vector<RegimeSet> regimes = regimes_of_samples(samples.time, samples.intervals);
     for (std::size_t i = 0; i < after[f].size(); ++i) {
       if (std::isnan(after[f][i])) continue;
       for (std::size_t r = 0; r < regime_count; ++r) {
         if (!regimes[i][r]) continue;
-        squares[r] += after[f][i] * after[f][i];
-        counts[r] += 1.0;
+        own(as_index(r), 0) += after[f][i] * after[f][i];
+        own(as_index(r), 1) += 1.0;
       }
     }
-  }
+    return own;
+  });
   double worst = noise * noise;
   std::string name;
   for (std::size_t r = 0; r < regime_count; ++r) {
-    if (counts[r] < fewest || !(squares[r] / counts[r] > worst)) continue;
-    worst = squares[r] / counts[r];
+    const double squares = sums(as_index(r), 0);
+    const double count = sums(as_index(r), 1);
+    if (count < fewest || !(squares / count > worst)) continue;
+    worst = squares / count;
     name = std::string(facts_of(static_cast<Regime>(r)).name);
   }
   return name;
 }
 
+/// Of the own flights.
 std::vector<std::vector<double>> residuals_after(const Analysis& analysis,
                                                  const std::vector<std::size_t>& groups) {
   Eigen::VectorXd estimate;
@@ -123,21 +128,32 @@ std::vector<std::vector<double>> residuals_after(const Analysis& analysis,
   return after;
 }
 
+/// The variables that the first file says are computed from any of `sensors`.
+std::vector<std::string> computed_variables(const FlightFiles& files, const std::set<std::string>& sensors) {
+  return files.share()
+      .of_each_flight<std::vector<std::string>>([&](std::size_t number) {
+        if (number > 0) return std::vector<std::string>();
+        const std::set<std::string> computed = computed_from(files[0], sensors);
+        return std::vector<std::string>(computed.begin(), computed.end());
+      })
+      .front();
+}
+
 /// The variables that structure may go with; those that are no causes are named in `found`.
-std::vector<TestedVariable> variables_to_test(const Analysis& analysis, const std::vector<Flight>& files,
+std::vector<TestedVariable> variables_to_test(const Analysis& analysis, const FlightFiles& files,
                                               const ModelFile& model, const Reference& reference,
                                               const DiagnoseOptions& options,
                                               const std::vector<std::vector<double>>& after,
                                               Unexplained& found) {
   std::vector<TestedVariable> variables = flown_variables(analysis.flights());
   if (!options.whole_file) return variables;
-  const std::set<std::string> computed = computed_from(files.front(), sensors_of(model, reference));
+  const std::vector<std::string> computed = computed_variables(files, sensors_of(model, reference));
   const auto altitude = model.variables.find(Quantity::altitude);
   for (TestedVariable& variable :
        recorded_variables(files, analysis.flights(), left_out(files, model, reference, options))) {
-    if (computed.count(variable.name) > 0) {
+    if (std::find(computed.begin(), computed.end(), variable.name) != computed.end()) {
       found.computed.push_back(variable.name);
-    } else if (shares_noise(after, variable.pointers())) {
+    } else if (shares_noise(analysis.share(), after, variable.pointers())) {
       found.shares_noise.push_back(variable.name);
     } else {
       variable.fine = altitude != model.variables.end() && altitude->second == variable.name;
@@ -154,13 +170,14 @@ struct Tested {
 
   Tested(const Analysis& analysis, const std::vector<std::size_t>& chosen,
          const std::vector<TestedVariable>& all, std::uint64_t seed)
-      : test(analysis.bins(), analysis.columns_of(chosen), analysis.residuals(), analysis.noise(), seed) {
+      : test(analysis.share(), analysis.bins(), analysis.columns_of(chosen), analysis.residuals(),
+             analysis.noise(), seed) {
     add(all);
     const std::vector<Eigen::MatrixXd> strong = test.strong_structure();
     if (strong.empty() || explains_most_beyond_chance()) return;
     // Chance may do as well only because it is told by residuals that hold that structure.
-    test = StructureTest(analysis.bins(), analysis.columns_of(chosen), analysis.residuals(), analysis.noise(),
-                         seed, strong);
+    test = StructureTest(analysis.share(), analysis.bins(), analysis.columns_of(chosen), analysis.residuals(),
+                         analysis.noise(), seed, strong);
     variables.clear();
     add(all);
   }
@@ -198,8 +215,8 @@ Eigen::VectorXd line_in(const std::vector<double>& values, double middle) {
   return line;
 }
 
-/// The lines in variables, in bins, of each flight against each reference: of each variable one column for
-/// each reference. @param variables their numbers
+/// The lines in variables, in bins, of each own flight against each reference: of each variable one column
+/// for each reference. @param variables their numbers
 std::vector<Eigen::MatrixXd> lines_in(const Analysis& analysis, const Tested& tested,
                                       const std::vector<std::size_t>& variables, Eigen::Index references) {
   const std::vector<FlightColumns>& flights = analysis.flights();
@@ -210,9 +227,9 @@ std::vector<Eigen::MatrixXd> lines_in(const Analysis& analysis, const Tested& te
     Eigen::MatrixXd& columns = lines.emplace_back(
         Eigen::MatrixXd::Zero(as_index(bins.size()), references * as_index(variables.size())));
     const auto known = std::find_if(flights.begin(), flights.end(), [&flight](const FlightColumns& other) {
-      return other.samples->name == flight.samples->name;
+      return other.file == flight.file;
     });
-    if (known == flights.end()) continue;
+    if (known == flights.end() || !analysis.whole_share().owns(f)) continue;
     const auto place = static_cast<std::size_t>(known - flights.begin());
     for (std::size_t k = 0; k < variables.size(); ++k) {
       columns.col(references * as_index(k) + as_index(flight.reference)) = bins.means(line_in(
@@ -300,7 +317,7 @@ bool line_overrules(const Analysis& analysis, const std::vector<std::size_t>& ch
                     const std::set<std::string>& inputs) {
   if (tested.variables.empty()) return false;
   const Search& search = analysis.search();
-  const auto rows = static_cast<double>(analysis.scores().row_count());
+  const auto rows = static_cast<double>(analysis.scores().row_count);
   const double choices = std::log(static_cast<double>(tested.variables.size()));
   double by_effects = 0.0;
   for (const std::size_t group : chosen) by_effects += search.score(group, {}).freedom;
@@ -348,8 +365,8 @@ std::vector<std::size_t> add_traced(const Tested& tested, UnexplainedStructure& 
 
 std::vector<FlightStep> steps_between(const Analysis& analysis, const std::vector<std::size_t>& chosen) {
   std::vector<FlightStep> steps;
-  const std::vector<MeanStep> found =
-      find_mean_steps(analysis.bins(), analysis.columns_of(chosen), analysis.residuals(), analysis.noise());
+  const std::vector<MeanStep> found = find_mean_steps(
+      analysis.share(), analysis.bins(), analysis.columns_of(chosen), analysis.residuals(), analysis.noise());
   for (std::size_t f = 0; f < found.size(); ++f) {
     if (found[f].chance < chance)
       steps.push_back({analysis.flights()[f].samples->name, found[f].size, found[f].error, found[f].chance});
@@ -361,7 +378,7 @@ std::vector<FlightStep> steps_between(const Analysis& analysis, const std::vecto
 
 }  // namespace
 
-UnexplainedStructure find_unexplained(const Analysis& analysis, const std::vector<Flight>& files,
+UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightFiles& files,
                                       const ModelFile& model, const References& references,
                                       const std::set<std::string>& inputs, const DiagnoseOptions& options,
                                       double residual_rms, double noise_rms) {
@@ -385,17 +402,17 @@ UnexplainedStructure find_unexplained(const Analysis& analysis, const std::vecto
   }
   const Tested& shown = result.overrules ? *beside_base : beside_all;
 
-  std::vector<std::vector<double>> drift;
-  for (std::size_t f = 0; f < analysis.flights().size(); ++f) drift.push_back(analysis.drift(f, chosen));
-  const auto whole = [](const std::vector<double>& series) -> const std::vector<double>& { return series; };
-  found.drift_rms = rms_of(drift, whole);
+  found.drift_rms = rms_of(analysis.share(), [&](std::size_t f) { return analysis.drift(f, chosen); });
   const bool drifts = analysis.drift_gain() > least_drift_gain && found.drift_rms > least_drift * noise_rms;
   found.steps = steps_between(analysis, chosen);
   found.significant = by_variables < chance || drifts || !found.steps.empty() || result.overrules;
   if (!found.significant) return result;
 
   const std::vector<std::vector<double>> left = result.overrules ? residuals_after(analysis, {}) : after;
-  const double rms = result.overrules ? rms_of(left, whole) : residual_rms;
+  const double rms =
+      result.overrules
+          ? rms_of(analysis.share(), [&left](std::size_t f) -> const std::vector<double>& { return left[f]; })
+          : residual_rms;
   const std::vector<std::size_t> traced = add_traced(shown, result);
   // Effects that stay describe a part of every reference, of which the lines know nothing.
   if (chosen.empty() || result.overrules) find_places(analysis, shown, traced, references, found.variables);

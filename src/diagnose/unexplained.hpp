@@ -5,8 +5,8 @@
 #include <vector>
 
 #include <pcor/diagnose/diagnose.hpp>
-#include <pcor/flight/flight.hpp>
 #include "diagnose/analysis.hpp"
+#include "diagnose/flight_files.hpp"
 
 namespace pcor::internal {
 
@@ -18,14 +18,14 @@ struct UnexplainedStructure {
   /// these are not what is missing, and `found` is what the base alone leaves.
   bool overrules = false;
   std::vector<std::vector<double>>
-      traced{};  ///< the best variable, of each flight, one value for each record
+      traced{};  ///< the best variable, of each own flight, one value for each record
 };
 
 /// Tests whether something is left, in any variable of the files.
 ///
 /// @param references in the order of the analysis
 /// @param residual_rms and @param noise_rms after the chosen effects, hPa
-UnexplainedStructure find_unexplained(const Analysis& analysis, const std::vector<Flight>& files,
+UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightFiles& files,
                                       const ModelFile& model, const References& references,
                                       const std::set<std::string>& inputs, const DiagnoseOptions& options,
                                       double residual_rms, double noise_rms);

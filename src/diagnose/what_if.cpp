@@ -12,6 +12,7 @@
 #include "diagnose/separation.hpp"
 #include "diagnose/traced_effect.hpp"
 #include "diagnose/what_if_fit.hpp"
+#include "numerics/median.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "residuals/masks.hpp"
@@ -106,6 +107,33 @@ std::vector<WhatIfCandidate> put_in_order(CandidateSet& set, std::vector<FlightC
 FlightColumns held_out(FlightColumns all, double used_share) {
   for (const std::size_t i : used_samples(all.mask, used_share)) all.given[i] = nan;
   return all;
+}
+
+/// The columns of samples that took no part, of all flights on every member of the team: those of the files
+/// behind the first, which are fitted, and the later parts of fitted flights.
+std::vector<FlightColumns> held_out_columns(const FlightFiles& files, std::size_t fitted,
+                                            const TeamColumns& columns, const ModelFile& model,
+                                            const CandidateSet& set, const WhatIfOptions& options) {
+  const MaskOptions& mask = options.diagnose.mask;
+  const double share = options.diagnose.training_share;
+  std::vector<std::size_t> files_held_out;
+  for (std::size_t file = fitted; file < files.count(); ++file) files_held_out.push_back(file);
+  std::vector<FlightColumns> others =
+      files.share().of_entries(files_held_out).of_each_flight<FlightColumns>([&](std::size_t number) {
+        auto samples = std::make_shared<FlightSamples>(
+            read_samples(files[files_held_out[number]], set.extended, *set.references[0], mask));
+        return held_out(find_columns(std::move(samples), model, set, 0, mask, 1.0), 0.0);
+      });
+  if (share >= 1.0) return others;
+  std::vector<std::size_t> first;  // against the first reference
+  for (std::size_t f = 0; f < columns.flights.size() && columns.flights[f].reference == 0; ++f)
+    first.push_back(f);
+  for (FlightColumns& later :
+       columns.share.of_entries(first).of_each_flight<FlightColumns>([&](std::size_t f) {
+         return held_out(find_columns(columns.flights[f].samples, model, set, 0, mask, 1.0), share);
+       }))
+    others.push_back(std::move(later));
+  return others;
 }
 
 /// The residual with effects at coefficients that are not small: as a refit with them has it.
@@ -243,7 +271,8 @@ std::vector<WhatIfSeparation> separations_of(const std::vector<FlightColumns>& f
   for (const FlightColumns& flight : flights) {
     if (flight.reference == 0) samples.push_back(flight.samples);
   }
-  const std::vector<Prospect> prospects = prospects_of(samples, fit.noise(), set, model, mask);
+  const std::vector<Prospect> prospects =
+      prospects_of(samples, fit.noise(), median(levels_of(fit.noise())), set, model, mask);
   const auto columns_of = [&fit](std::size_t effect) { return places_of(fit.groups()[effect], fit.base()); };
   for (std::size_t effect = 0; effect < set.candidates.size(); ++effect) {
     if (set.candidates[effect].is_shared) continue;  // its columns are those of another
@@ -310,14 +339,9 @@ std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
 WhatIf what_if(const std::vector<std::filesystem::path>& paths, const ModelFile& model,
                const References& all_references, const std::vector<WhatIfCandidate>& wanted,
                const WhatIfOptions& options) {
-  const TimeStamp time_stamp = options.diagnose.time_stamp;
-  std::vector<Flight> files;
-  std::vector<Flight> held_out_files;
-  for (const std::filesystem::path& path : paths) files.emplace_back(path, time_stamp);
-  for (const std::filesystem::path& path : options.holdout) held_out_files.emplace_back(path, time_stamp);
-  std::vector<const Flight*> flights;
-  for (const Flight& file : files) flights.push_back(&file);
-  for (const Flight& file : held_out_files) flights.push_back(&file);
+  std::vector<std::filesystem::path> all_paths = paths;
+  all_paths.insert(all_paths.end(), options.holdout.begin(), options.holdout.end());
+  const FlightFiles files(*options.diagnose.team, all_paths, options.diagnose.time_stamp);
   std::vector<std::string> notes;  // the diagnosis tells them
   std::vector<ModelEffect> formulas = options.diagnose.formulas;
   for (const WhatIfCandidate& each : wanted) {
@@ -325,27 +349,16 @@ WhatIf what_if(const std::vector<std::filesystem::path>& paths, const ModelFile&
     if (each.effect && each.effect->is_formula() && std::none_of(formulas.begin(), formulas.end(), same))
       formulas.push_back(*each.effect);
   }
-  CandidateSet set = find_candidates(model, formulas, flights, usable_references(all_references, notes));
+  CandidateSet set = find_candidates(model, formulas, files, usable_references(all_references, notes));
   keep(set, wanted);
   const MaskOptions& mask = options.diagnose.mask;
-  const double share = options.diagnose.training_share;
-  std::vector<FlightColumns> columns = columns_of_flights(files, model, set, options.diagnose, notes);
+  TeamColumns columns = columns_of_flights(files, paths.size(), model, set, options.diagnose, notes);
   leave_out_empty(columns);
-  if (columns.empty()) throw Error("no sample is left to try effects on");
-  const std::size_t fitted_flights = columns.size();
+  if (columns.flights.empty()) throw Error("no sample is left to try effects on");
   drop_untestable(set, columns);
-  std::vector<FlightColumns> others;
-  for (const Flight& file : held_out_files) {
-    auto samples =
-        std::make_shared<FlightSamples>(read_samples(file, set.extended, *set.references[0], mask));
-    others.push_back(held_out(find_columns(std::move(samples), model, set, 0, mask, 1.0), 0.0));
-  }
-  for (std::size_t f = 0; f < fitted_flights && share < 1.0; ++f) {
-    if (columns[f].reference == 0)
-      others.push_back(held_out(find_columns(columns[f].samples, model, set, 0, mask, 1.0), share));
-  }
+  std::vector<FlightColumns> others = held_out_columns(files, paths.size(), columns, model, set, options);
   CandidateSet ordered = set;
-  const std::vector<WhatIfCandidate> found = put_in_order(ordered, columns, wanted);
+  const std::vector<WhatIfCandidate> found = put_in_order(ordered, columns.flights, wanted);
   put_in_order(set, others, wanted);
 
   WhatIf result;
@@ -375,7 +388,7 @@ WhatIf what_if(const std::vector<std::filesystem::path>& paths, const ModelFile&
                              candidate.tested.size(),
                              "",
                              candidate.effect.is_formula(),
-                             note_of(candidate, columns.front().samples->flaps_variable)});
+                             note_of(candidate, columns.flights.front().samples->flaps_variable)});
     if (stands_for != found.end())
       panel.effects.back().stands_for = static_cast<std::size_t>(stands_for - found.begin());
     for (const CandidateParameter& tested : candidate.tested) {
@@ -385,7 +398,10 @@ WhatIf what_if(const std::vector<std::filesystem::path>& paths, const ModelFile&
     }
     if (found[e].stands_for == found[e].id) are_found.push_back(e);
   }
-  const WhatIfFit fit(std::move(columns), std::move(others), panel.coefficients,
+  // The panel holds every record of every flight.
+  auto of_all = columns.share.of_each_flight<FlightColumns>(
+      [&columns](std::size_t f) { return std::move(columns.flights[f]); });
+  const WhatIfFit fit(std::move(of_all), std::move(others), panel.coefficients,
                       groups_of(model, ordered.candidates), are_found, options.is_robust,
                       WithEffects(model, ordered, mask));
   fit.describe(panel.coefficients);

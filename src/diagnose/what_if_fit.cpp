@@ -214,6 +214,7 @@ Eigen::VectorXd WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool
       residuals.push_back(bins_.back().means(series));
     }
     if (round == 0) {
+      scores.share = FlightShare(flights_.size());
       scores.rows.clear();
       for (std::size_t f = 0; f < flights_.size(); ++f)
         scores.rows.emplace_back(columns[f].rows(), columns[f].cols() + 1) << columns[f], residuals[f];
@@ -241,7 +242,7 @@ Eigen::VectorXd WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool
         noise[first].level = {model.level[first - (last - bins.size())]};
       }
     }
-    scores = find_scores(bins_, columns, residuals, noise);
+    scores = find_scores(FlightShare(bins_.size()), bins_, columns, residuals, noise);
     const Search search(scores, base_, groups_);
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       told_[g].clear();
@@ -266,7 +267,7 @@ Eigen::VectorXd WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool
     part.products = part.products.selfadjointView<Eigen::Lower>();
   }
   whole_.products = scores.information;
-  whole_.count = static_cast<double>(scores.row_count());
+  whole_.count = static_cast<double>(scores.row_count);
   return values;
 }
 

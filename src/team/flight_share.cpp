@@ -9,8 +9,8 @@ FlightShare::FlightShare(std::size_t flights) : team_(&alone()), owner_(flights,
 
 FlightShare::FlightShare(Team& team, const std::vector<std::uint64_t>& sizes)
     : team_(&team), owner_(sizes.size(), 0) {
-  const auto seen = team.size() == 1 ? sizes
-                                     : unpacked<std::vector<std::uint64_t>>(team.gather(packed(sizes)).front());
+  const auto seen =
+      team.size() == 1 ? sizes : unpacked<std::vector<std::uint64_t>>(team.gather(packed(sizes)).front());
   std::vector<std::size_t> longest_first(seen.size());
   std::iota(longest_first.begin(), longest_first.end(), std::size_t{0});
   std::stable_sort(longest_first.begin(), longest_first.end(),
@@ -22,6 +22,21 @@ FlightShare::FlightShare(Team& team, const std::vector<std::uint64_t>& sizes)
     *least += std::max<std::uint64_t>(seen[flight], 1);
   }
   own_ = static_cast<std::size_t>(std::count(owner_.begin(), owner_.end(), team.rank()));
+}
+
+FlightShare FlightShare::of_entries(const std::vector<std::size_t>& flight_of_each) const {
+  FlightShare share(flight_of_each.size());
+  share.team_ = team_;
+  for (std::size_t entry = 0; entry < share.flights(); ++entry)
+    share.owner_[entry] = owner_[flight_of_each[entry]];
+  share.own_ = static_cast<std::size_t>(std::count(share.owner_.begin(), share.owner_.end(), team_->rank()));
+  return share;
+}
+
+FlightShare FlightShare::those_from(std::size_t first, std::size_t count) const {
+  std::vector<std::size_t> flights(std::min(count, this->flights() - first));
+  std::iota(flights.begin(), flights.end(), first);
+  return of_entries(flights);
 }
 
 FlightShare share_of_flights(Team& team, const std::vector<std::filesystem::path>& paths) {

@@ -2,6 +2,7 @@
 
 #include <pcor/team/team.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -38,6 +39,10 @@ class FlightShare {
   bool owns(std::size_t flight) const { return owner_[flight] == team_->rank(); }
   std::size_t own() const { return own_; }
   Team& team() const { return *team_; }
+
+  /// The share of a list whose entries are each of one of these flights, as is a flight against one of
+  /// several references: an entry is of the owner of its flight.
+  FlightShare of_entries(const std::vector<std::size_t>& flight_of_each) const;
 
   /// Work on own flights. Where it fails, all members do, at what they gather next.
   template <class Work>
@@ -80,7 +85,34 @@ class FlightShare {
         state);
   }
 
+  /// The sum of the parts of all flights, added in their order, on every member: a few at a time are made and
+  /// gathered, so that many need no more memory. @param make gives the part of a flight, which has a +=
+  template <class Part, class Make>
+  Part sum_of_each_flight(const Make& make) const {
+    constexpr std::size_t at_a_time = 4;  // of each member
+    Part sum{};
+    for (std::size_t first = 0; first < flights(); first += at_a_time * team_->size()) {
+      const FlightShare some = those_from(first, at_a_time * team_->size());
+      const auto add = [&](std::size_t flight, Part part) {
+        if (flight == 0)
+          sum = std::move(part);
+        else
+          sum += part;
+      };
+      if (team_->size() == 1) {
+        for (std::size_t k = 0; k < some.flights(); ++k) add(first + k, make(first + k));
+        continue;
+      }
+      std::vector<Part> parts =
+          some.template of_each_flight<Part>([&](std::size_t k) { return make(first + k); });
+      for (std::size_t k = 0; k < parts.size(); ++k) add(first + k, std::move(parts[k]));
+    }
+    return sum;
+  }
+
  private:
+  FlightShare those_from(std::size_t first, std::size_t count) const;
+
   template <class Part>
   void gather(std::vector<Part>& parts, std::uint64_t state) const {
     std::vector<Part> own;

@@ -13,19 +13,19 @@
 namespace cereal {
 
 /// Matrices and vectors, with their sizes.
-template <class Archive, int rows, int columns>
-void save(Archive& archive, const Eigen::Matrix<double, rows, columns>& matrix) {
+template <class Archive, class Number, int rows, int columns>
+void save(Archive& archive, const Eigen::Matrix<Number, rows, columns>& matrix) {
   archive(matrix.rows(), matrix.cols());
-  archive(binary_data(matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof(double)));
+  archive(binary_data(matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof(Number)));
 }
 
-template <class Archive, int rows, int columns>
-void load(Archive& archive, Eigen::Matrix<double, rows, columns>& matrix) {
+template <class Archive, class Number, int rows, int columns>
+void load(Archive& archive, Eigen::Matrix<Number, rows, columns>& matrix) {
   Eigen::Index height = 0;
   Eigen::Index width = 0;
   archive(height, width);
   matrix.resize(height, width);
-  archive(binary_data(matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof(double)));
+  archive(binary_data(matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof(Number)));
 }
 
 }  // namespace cereal

@@ -225,9 +225,12 @@ bool has_candidate(const CandidateSet& set, const std::string& effect) {
                      [&](const Candidate& candidate) { return candidate.effect.id == effect; });
 }
 
+pcor::internal::FlightFiles file_of_short_flight() {
+  return {pcor::alone(), {short_flight()}, pcor::TimeStamp::begin};
+}
+
 CandidateSet candidates_of_file(const ModelFile& model, const std::vector<ModelEffect>& formulas = {}) {
-  const pcor::Flight flight(short_flight());
-  return pcor::internal::find_candidates(model, formulas, {&flight}, {pcor::lams_reference()});
+  return pcor::internal::find_candidates(model, formulas, file_of_short_flight(), {pcor::lams_reference()});
 }
 
 }  // namespace
@@ -431,11 +434,11 @@ TEST(Candidates, OfHumidityFollowTheGasConstants) {
 }
 
 TEST(Candidates, OnOtherSystemsAreOneForEachSystem) {
-  const pcor::Flight flight(short_flight());
-  const auto number_of = [&flight](const std::vector<std::string>& others, const std::string& id) {
+  const pcor::internal::FlightFiles files = file_of_short_flight();
+  const auto number_of = [&files](const std::vector<std::string>& others, const std::string& id) {
     pcor::References references{pcor::lams_reference()};
     for (const std::string& other : others) references.push_back(pcor::read_reference(other, laser_model()));
-    for (const Candidate& candidate : find_candidates(laser_model(), {}, {&flight}, references).candidates) {
+    for (const Candidate& candidate : find_candidates(laser_model(), {}, files, references).candidates) {
       if (candidate.id == id) return candidate.numbers_in_others;
     }
     return std::vector<std::optional<std::size_t>>();

@@ -38,7 +38,9 @@ struct Flights {
     noise.coefficients = {0.0};
   }
 
-  std::vector<MeanStep> steps() const { return find_mean_steps(bins, columns, residuals, noise); }
+  std::vector<MeanStep> steps() const {
+    return find_mean_steps(pcor::internal::FlightShare(bins.size()), bins, columns, residuals, noise);
+  }
 };
 
 TEST(MeanSteps, KnowsTheFlightThatDiffersAndByHowMuch) {

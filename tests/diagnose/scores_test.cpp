@@ -92,7 +92,8 @@ TEST(Scores, AreThoseOfGeneralisedLeastSquares) {
     Example example({300, 150}, 4, 1);
     example.noise.slow = {0.5 * drift, 0.0, drift, 0.2 * drift};
     const Scores scores =
-        pcor::internal::find_scores(example.bins, example.columns, example.residuals, example.noise);
+        pcor::internal::find_scores(pcor::internal::FlightShare(example.bins.size()), example.bins,
+                                    example.columns, example.residuals, example.noise);
     // Rounding, of matrices whose condition is 1e5 at most.
     EXPECT_TRUE(scores.information.isApprox(expected(example), 1e-9)) << drift;
     EXPECT_TRUE(scores.information.isApprox(scores.information.transpose(), 1e-14));
@@ -106,7 +107,8 @@ TEST(Scores, OfBlocksAddUpToTheScore) {
   Example example({300, 150}, 4, 2);
   example.noise.slow = {0.0, 0.5, 0.0, 0.0};
   const Scores scores =
-      pcor::internal::find_scores(example.bins, example.columns, example.residuals, example.noise);
+      pcor::internal::find_scores(pcor::internal::FlightShare(example.bins.size()), example.bins,
+                                  example.columns, example.residuals, example.noise);
   // What is left after no coefficients has the score of the residual.
   Eigen::VectorXd score = Eigen::VectorXd::Zero(4);
   for (std::size_t f = 0; f < 2; ++f)
@@ -121,7 +123,7 @@ TEST(Scores, OfBlocksAddUpToTheScore) {
       EXPECT_GE(scores.block[f][i], scores.block[f][i - 1]);
   }
   EXPECT_GT(scores.block[1].front(), scores.block[0].back());
-  EXPECT_EQ(scores.row_count(), example.bins[0].size() + example.bins[1].size());
+  EXPECT_EQ(scores.row_count, example.bins[0].size() + example.bins[1].size());
 }
 
 // What drift can be says nothing any more: a column that is a drift is worth little, one that is fast is
@@ -132,10 +134,12 @@ TEST(Scores, WithDriftSlowColumnsAreWorthLittle) {
     example.columns[0](i, 0) = std::cos(3.0 * M_PI * example.bins[0].time()[static_cast<std::size_t>(i)] /
                                         example.bins[0].time().back());
   const Scores without =
-      pcor::internal::find_scores(example.bins, example.columns, example.residuals, example.noise);
+      pcor::internal::find_scores(pcor::internal::FlightShare(example.bins.size()), example.bins,
+                                  example.columns, example.residuals, example.noise);
   example.noise.slow = {0.0, 0.0, 1.0, 0.0};
   const Scores with =
-      pcor::internal::find_scores(example.bins, example.columns, example.residuals, example.noise);
+      pcor::internal::find_scores(pcor::internal::FlightShare(example.bins.size()), example.bins,
+                                  example.columns, example.residuals, example.noise);
   // Forty minutes hold a few pieces of a drift of 800 s and 1 hPa: the coefficient of a wave is known to some
   // tenths of it.
   EXPECT_LT(with.information(0, 0), 20.0);

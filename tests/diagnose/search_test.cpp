@@ -85,7 +85,7 @@ struct Problem {
 
   Search search() {
     if (groups.empty()) one_by_one();
-    scores = pcor::internal::find_scores(bins, {columns}, {residual}, noise);
+    scores = pcor::internal::find_scores(pcor::internal::FlightShare(1), bins, {columns}, {residual}, noise);
     return Search(scores, base, groups);
   }
 };

@@ -85,7 +85,7 @@ struct Flight {
   }
 
   StructureTest test(const std::vector<Eigen::MatrixXd>& aside = {}) const {
-    StructureTest result(bins, columns, residuals, noise, 1, aside);
+    StructureTest result(pcor::internal::FlightShare(1), bins, columns, residuals, noise, 1, aside);
     for (std::size_t k = 0; k < variables.size(); ++k)
       result.add("v" + std::to_string(k), {variables[k].data()});
     return result;
@@ -369,9 +369,9 @@ TEST(SharesNoise, IsWhatWasComputedFromTheSameMeasurement) {
   const std::vector<double> residual = draws(3600, 7);
   std::vector<double> derived = draws(3600, 8);
   for (std::size_t i = 0; i < derived.size(); ++i) derived[i] = 3.0 * derived[i] - residual[i];
-  EXPECT_TRUE(pcor::internal::shares_noise({residual}, {derived.data()}));
+  EXPECT_TRUE(pcor::internal::shares_noise(pcor::internal::FlightShare(1), {residual}, {derived.data()}));
   const std::vector<double> other = draws(3600, 9);
-  EXPECT_FALSE(pcor::internal::shares_noise({residual}, {other.data()}));
+  EXPECT_FALSE(pcor::internal::shares_noise(pcor::internal::FlightShare(1), {residual}, {other.data()}));
 }
 
 // An effect makes residual and variable go together in its manoeuvres alone.
@@ -384,15 +384,15 @@ TEST(SharesNoise, IsNotWhatGoesWithItInManoeuvresAlone) {
     if (i >= 1000 && i < 1400) variable[i] += 3.0 * std::sin(static_cast<double>(i) / 2.0);
     residual[i] = 0.3 * residual[i] + variable[i];
   }
-  EXPECT_FALSE(pcor::internal::shares_noise({residual}, {variable.data()}));
+  EXPECT_FALSE(pcor::internal::shares_noise(pcor::internal::FlightShare(1), {residual}, {variable.data()}));
 }
 
 TEST(SharesNoise, OfNothingIsFalse) {
   const std::vector<double> nothing(600, missing);
   const std::vector<double> values = draws(600, 12);
-  EXPECT_FALSE(pcor::internal::shares_noise({nothing}, {values.data()}));
+  EXPECT_FALSE(pcor::internal::shares_noise(pcor::internal::FlightShare(1), {nothing}, {values.data()}));
   const std::vector<double> constant(600, 1.0);
-  EXPECT_FALSE(pcor::internal::shares_noise({values}, {constant.data()}));
+  EXPECT_FALSE(pcor::internal::shares_noise(pcor::internal::FlightShare(1), {values}, {constant.data()}));
 }
 
 // Of twenty minutes and variables that have nothing to do with it, few are taken for it: two windows of 300
@@ -402,7 +402,8 @@ TEST(SharesNoise, IsRarelyChance) {
   const std::vector<double> residual = draws(1200, 13);
   for (unsigned seed = 0; seed < 100; ++seed) {
     const std::vector<double> other = draws(1200, 500 + seed);
-    shared += pcor::internal::shares_noise({residual}, {other.data()}) ? 1 : 0;
+    shared +=
+        pcor::internal::shares_noise(pcor::internal::FlightShare(1), {residual}, {other.data()}) ? 1 : 0;
   }
   EXPECT_LE(shared, 6);
 }

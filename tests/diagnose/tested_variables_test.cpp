@@ -8,9 +8,8 @@
 #include "support/netcdf_file.hpp"
 #include "support/temporary_directory.hpp"
 
-using pcor::Flight;
-using pcor::FlightSamples;
 using pcor::internal::FlightColumns;
+using pcor::internal::FlightFiles;
 using pcor::internal::recorded_variables;
 using pcor::internal::TestedVariable;
 using pcor::test::NetcdfMaker;
@@ -36,13 +35,8 @@ class RecordedVariables : public testing::Test {
       const int variable = file.series("V", units, values, rate);
       if (!circle.empty()) file.numbers(variable, "modulus_range", NC_FLOAT, circle);
     }
-    std::vector<Flight> files;
-    files.emplace_back(path);
-    auto samples = std::make_shared<FlightSamples>();
-    samples->time.resize(records);
-    files.front().read_sample_times({0, records}, 1, samples->time.data());
-    FlightColumns flight;
-    flight.samples = samples;
+    const FlightFiles files(pcor::alone(), {path}, pcor::TimeStamp::begin);
+    const FlightColumns flight;
     // The same flight twice, as two references see it.
     std::vector<TestedVariable> all = recorded_variables(files, {flight, flight}, {"Time"});
     EXPECT_EQ(all.size(), 1U);

@@ -19,11 +19,15 @@ namespace pcor::test {
 
 /// Runs `work` as each member of a team of threads, to the end of all. A member that waits for the others
 /// longer than a minute fails: that is a program that would hang.
+/// @param one_at_a_time a member works only while the others wait, as threads must that read files by the
+/// netCDF library
 /// @return bytes that each member sent at each exchange
 /// @throws what a member threw, after all have ended
 inline std::vector<std::vector<std::size_t>> run_as_team(std::size_t size,
-                                                         const std::function<void(Team&)>& work) {
+                                                         const std::function<void(Team&)>& work,
+                                                         bool one_at_a_time = false) {
   struct Table {
+    std::mutex working{};  // of the one that works, where one does at a time
     std::mutex mutex{};
     std::condition_variable changed{};
     std::vector<std::string> laid{};
@@ -35,7 +39,8 @@ inline std::vector<std::vector<std::size_t>> run_as_team(std::size_t size,
 
   class Member final : public Team {
    public:
-    Member(Table& table, std::size_t rank, std::size_t size) : table_(table), rank_(rank), size_(size) {}
+    Member(Table& table, std::size_t rank, std::size_t size, bool one_at_a_time)
+        : table_(table), rank_(rank), size_(size), one_at_a_time_(one_at_a_time) {}
     std::size_t rank() const override { return rank_; }
     std::size_t size() const override { return size_; }
 
@@ -44,6 +49,13 @@ inline std::vector<std::vector<std::size_t>> run_as_team(std::size_t size,
    private:
     std::vector<std::string> exchange(const std::string& own) override {
       sent.push_back(own.size());
+      if (one_at_a_time_) table_.working.unlock();
+      std::vector<std::string> all = exchange_with_others(own);
+      if (one_at_a_time_) table_.working.lock();
+      return all;
+    }
+
+    std::vector<std::string> exchange_with_others(const std::string& own) {
       std::unique_lock lock(table_.mutex);
       const std::size_t round = table_.round;
       table_.laid[rank_] = own;
@@ -62,20 +74,23 @@ inline std::vector<std::vector<std::size_t>> run_as_team(std::size_t size,
     Table& table_;
     std::size_t rank_;
     std::size_t size_;
+    bool one_at_a_time_;
   };
 
   std::vector<std::unique_ptr<Member>> members;
   std::vector<std::exception_ptr> thrown(size);
   std::vector<std::thread> threads;
   for (std::size_t rank = 0; rank < size; ++rank)
-    members.push_back(std::make_unique<Member>(table, rank, size));
+    members.push_back(std::make_unique<Member>(table, rank, size, one_at_a_time));
   for (std::size_t rank = 0; rank < size; ++rank) {
     threads.emplace_back([&, rank] {
+      if (one_at_a_time) table.working.lock();
       try {
         work(*members[rank]);
       } catch (...) {
         thrown[rank] = std::current_exception();
       }
+      if (one_at_a_time) table.working.unlock();
     });
   }
   for (std::thread& thread : threads) thread.join();

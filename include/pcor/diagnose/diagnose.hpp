@@ -4,6 +4,7 @@
 #include <pcor/residuals/reference.hpp>
 #include <pcor/residuals/residuals.hpp>
 #include <pcor/residuals/statistics.hpp>
+#include <pcor/team/team.hpp>
 
 #include <array>
 #include <cstddef>
@@ -33,6 +34,9 @@ std::string_view name_of(Verdict verdict);
 struct DiagnoseOptions {
   MaskOptions mask;
   TimeStamp time_stamp = TimeStamp::begin;
+  Team* team = &alone();  ///< which shares the flights; all of its members get the diagnosis
+  /// Whether `Diagnosis::flights` is filled, which holds every record of every flight.
+  bool series = true;
   /// Formula effects that are tried beside the catalogue. Those that the model has are part of the model.
   std::vector<ModelEffect> formulas{};
   bool whole_file = true;                    ///< look for structure in every variable of the files
@@ -42,6 +46,7 @@ struct DiagnoseOptions {
   /// 8 % of their rms, otherwise it may only refine earlier findings.
   double explained = 0.0;
   std::uint64_t seed = 20120106;  ///< of the draws that set thresholds
+  /// Told after every flight of this member.
   std::function<void(std::size_t done, std::size_t total)> progress{};
 };
 
@@ -250,7 +255,7 @@ struct Diagnosis {
   Statistics flaps_out;                 ///< of samples left out because flaps are out, as the model is given
   std::vector<HeldOutPart> held_out{};  ///< the later parts of flights, or flights that `improve` held out
   std::array<std::size_t, mask_count> masks{};
-  std::vector<FlightDiagnosis> flights{};
+  std::vector<FlightDiagnosis> flights{};  ///< empty where `DiagnoseOptions::series` is false
   std::vector<std::string> notes{};
 };
 

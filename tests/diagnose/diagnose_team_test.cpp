@@ -1,0 +1,227 @@
+// A diagnosis by a team is that of one process alone, bit by bit.
+#include <gmock/gmock.h>
+#include <pcor/diagnose/diagnose.hpp>
+#include <pcor/diagnose/what_if.hpp>
+#include <pcor/simulate/simulate.hpp>
+#include <pcor/words/error.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <mutex>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "diagnose/packed_diagnosis.hpp"
+#include "support/temporary_directory.hpp"
+#include "support/thread_team.hpp"
+#include "team/packed.hpp"
+
+namespace pcor {
+
+template <class Archive>
+void serialize(Archive& archive, ModelEffect& effect) {
+  archive(effect.id, effect.parameters, effect.parameter_names, effect.formula, effect.where, effect.unit,
+          effect.source, effect.scaling.static_pressure, effect.scaling.dynamic_pressure);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Estimate& estimate) {
+  archive(estimate.name, estimate.unit, estimate.value, estimate.standard_error, estimate.typical);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Evidence& evidence) {
+  archive(evidence.flight, evidence.begin, evidence.end, evidence.regimes, evidence.share);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Alias& alias) {
+  archive(alias.effect, alias.title, alias.correlation, alias.chi2_less, alias.size_to_usual, alias.estimates,
+          alias.log_likelihood_less, alias.probability, alias.correction, alias.held, alias.is_alike);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Advice& advice) {
+  archive(advice.sentence, advice.manoeuvre, advice.duration, advice.power);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Finding& finding) {
+  archive(finding.effect, finding.is_alike, finding.of_reference, finding.system, finding.title,
+          finding.estimates, finding.held, finding.rms, finding.worst, finding.worst_flight,
+          finding.worst_time, finding.chi2, finding.p_value, finding.rms_before, finding.rms_after,
+          finding.gain, finding.gain_error, finding.events, finding.evidence, finding.aliases, finding.family,
+          finding.shape, finding.shape_beyond_model, finding.variants, finding.places, finding.probability,
+          finding.times_usual, finding.static_risk, finding.static_change, finding.advice);
+}
+
+template <class Archive>
+void serialize(Archive& archive, AbsorbedEffect& effect) {
+  archive(effect.effect, effect.title, effect.by, effect.remaining);
+}
+
+template <class Archive>
+void serialize(Archive& archive, UpperLimit& limit) {
+  archive(limit.effect, limit.title, limit.estimates, limit.limits, limit.rms, limit.note);
+}
+
+template <class Archive>
+void serialize(Archive& archive, NotTestable& effect) {
+  archive(effect.effect, effect.title, effect.reason);
+}
+
+template <class Archive>
+void serialize(Archive& archive, TracedVariable& variable) {
+  archive(variable.name, variable.unit, variable.description, variable.r2, variable.p_value,
+          variable.linear_r2, variable.slope, variable.slope_error, variable.centre, variable.formula,
+          variable.sampling, variable.places, variable.where);
+}
+
+template <class Archive>
+void serialize(Archive& archive, FlightStep& step) {
+  archive(step.flight, step.size, step.standard_error, step.p_value);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Unexplained& found) {
+  archive(found.significant, found.rms, found.drift_rms, found.p_value, found.regime, found.variables,
+          found.steps, found.shares_noise, found.computed);
+}
+
+template <class Archive>
+void serialize(Archive& archive, HeldOutPart& part) {
+  archive(part.flight, part.statistics, part.expected);
+}
+
+namespace {
+
+using internal::packed;
+using test::run_as_team;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+using Paths = std::vector<std::filesystem::path>;
+
+const std::filesystem::path scenarios = std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
+
+/// Four flights of a quarter of an hour, of different lengths of files, that lack an effect.
+Paths flights(const std::string& effect, unsigned seed) {
+  static const test::TemporaryDirectory directory;
+  Paths paths;
+  for (unsigned flight = 0; flight < 4; ++flight) {
+    paths.push_back(directory / (std::to_string(seed) + "-" + std::to_string(flight) + ".nc"));
+    if (std::filesystem::exists(paths.back())) continue;
+    std::ifstream file(scenarios / "c130-short.toml");
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    Scenario scenario = parse_scenario(effect.empty() ? text : text + "\n[[effect]]\n" + effect, "short");
+    scenario.seed = seed + flight;
+    scenario.start += 86400.0 * flight;
+    simulate_flight(scenario, paths.back());
+  }
+  return paths;
+}
+
+ModelFile model() { return read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
+
+void expect_same(const Diagnosis& one, const Diagnosis& other) {
+  EXPECT_EQ(one.verdict, other.verdict);
+  EXPECT_EQ(one.reference, other.reference);
+  EXPECT_EQ(packed(one.findings), packed(other.findings));
+  EXPECT_EQ(packed(one.unexplained), packed(other.unexplained));
+  EXPECT_EQ(packed(one.absorbed), packed(other.absorbed));
+  EXPECT_EQ(packed(one.limits), packed(other.limits));
+  EXPECT_EQ(packed(one.not_testable), packed(other.not_testable));
+  EXPECT_EQ(packed(one.own), packed(other.own));
+  EXPECT_EQ(packed(std::vector<double>{one.threshold, one.rms_given, one.noise_rms, one.residual_rms,
+                                       one.residual_rms_held_out, one.noise_rms_with_findings}),
+            packed(std::vector<double>{other.threshold, other.rms_given, other.noise_rms, other.residual_rms,
+                                       other.residual_rms_held_out, other.noise_rms_with_findings}));
+  EXPECT_EQ(one.candidates, other.candidates);
+  EXPECT_EQ(one.samples, other.samples);
+  EXPECT_EQ(packed(one.flaps_out), packed(other.flaps_out));
+  EXPECT_EQ(packed(one.held_out), packed(other.held_out));
+  EXPECT_EQ(one.masks, other.masks);
+  EXPECT_EQ(packed(one.flights), packed(other.flights));
+  EXPECT_EQ(one.notes, other.notes);
+}
+
+/// Diagnoses of a team, which have to be that of one process.
+Diagnosis expect_that_of_one(const Paths& paths, const References& references, DiagnoseOptions options = {}) {
+  const Diagnosis alone = diagnose(paths, model(), references, options);
+  for (const std::size_t size : {1U, 2U, 3U, 6U}) {
+    SCOPED_TRACE(size);
+    const auto sent = run_as_team(
+        size,
+        [&](Team& team) {
+          DiagnoseOptions own = options;
+          own.team = &team;
+          expect_same(diagnose(paths, model(), references, own), alone);
+        },
+        true);
+    std::size_t bytes = 0;
+    for (const auto& member : sent) bytes = std::accumulate(member.begin(), member.end(), bytes);
+    std::cout << size << " members: " << sent.front().size() << " exchanges, " << bytes << " bytes\n";
+  }
+  return alone;
+}
+
+TEST(DiagnosisOfATeam, NamesTheSameEffect) {
+  const Diagnosis diagnosis =
+      expect_that_of_one(flights("id = \"static-beta-odd\"\nb1 = -0.02\n", 10), {lams_reference()});
+  EXPECT_THAT(diagnosis.findings, Not(IsEmpty()));
+}
+
+TEST(DiagnosisOfATeam, FindsTheSameVariablesOfTheFiles) {
+  DiagnoseOptions options;
+  options.training_share = 0.9;
+  const Diagnosis diagnosis = expect_that_of_one(
+      flights("id = \"unknown\"\nwhere = \"static\"\non = \"PSFD\"\nof = \"ENGTRQ\"\nstrength = 3.0\n"
+              "centre = 50\nscale = 100\n",
+              20),
+      {lams_reference(), read_reference("total:PSFRD+QCFR", model())}, options);
+  EXPECT_THAT(diagnosis.unexplained.variables, Not(IsEmpty()));
+  EXPECT_THAT(diagnosis.held_out, Not(IsEmpty()));
+}
+
+TEST(DiagnosisOfATeam, WithoutSeriesHoldsNoRecord) {
+  DiagnoseOptions options;
+  options.series = false;
+  options.whole_file = false;
+  EXPECT_THAT(expect_that_of_one(flights("", 30), {lams_reference()}, options).flights, IsEmpty());
+}
+
+TEST(DiagnosisOfATeam, FailsOnAllMembersAsOneAlone) {
+  Paths paths = flights("", 30);
+  const test::TemporaryDirectory directory;
+  paths[2] = directory / "broken.nc";
+  std::ofstream(paths[2]) << "no flight";
+  std::string alone;
+  try {
+    diagnose(paths, model(), {lams_reference()});
+  } catch (const Error& error) {
+    alone = error.what();
+  }
+  EXPECT_THAT(alone, HasSubstr("broken.nc"));
+  for (const std::size_t size : {2U, 3U, 6U}) {
+    run_as_team(
+        size,
+        [&](Team& team) {
+          DiagnoseOptions options;
+          options.team = &team;
+          try {
+            diagnose(paths, model(), {lams_reference()}, options);
+            ADD_FAILURE() << "of " << team.rank();
+          } catch (const Error& error) {
+            EXPECT_EQ(error.what(), alone);
+          }
+        },
+        true);
+  }
+}
+
+}  // namespace
+}  // namespace pcor
