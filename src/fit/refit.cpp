@@ -64,10 +64,11 @@ void require_one_kind(const Sources& sources, const RefitOptions& options) {
   require_one_aircraft(aircraft);
 }
 
-/// What the flights of a fit are called, from files or memory.
+/// What the flights of a fit are called, from files or memory: the first by its name.
 std::string text_of(const Sources& sources) {
-  std::vector<std::string> flights;
-  for (const auto& [path, samples] : sources) flights.push_back(samples ? samples->name : flight_text(path));
+  const auto& [path, samples] = sources.front();
+  std::vector<std::string> flights(sources.size());
+  flights.front() = samples ? samples->name : flight_text(path);
   return flights_text(flights);
 }
 

@@ -1,6 +1,9 @@
 #include <pcor/flight/same_aircraft.hpp>
 
 #include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <set>
 
 #include <pcor/words/error.hpp>
 
@@ -19,16 +22,13 @@ void require_one_aircraft(const std::vector<std::pair<std::string, std::string>>
 }
 
 void require_each_once(const std::vector<std::filesystem::path>& paths) {
-  for (std::size_t i = 0; i < paths.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      std::error_code ignored;
-      if (std::filesystem::equivalent(paths[i], paths[j], ignored)) {
-        throw Error(fmt::format(
-            "{} is given twice: its samples are not new ones; give every flight once, to the fit or to "
-            "--holdout",
-            paths[i].string()));
-      }
-    }
+  std::set<std::pair<dev_t, ino_t>> files;
+  for (const std::filesystem::path& path : paths) {
+    struct stat file {};
+    if (stat(path.c_str(), &file) != 0 || files.emplace(file.st_dev, file.st_ino).second) continue;
+    throw Error(fmt::format(
+        "{} is given twice: its samples are not new ones; give every flight once, to the fit or to --holdout",
+        path.string()));
   }
 }
 
