@@ -111,7 +111,7 @@ double noise_with_findings(const std::vector<FlightDiagnosis>& flights) {
 void add_statistics(const std::vector<FlightColumns>& flights, double share, Diagnosis& diagnosis) {
   ResidualSums used;
   ResidualSums with_flaps;
-  std::vector<std::vector<double>> blocks;
+  FittedMeans means;
   std::vector<std::size_t> held_out_blocks;
   for (const FlightColumns& flight : flights) {
     if (flight.reference != 0) continue;
@@ -122,7 +122,7 @@ void add_statistics(const std::vector<FlightColumns>& flights, double share, Dia
     const NoiseFloor noise = noise_of_flight(samples, only_where(flight.exact, flight.mask, Mask::none));
     const std::vector<double> residual = only_at(flight.exact, first);
     used.add(sums_of_flight(samples, residual, noise));
-    blocks.push_back(means_of_blocks(samples, residual));
+    means.add(means_of_blocks(samples, residual));
     const std::vector<double> out = only_where(flight.exact, flight.mask, Mask::flaps);
     if (has_value(out)) with_flaps.add(sums_of_flight(samples, out));
     if (later.empty()) continue;
@@ -136,7 +136,7 @@ void add_statistics(const std::vector<FlightColumns>& flights, double share, Dia
   diagnosis.noise_rms = statistics.noise_rms;
   diagnosis.flaps_out = with_flaps.statistics();
   for (std::size_t i = 0; i < diagnosis.held_out.size(); ++i)
-    diagnosis.held_out[i].expected = expected_bias(blocks, held_out_blocks[i]);
+    diagnosis.held_out[i].expected = means.expected_bias(held_out_blocks[i]);
 }
 
 Verdict verdict_of(const Diagnosis& diagnosis, double explained, double left) {
