@@ -150,7 +150,7 @@ GivenStatistics statistics_of(const FlightColumns& flight, double share) {
 void add_statistics(const TeamColumns& columns, double share, Diagnosis& diagnosis) {
   ResidualSums used;
   ResidualSums with_flaps;
-  std::vector<std::vector<double>> blocks;
+  FittedMeans means;
   std::vector<std::size_t> held_out_blocks;
   const auto found = columns.share.of_each_flight<GivenStatistics>([&](std::size_t f) {
     const FlightColumns& flight = columns.flights[f];
@@ -159,7 +159,7 @@ void add_statistics(const TeamColumns& columns, double share, Diagnosis& diagnos
   for (std::size_t f = 0; f < found.size(); ++f) {
     if (columns.flights[f].reference != 0) continue;
     used.add(found[f].used);
-    blocks.push_back(found[f].blocks);
+    means.add(found[f].blocks);
     if (found[f].with_flaps) with_flaps.add(*found[f].with_flaps);
     if (!found[f].held_out) continue;
     diagnosis.held_out.push_back({columns.flights[f].samples->name, *found[f].held_out, 0.0});
@@ -171,7 +171,7 @@ void add_statistics(const TeamColumns& columns, double share, Diagnosis& diagnos
   diagnosis.noise_rms = statistics.noise_rms;
   diagnosis.flaps_out = with_flaps.statistics();
   for (std::size_t i = 0; i < diagnosis.held_out.size(); ++i)
-    diagnosis.held_out[i].expected = expected_bias(blocks, held_out_blocks[i]);
+    diagnosis.held_out[i].expected = means.expected_bias(held_out_blocks[i]);
 }
 
 /// The samples of all flights by what they are left out for.

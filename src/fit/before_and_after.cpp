@@ -111,10 +111,10 @@ BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& valu
         for (const Interval& interval : samples.intervals)
           one.flown.set(static_cast<std::size_t>(interval.regime));
       });
-  std::vector<std::vector<double>> fitted;
+  FittedMeans fitted;
   ResidualSums with_flaps;
   for (const Compared& one : each) {
-    fitted.push_back(one.fitted_blocks);
+    fitted.add(one.fitted_blocks);
     with_flaps.add(one.flaps_out);
   }
   BeforeAndAfter all;
@@ -122,7 +122,7 @@ BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& valu
   for (const Compared& one : each) {
     for (FlightFit part : one.parts) {
       if (part.holdout) {
-        part.expected_bias = expected_bias(fitted, one.held_out_blocks);
+        part.expected_bias = fitted.expected_bias(one.held_out_blocks);
         const HeldOutPart judged{part.flight, part.after, part.expected_bias};
         if (judged.is_off()) all.notes.push_back(judged.text());
       }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include <pcor/numerics/noise.hpp>
 #include "fit/prior.hpp"
@@ -41,49 +42,68 @@ struct NormalLoss {
   }
 };
 
-/// Which flights, or parts of flights, are left out one after another.
+/// Which flights, or parts of flights, are left out one after another: the blocks of a flight are numbered on
+/// their own, and follow those of the flights before it.
 class Blocks {
  public:
-  explicit Blocks(FitFlights& flights) : begin_(flights.count(), 0.0), first_(flights.count(), 0) {
-    std::vector<double> length(flights.count(), 0.0);
-    flights.visit([&](std::size_t number, FitFlight& fit) {
+  explicit Blocks(FitFlights& flights) : begin_(flights.count(), 0.0), count_(flights.count(), 1) {
+    const auto spans = flights.of_each([](std::size_t, FitFlight& fit) {
       const std::vector<double>& time = fit.bins().time();
-      if (time.empty()) return;
-      begin_[number] = time.front();
-      length[number] = time.back() - time.front();
+      return time.empty() ? std::pair(0.0, 0.0) : std::pair(time.front(), time.back() - time.front());
     });
     double all = 0.0;
-    for (const double each : length) all += each;
+    for (const auto& [begin, length] : spans) all += length;
     length_ = flights.count() >= fewest_flights ? infinity : std::max(all / parts, shortest_part);
     for (std::size_t f = 0; f < flights.count(); ++f) {
-      first_[f] = count_;
-      count_ += length_ == infinity ? 1 : static_cast<std::size_t>(length[f] / length_) + 1;
+      begin_[f] = spans[f].first;
+      count_[f] += static_cast<std::size_t>(spans[f].second / length_);
     }
   }
 
-  std::size_t count() const { return count_; }
+  /// Of all flights, and of one.
+  std::size_t count() const { return std::accumulate(count_.begin(), count_.end(), std::size_t{0}); }
+  std::size_t count(std::size_t flight) const { return count_[flight]; }
 
   std::size_t operator()(std::size_t flight, double time) const {
-    if (length_ == infinity) return first_[flight];
-    const std::size_t last = flight + 1 < first_.size() ? first_[flight + 1] : count_;
     const double place = std::max((time - begin_[flight]) / length_, 0.0);
-    return std::min(first_[flight] + static_cast<std::size_t>(place), last - 1);
+    return std::min(static_cast<std::size_t>(place), count_[flight] - 1);
   }
 
  private:
   double length_ = infinity;  // s
   std::vector<double> begin_;
-  std::vector<std::size_t> first_;
-  std::size_t count_ = 0;
+  std::vector<std::size_t> count_;
 };
 
-/// Sums over the bins of one set of equations.
+/// Sums over the bins of a block.
+struct BlockSums {
+  Eigen::MatrixXd derivatives;  ///< of the scores by all parameters
+  Eigen::VectorXd score;
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(derivatives, score);
+  }
+};
+
+/// Sums over the bins of one set of equations, of a flight or of all.
 struct Sums {
-  std::vector<Eigen::MatrixXd> derivatives;  ///< of the scores by all parameters, of each block
-  std::vector<Eigen::VectorXd> score;        ///< of each block
-  Eigen::MatrixXd covariance;                ///< of the sum of the scores
-  double squares = 0.0;                      ///< of the influence
-  double slopes = 0.0;                       ///< of the loss
+  std::vector<BlockSums> blocks;
+  Eigen::MatrixXd covariance;  ///< of the sum of the scores
+  double squares = 0.0;        ///< of the influence
+  double slopes = 0.0;         ///< of the loss
+
+  /// Adds what is of no block.
+  void add(const Sums& other) {
+    covariance += other.covariance;
+    squares += other.squares;
+    slopes += other.slopes;
+  }
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(blocks, covariance, squares, slopes);
+  }
 };
 
 /// Of one reference. @param all the parameters of all equations and those that are held
@@ -97,34 +117,29 @@ Sums sums_of(FitFlights& flights, const FitEquations& equations, const std::vect
   std::vector<Eigen::Index> rows;  // of the own parameters among all
   for (const std::size_t p : equations.parameters)
     rows.push_back(std::find(all.begin(), all.end(), p) - all.begin());
-  std::vector<Sums> each(flights.count());
-  std::vector<double> squares(flights.count(), 0.0);
-  std::vector<double> slopes(flights.count(), 0.0);
-  flights.visit([&](std::size_t number, FitFlight& fit) {
-    Sums& sums = each[number];
-    sums.derivatives.assign(blocks.count(), Eigen::MatrixXd());
-    sums.score.assign(blocks.count(), Eigen::VectorXd());
+  const BlockSums nothing{Eigen::MatrixXd::Zero(own, size), Eigen::VectorXd::Zero(own)};
+  const auto sums_of_flight = [&](std::size_t number, FitFlight& fit) {
+    Sums sums;
+    sums.blocks.assign(blocks.count(number), nothing);
     sums.covariance = Eigen::MatrixXd::Zero(own, own);
-    if (fit.bins().size() == 0) return;
+    if (fit.bins().size() == 0) return sums;
     const Eigen::VectorXd innovations = fit.white_rows(solution.values, loss).rightCols(1);
     const Eigen::Index count = innovations.size();
     std::vector<double> influence(static_cast<std::size_t>(count));
     Eigen::VectorXd weight(count);
-    double slope = 0.0;
     for (Eigen::Index i = 0; i < count; ++i) {
       const double innovation = innovations[i];
       const std::array<double, 3> rho = loss(innovation);
       influence[static_cast<std::size_t>(i)] = rho[1] * innovation;
       weight[i] = rho[1];
-      slope += rho[1] + 2.0 * innovation * innovation * rho[2];
-      squares[number] += influence[static_cast<std::size_t>(i)] * influence[static_cast<std::size_t>(i)];
+      sums.slopes += rho[1] + 2.0 * innovation * innovation * rho[2];
+      sums.squares += influence[static_cast<std::size_t>(i)] * influence[static_cast<std::size_t>(i)];
     }
     if (count < enough_bins) {
-      slope = normal.slope * static_cast<double>(count);
-      squares[number] = normal.square * static_cast<double>(count);
+      sums.slopes = normal.slope * static_cast<double>(count);
+      sums.squares = normal.square * static_cast<double>(count);
     }
-    slopes[number] = slope;
-    slope /= static_cast<double>(count);
+    const double slope = sums.slopes / static_cast<double>(count);
     const Eigen::MatrixXd columns = fit.without_offsets(fit.white_columns(solution.values, all), weight);
     const std::vector<Stretch>& stretches = fit.bins().stretches();
     const Autoregression memory = count < enough_bins ? Autoregression{{}, std::sqrt(normal.square)}
@@ -134,34 +149,19 @@ Sums sums_of(FitFlights& flights, const FitEquations& equations, const std::vect
     const std::vector<double> covariance = covariance_of_sums(memory, pointers, stretches);
     sums.covariance = Eigen::Map<const Eigen::MatrixXd>(covariance.data(), own, own);
     for (Eigen::Index i = 0; i < count; ++i) {
-      const std::size_t block = blocks(number, fit.bins().time()[static_cast<std::size_t>(i)]);
-      if (sums.derivatives[block].size() == 0) {
-        sums.derivatives[block] = Eigen::MatrixXd::Zero(own, size);
-        sums.score[block] = Eigen::VectorXd::Zero(own);
-      }
+      BlockSums& block = sums.blocks[blocks(number, fit.bins().time()[static_cast<std::size_t>(i)])];
       const Eigen::VectorXd left = columns.row(i)(rows).transpose();
-      sums.derivatives[block] += slope * left * columns.row(i);
-      sums.score[block] += influence[static_cast<std::size_t>(i)] * left;
+      block.derivatives += slope * left * columns.row(i);
+      block.score += influence[static_cast<std::size_t>(i)] * left;
     }
-  });
+    return sums;
+  };
   Sums whole;
-  whole.derivatives.assign(blocks.count(), Eigen::MatrixXd::Zero(own, size));
-  whole.score.assign(blocks.count(), Eigen::VectorXd::Zero(own));
   whole.covariance = Eigen::MatrixXd::Zero(own, own);
-  double square_sum = 0.0;
-  double slope_sum = 0.0;
-  for (std::size_t f = 0; f < each.size(); ++f) {
-    whole.covariance += each[f].covariance;
-    square_sum += squares[f];
-    slope_sum += slopes[f];
-    for (std::size_t b = 0; b < blocks.count(); ++b) {
-      if (each[f].derivatives[b].size() == 0) continue;
-      whole.derivatives[b] += each[f].derivatives[b];
-      whole.score[b] += each[f].score[b];
-    }
+  for (const Sums& one : flights.of_each(sums_of_flight, solution.values)) {
+    whole.add(one);
+    whole.blocks.insert(whole.blocks.end(), one.blocks.begin(), one.blocks.end());
   }
-  whole.squares = square_sum;
-  whole.slopes = slope_sum;
   return whole;
 }
 
@@ -170,28 +170,25 @@ Sums sums_of(const FitEquations& equations, const std::vector<std::size_t>& all,
   Sums whole;
   for (FitFlights* const flights : equations.flights->joint()) {
     const Sums more = sums_of(*flights, equations, all, blocks);
-    if (whole.score.empty()) {
+    if (whole.blocks.empty()) {
       whole = more;
       continue;
     }
-    for (std::size_t b = 0; b < blocks.count(); ++b) {
-      whole.derivatives[b] += more.derivatives[b];
-      whole.score[b] += more.score[b];
+    whole.add(more);
+    for (std::size_t b = 0; b < whole.blocks.size(); ++b) {
+      whole.blocks[b].derivatives += more.blocks[b].derivatives;
+      whole.blocks[b].score += more.blocks[b].score;
     }
-    whole.covariance += more.covariance;
-    whole.squares += more.squares;
-    whole.slopes += more.slopes;
   }
   return whole;
 }
 
 double information_of(FitFlights& flights) {
-  std::vector<double> parts_of_it(flights.count(), 0.0);
-  flights.visit([&](std::size_t number, FitFlight& fit) {
-    parts_of_it[number] = fit.white(Eigen::VectorXd::Ones(as_index(fit.bins().size()))).squaredNorm();
-  });
   double sum = 0.0;
-  for (const double part : parts_of_it) sum += part;
+  for (const double part : flights.of_each([](std::size_t, FitFlight& fit) {
+         return fit.white(Eigen::VectorXd::Ones(as_index(fit.bins().size()))).squaredNorm();
+       }))
+    sum += part;
   return sum;
 }
 
@@ -217,8 +214,8 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations,
   const Eigen::Index size = as_index(all.size());
 
   const Blocks blocks(*last.flights);
-  std::vector<Eigen::MatrixXd> block_derivatives(blocks.count(), Eigen::MatrixXd::Zero(fitted, size));
-  std::vector<Eigen::VectorXd> block_score(blocks.count(), Eigen::VectorXd::Zero(fitted));
+  std::vector<BlockSums> left_out(blocks.count(),
+                                  {Eigen::MatrixXd::Zero(fitted, size), Eigen::VectorXd::Zero(fitted)});
   Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(fitted, size);
   Eigen::MatrixXd score = Eigen::MatrixXd::Zero(fitted, fitted);
   const Eigen::Index of_last = as_index(last.parameters.size());
@@ -228,10 +225,10 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations,
     if (own == 0) continue;
     const Sums sums = sums_of(each, all, blocks);
     Eigen::MatrixXd here = Eigen::MatrixXd::Zero(own, size);
-    for (std::size_t b = 0; b < blocks.count(); ++b) {
-      here += sums.derivatives[b];
-      block_derivatives[b].middleRows(first, own) = sums.derivatives[b];
-      block_score[b].segment(first, own) = sums.score[b];
+    for (std::size_t b = 0; b < left_out.size(); ++b) {
+      here += sums.blocks[b].derivatives;
+      left_out[b].derivatives.middleRows(first, own) = sums.blocks[b].derivatives;
+      left_out[b].score.segment(first, own) = sums.blocks[b].score;
     }
     derivatives.middleRows(first, own) = here;
     score.block(first, first, own, own) = sums.covariance;
@@ -251,7 +248,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations,
 
   FitCovariance found;
   found.information = information_of(*last.flights);
-  found.blocks = blocks.count();
+  found.blocks = left_out.size();
   found.matrix = Eigen::MatrixXd::Zero(size, size);
   found.jackknife = Eigen::VectorXd::Constant(fitted, nan);
   const Eigen::MatrixXd doubt = task.doubt(held, held);
@@ -276,15 +273,15 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations,
   }
 
   // One step of Newton from the fit of all to that without a block.
-  Eigen::MatrixXd moved(as_index(varying.size()), as_index(blocks.count()));
-  for (std::size_t b = 0; b < blocks.count(); ++b) {
-    const Eigen::MatrixXd rest = derivatives(varying, varying) - block_derivatives[b](varying, varying);
-    moved.col(as_index(b)) = scaled_inverse(rest) * block_score[b](varying);
+  Eigen::MatrixXd moved(as_index(varying.size()), as_index(left_out.size()));
+  for (std::size_t b = 0; b < left_out.size(); ++b) {
+    const Eigen::MatrixXd rest = derivatives(varying, varying) - left_out[b].derivatives(varying, varying);
+    moved.col(as_index(b)) = scaled_inverse(rest) * left_out[b].score(varying);
   }
-  const auto count = static_cast<double>(blocks.count());
+  const auto count = static_cast<double>(left_out.size());
   moved.colwise() -= moved.rowwise().mean().eval();
   const Eigen::VectorXd errors = (moved.rowwise().squaredNorm() * ((count - 1.0) / count)).cwiseSqrt();
-  if (blocks.count() > 2) found.jackknife(varying) = errors;
+  if (left_out.size() > 2) found.jackknife(varying) = errors;
   return found;
 }
 

@@ -24,14 +24,11 @@ void require_one_aircraft(const std::vector<std::pair<std::string, std::string>>
 void require_each_once(const std::vector<std::filesystem::path>& paths) {
   std::set<std::pair<dev_t, ino_t>> files;
   for (const std::filesystem::path& path : paths) {
-    struct stat status {};
-    if (stat(path.c_str(), &status) != 0) continue;  // for who opens it to say
-    if (!files.emplace(status.st_dev, status.st_ino).second) {
-      throw Error(fmt::format(
-          "{} is given twice: its samples are not new ones; give every flight once, to the fit or to "
-          "--holdout",
-          path.string()));
-    }
+    struct stat file {};
+    if (stat(path.c_str(), &file) != 0 || files.emplace(file.st_dev, file.st_ino).second) continue;
+    throw Error(fmt::format(
+        "{} is given twice: its samples are not new ones; give every flight once, to the fit or to --holdout",
+        path.string()));
   }
 }
 

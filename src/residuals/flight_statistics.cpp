@@ -11,11 +11,6 @@ namespace {
 
 constexpr double block_length = 300.0;  // s
 
-double mean_square(const std::vector<double>& values) {
-  return std::inner_product(values.begin(), values.end(), values.begin(), 0.0) /
-         static_cast<double>(values.size());
-}
-
 }  // namespace
 
 std::vector<double> only_at(const std::vector<double>& values, const std::vector<std::size_t>& samples) {
@@ -116,20 +111,20 @@ std::vector<double> means_of_blocks(const FlightSamples& samples, const std::vec
   return means;
 }
 
-double expected_bias(const std::vector<std::vector<double>>& fitted, std::size_t held_out) {
-  std::vector<double> all;
-  std::vector<double> flights;
-  for (const std::vector<double>& blocks : fitted) {
-    if (blocks.empty()) continue;
-    all.insert(all.end(), blocks.begin(), blocks.end());
-    flights.push_back(std::accumulate(blocks.begin(), blocks.end(), 0.0) /
-                      static_cast<double>(blocks.size()));
-  }
-  if (all.empty() || held_out == 0) return 0.0;
-  const double of_blocks =
-      mean_square(all) * (1.0 / static_cast<double>(held_out) + 1.0 / static_cast<double>(all.size()));
-  const double of_flights =
-      flights.size() < 2 ? 0.0 : mean_square(flights) * (1.0 + 1.0 / static_cast<double>(flights.size()));
+void FittedMeans::add(const std::vector<double>& blocks) {
+  if (blocks.empty()) return;
+  const auto count = static_cast<double>(blocks.size());
+  const double mean = std::accumulate(blocks.begin(), blocks.end(), 0.0) / count;
+  blocks_ += count;
+  block_squares_ = std::inner_product(blocks.begin(), blocks.end(), blocks.begin(), block_squares_);
+  flights_ += 1.0;
+  flight_squares_ += mean * mean;
+}
+
+double FittedMeans::expected_bias(std::size_t held_out) const {
+  if (blocks_ == 0.0 || held_out == 0) return 0.0;
+  const double of_blocks = block_squares_ / blocks_ * (1.0 / static_cast<double>(held_out) + 1.0 / blocks_);
+  const double of_flights = flights_ < 2.0 ? 0.0 : flight_squares_ / flights_ * (1.0 + 1.0 / flights_);
   return std::sqrt(std::max(of_blocks, of_flights));
 }
 

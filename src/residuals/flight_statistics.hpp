@@ -54,10 +54,22 @@ Gain gain_between(const FlightSamples& samples, const std::vector<double>& befor
 /// The means of a residual over every five minutes, of which at least half count.
 std::vector<double> means_of_blocks(const FlightSamples& samples, const std::vector<double>& residual);
 
-/// The standard error of the mean of a residual that is held out, were the model as right there as where it
-/// was fitted: by how much the means of blocks, and of flights, differ from zero there. 0 where they say
-/// nothing.
-/// @param fitted means of blocks of each flight @param held_out how many blocks are
-double expected_bias(const std::vector<std::vector<double>>& fitted, std::size_t held_out);
+/// By how much the means of residuals differ from zero where they were fitted: of blocks, and of flights.
+class FittedMeans {
+ public:
+  /// Adds a flight. @param blocks their means, hPa
+  void add(const std::vector<double>& blocks);
+
+  /// The standard error of the mean of a residual that is held out, were the model as right there as where it
+  /// was fitted, hPa. 0 where the means say nothing.
+  /// @param held_out how many blocks are
+  double expected_bias(std::size_t held_out) const;
+
+ private:
+  double blocks_ = 0.0;
+  double block_squares_ = 0.0;
+  double flights_ = 0.0;
+  double flight_squares_ = 0.0;
+};
 
 }  // namespace pcor::internal

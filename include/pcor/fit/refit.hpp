@@ -139,9 +139,10 @@ struct RefitResult {
 ///
 /// Generalised least squares with robust weights: residuals and derivatives are averaged over four seconds
 /// and whitened by one model of the noise (an autoregression whose level changes every five minutes, and slow
-/// drift), which is found from the residuals by restricted likelihood; the loss is of the innovations. From
-/// the coefficients of the file the linear problem is solved in closed form; then Ceres does the full one,
-/// with bounds and loss. Every pass reduces each flight to a triangular factor, and the factors add up.
+/// drift), which is found from the residuals by restricted likelihood, its memory from those of sixteen
+/// flights at most; the loss is of the innovations. From the coefficients of the file the linear problem is
+/// solved in closed form; then Ceres does the full one, with bounds and loss. Every pass reduces each flight
+/// to a triangular factor, and the factors add up.
 /// Standard errors are those of the loss on this noise; beside each stands that of a jackknife.
 ///
 /// @throws Error if a flight cannot be read, nothing is free, no sample is left (with the masks), samples are
