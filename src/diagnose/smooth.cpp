@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 namespace pcor::internal {
 namespace {
@@ -20,28 +19,22 @@ double spline_at(double x) {
 
 }  // namespace
 
-bool Smooth::describe(std::vector<double>& values) {
-  values.erase(std::remove_if(values.begin(), values.end(), [](double x) { return !std::isfinite(x); }),
-               values.end());
-  if (values.size() < 3) return false;
-  std::sort(values.begin(), values.end());
-  for (const double value : values) centre_ += value;
-  centre_ /= static_cast<double>(values.size());
-  for (const double value : values) deviation_ += (value - centre_) * (value - centre_);
-  deviation_ = std::sqrt(deviation_ / static_cast<double>(values.size()));
+bool Smooth::describe(const VariableValues& values) {
+  if (values.count() < 3) return false;
+  centre_ = values.mean();
+  deviation_ = values.deviation();
   // What varies in the last digits only does not vary.
-  return deviation_ > 1e-9 * std::max(std::abs(values.front()), std::abs(values.back()));
+  return deviation_ > 1e-9 * std::max(std::abs(values.least()), std::abs(values.most()));
 }
 
-Smooth Smooth::with_knots_at_values(std::vector<double> values, std::size_t columns) {
+Smooth Smooth::with_knots_at_values(const VariableValues& values, std::size_t columns) {
   Smooth smooth;
   if (!smooth.describe(values)) return smooth;
   if (columns < degree) {
     smooth.columns_ = 1;
     return smooth;
   }
-  std::vector<double> distinct;
-  std::unique_copy(values.begin(), values.end(), std::back_inserter(distinct));
+  const std::vector<double> distinct = values.distinct(columns);
   if (distinct.size() <= columns) {
     // One value has no column, as the constant is not theirs; another is told by the straight line.
     smooth.levels_.assign(distinct.begin() + 1, distinct.end() - 1);
@@ -50,28 +43,26 @@ Smooth Smooth::with_knots_at_values(std::vector<double> values, std::size_t colu
   }
   // Quadratic splines with so many columns, without the constant and the straight line, have that many spans.
   const std::size_t spans = columns > degree ? columns - degree + 1 : 1;
-  for (std::size_t k = 0; k <= spans; ++k) {
-    const double place = static_cast<double>(k) / static_cast<double>(spans);
-    const double knot = values[static_cast<std::size_t>(place * static_cast<double>(values.size() - 1))];
+  for (const double knot : values.quantiles(spans + 1)) {
     if (smooth.knots_.empty() || knot > smooth.knots_.back()) smooth.knots_.push_back(knot);
   }
   smooth.columns_ = smooth.knots_.size();  // a line, a square, and one bent function for each inner knot
   return smooth;
 }
 
-Smooth Smooth::with_even_knots(std::vector<double> values, std::size_t columns) {
+Smooth Smooth::with_even_knots(const VariableValues& values, std::size_t columns) {
   Smooth smooth;
   if (columns < degree || !smooth.describe(values)) return smooth;
   // Of the splines the first and the last are left out: one is told by the straight line, and all together
   // would be a constant.
   const std::size_t spans = columns - 1;
   smooth.columns_ = columns;
-  smooth.distance_ = (values.back() - values.front()) / static_cast<double>(spans);
-  smooth.first_ = values.front();
+  smooth.distance_ = (values.most() - values.least()) / static_cast<double>(spans);
+  smooth.first_ = values.least();
   return smooth;
 }
 
-Smooth Smooth::periodic(std::vector<double> values, double turn) {
+Smooth Smooth::periodic(const VariableValues& values, double turn) {
   Smooth smooth;
   if (!smooth.describe(values)) return smooth;
   smooth.turn_ = turn;

@@ -1,7 +1,9 @@
 #pragma once
 
-#include <Eigen/Dense>
+#include <cstddef>
 #include <vector>
+
+#include "diagnose/variable_values.hpp"
 
 namespace pcor::internal {
 
@@ -11,15 +13,15 @@ class Smooth {
  public:
   /// Quadratic splines with knots where the values are, or one function for each value where there are only a
   /// few. The first is the straight line.
-  /// @param values those that occur; NaN are left out. @param columns how many there may be, at least 1
-  static Smooth with_knots_at_values(std::vector<double> values, std::size_t columns);
+  /// @param columns how many there may be, at least 1
+  static Smooth with_knots_at_values(const VariableValues& values, std::size_t columns);
 
   /// Quadratic splines with knots at even distances, for a curve that bends many times over the range of the
   /// values, wherever most of them are. The first function is the straight line.
-  static Smooth with_even_knots(std::vector<double> values, std::size_t columns);
+  static Smooth with_even_knots(const VariableValues& values, std::size_t columns);
 
   /// Cosine and sine of an angle and of twice the angle. @param turn of the unit that the angle has
-  static Smooth periodic(std::vector<double> values, double turn);
+  static Smooth periodic(const VariableValues& values, double turn);
 
   /// 0 where the variable does not vary.
   std::size_t columns() const { return columns_; }
@@ -32,8 +34,8 @@ class Smooth {
   void evaluate(double value, double* out) const;
 
  private:
-  /// Finds centre and deviation of the values, which are sorted after it. @return whether they vary
-  bool describe(std::vector<double>& values);
+  /// Takes centre and deviation of the values. @return whether they vary
+  bool describe(const VariableValues& values);
 
   std::size_t columns_ = 0;
   double centre_ = 0.0;

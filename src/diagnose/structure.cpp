@@ -71,6 +71,11 @@ double chance_among(double value, const Eigen::VectorXd& others) {
   return std::max(by_law, by_number);
 }
 
+bool misses_too_much(const VariableValues& values) {
+  const auto missing = static_cast<double>(values.missing());
+  return missing > most_missing * (missing + static_cast<double>(values.count()));
+}
+
 }  // namespace
 
 StructureTest::StructureTest(const FlightShare& share, const std::vector<Binning>& bins,
@@ -142,29 +147,27 @@ double StructureTest::minus_likelihood(const Whitened& flights, double taken) co
   return flights.determinant + static_cast<double>(rows_) * std::log(left);
 }
 
-std::vector<double> StructureTest::values_of(const std::vector<const double*>& values) const {
-  std::vector<double> all;
-  for (const std::vector<double>& part : share_.of_each_flight<std::vector<double>>([&](std::size_t f) {
-         std::vector<double> of_flight;
-         for (const std::size_t record : (*bins_)[f].records()) of_flight.push_back(values[f][record]);
-         return of_flight;
-       }))
-    all.insert(all.end(), part.begin(), part.end());
-  const auto missing = std::count_if(all.begin(), all.end(), [](double x) { return !std::isfinite(x); });
-  if (static_cast<double>(missing) > most_missing * static_cast<double>(all.size())) all.clear();
-  return all;
+VariableValues StructureTest::values_of(const std::vector<const double*>& values) const {
+  return VariableValues(share_, [&](std::size_t f) {
+    std::vector<double> of_flight;
+    for (const std::size_t record : (*bins_)[f].records()) of_flight.push_back(values[f][record]);
+    return of_flight;
+  });
 }
 
 bool StructureTest::add(const std::string& name, const std::vector<const double*>& values, double turn) {
-  if (turn > 0.0) return add(name, values, Smooth::periodic(values_of(values), turn));
+  const VariableValues known = values_of(values);
+  if (misses_too_much(known)) return false;
+  if (turn > 0.0) return add(name, values, Smooth::periodic(known, turn));
   const std::size_t most = std::clamp(rows_ / bins_per_column, std::size_t{1}, most_columns);
-  return add(name, values, Smooth::with_knots_at_values(values_of(values), most));
+  return add(name, values, Smooth::with_knots_at_values(known, most));
 }
 
 bool StructureTest::add_fine(const std::string& name, const std::vector<const double*>& values) {
   const std::size_t most = std::min(rows_ / bins_per_column, fine_columns);
   if (most <= most_columns) return false;
-  return add(name, values, Smooth::with_even_knots(values_of(values), most));
+  const VariableValues known = values_of(values);
+  return !misses_too_much(known) && add(name, values, Smooth::with_even_knots(known, most));
 }
 
 std::vector<Eigen::MatrixXd> StructureTest::columns_of(const Smooth& smooth,

@@ -94,8 +94,8 @@ class StructureTest {
     Eigen::Index freedom = 0;
   };
 
-  /// Of all flights.
-  std::vector<double> values_of(const std::vector<const double*>& values) const;
+  /// Of all records used.
+  VariableValues values_of(const std::vector<const double*>& values) const;
   bool add(const std::string& name, const std::vector<const double*>& values, const Smooth& smooth);
   std::vector<Eigen::MatrixXd> columns_of(const Smooth& smooth,
                                           const std::vector<const double*>& values) const;

@@ -108,11 +108,11 @@ using Paths = std::vector<std::filesystem::path>;
 
 const std::filesystem::path scenarios = std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
 
-/// Four flights of a quarter of an hour, of different lengths of files, that lack an effect.
+/// Five flights of a quarter of an hour, of different lengths of files, that lack an effect.
 Paths flights(const std::string& effect, unsigned seed) {
   static const test::TemporaryDirectory directory;
   Paths paths;
-  for (unsigned flight = 0; flight < 4; ++flight) {
+  for (unsigned flight = 0; flight < 5; ++flight) {
     paths.push_back(directory / (std::to_string(seed) + "-" + std::to_string(flight) + ".nc"));
     if (std::filesystem::exists(paths.back())) continue;
     std::ifstream file(scenarios / "c130-short.toml");

@@ -1,0 +1,101 @@
+#include "diagnose/variable_values.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "team/order_of_all.hpp"
+
+namespace pcor::internal {
+namespace {
+
+/// What a flight has of the sums over all.
+struct ValueSums {
+  std::size_t count = 0;
+  std::size_t missing = 0;
+  double sum = 0.0;
+  double least = std::numeric_limits<double>::infinity();
+  double most = -std::numeric_limits<double>::infinity();
+
+  ValueSums& operator+=(const ValueSums& other) {
+    count += other.count;
+    missing += other.missing;
+    sum += other.sum;
+    least = std::min(least, other.least);
+    most = std::max(most, other.most);
+    return *this;
+  }
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(count, missing, sum, least, most);
+  }
+};
+
+}  // namespace
+
+VariableValues::VariableValues(const FlightShare& share,
+                               const std::function<std::vector<double>(std::size_t)>& values_of)
+    : share_(share), values_(share.flights()) {
+  const auto sums = share.sum_of_each_flight<ValueSums>([&](std::size_t flight) {
+    std::vector<double>& values = values_[flight];
+    values = values_of(flight);
+    ValueSums own;
+    own.missing = values.size();
+    values.erase(std::remove_if(values.begin(), values.end(), [](double x) { return !std::isfinite(x); }),
+                 values.end());
+    own.count = values.size();
+    own.missing -= own.count;
+    for (const double value : values) {
+      own.sum += value;
+      own.least = std::min(own.least, value);
+      own.most = std::max(own.most, value);
+    }
+    return own;
+  });
+  count_ = sums.count;
+  missing_ = sums.missing;
+  if (count_ == 0) return;
+  least_ = sums.least;
+  most_ = sums.most;
+  mean_ = sums.sum / static_cast<double>(count_);
+  const auto squares = share.sum_of_each_flight<double>([this](std::size_t flight) {
+    double own = 0.0;
+    for (const double value : values_[flight]) own += (value - mean_) * (value - mean_);
+    return own;
+  });
+  deviation_ = std::sqrt(squares / static_cast<double>(count_));
+}
+
+std::vector<double> VariableValues::distinct(std::size_t most) const {
+  std::vector<double> all;  // in their order
+  const auto add = [&all](double value) {
+    const auto place = std::lower_bound(all.begin(), all.end(), value);
+    if (place == all.end() || *place != value) all.insert(place, value);
+  };
+  const auto of_flights = share_.of_each_flight<std::vector<double>>([&](std::size_t flight) {
+    all.clear();
+    for (std::size_t i = 0; i < values_[flight].size() && all.size() <= most; ++i) add(values_[flight][i]);
+    return all;
+  });
+  all.clear();
+  for (const std::vector<double>& of_flight : of_flights) {
+    for (const double value : of_flight) add(value);
+  }
+  return all;
+}
+
+std::vector<double> VariableValues::quantiles(std::size_t places) const {
+  std::vector<double> own;
+  for (const std::vector<double>& values : values_) own.insert(own.end(), values.begin(), values.end());
+  return values_at(share_.team(), std::move(own), [places](std::uint64_t count) {
+    std::vector<std::uint64_t> wanted;
+    for (std::size_t k = 0; k < places; ++k) {
+      const double part = static_cast<double>(k) / static_cast<double>(places - 1);
+      wanted.push_back(static_cast<std::uint64_t>(part * static_cast<double>(count - 1)));
+    }
+    return wanted;
+  });
+}
+
+}  // namespace pcor::internal

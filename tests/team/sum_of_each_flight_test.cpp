@@ -1,0 +1,71 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <vector>
+
+#include <pcor/words/error.hpp>
+#include "support/thread_team.hpp"
+#include "team/flight_share.hpp"
+
+namespace pcor::internal {
+namespace {
+
+using test::run_as_team;
+using ::testing::Each;
+
+constexpr std::size_t count = 50;
+
+FlightShare share_of_many(Team& team) {
+  std::vector<std::uint64_t> sizes;
+  for (std::size_t flight = 0; flight < count; ++flight) sizes.push_back(1 + flight * flight % 17);
+  return {team, sizes};
+}
+
+TEST(SumOfEachFlight, IsInTheOrderOfFlights) {
+  // Of numbers whose sum depends on their order.
+  const auto part = [](std::size_t flight) {
+    return std::ldexp(1.0 + 1.0 / static_cast<double>(1 + flight), static_cast<int>(flight * 7 % 60));
+  };
+  double expected = 0.0;
+  for (std::size_t flight = 0; flight < count; ++flight) expected += part(flight);
+  for (const std::size_t size : {1U, 2U, 5U}) {
+    run_as_team(size, [&](Team& team) {
+      const FlightShare share = share_of_many(team);
+      EXPECT_EQ(share.sum_of_each_flight<double>(part), expected);
+    });
+  }
+  EXPECT_EQ(FlightShare(0).sum_of_each_flight<double>(part), 0.0);
+}
+
+TEST(SumOfEachFlight, FailsOnAllMembers) {
+  std::vector<int> failed(3, 0);
+  run_as_team(3, [&](Team& team) {
+    try {
+      share_of_many(team).sum_of_each_flight<double>([](std::size_t flight) {
+        if (flight == 41 || flight == 43) throw Error("flight " + std::to_string(flight));
+        return 1.0;
+      });
+    } catch (const Error& error) {
+      if (std::string(error.what()) == "flight 41") ++failed[team.rank()];
+    }
+  });
+  EXPECT_THAT(failed, Each(1));
+}
+
+TEST(SharesOfEntries, AreOfTheOwnersOfTheirFlights) {
+  run_as_team(3, [](Team& team) {
+    const FlightShare flights = share_of_many(team);
+    const std::vector<std::size_t> flight_of_each{4, 0, 4, 49, 7};
+    const FlightShare entries = flights.of_entries(flight_of_each);
+    ASSERT_EQ(entries.flights(), flight_of_each.size());
+    std::size_t own = 0;
+    for (std::size_t entry = 0; entry < flight_of_each.size(); ++entry) {
+      EXPECT_EQ(entries.owns(entry), flights.owns(flight_of_each[entry]));
+      own += entries.owns(entry) ? 1 : 0;
+    }
+    EXPECT_EQ(entries.own(), own);
+  });
+}
+
+}  // namespace
+}  // namespace pcor::internal
