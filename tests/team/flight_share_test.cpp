@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <limits>
+#include <mutex>
 #include <numeric>
 #include <random>
 #include <string>
@@ -47,7 +49,7 @@ TEST(FlightShare, GivesEveryFlightToOneMemberAndAboutAsMuchToEach) {
   for (const std::size_t members : {1, 2, 3, 7}) {
     const std::vector<std::uint64_t> load = loads(members, sizes);
     // The longest first is at most a third beyond the best that can be (Graham 1969), far less for so many.
-    EXPECT_LT(*std::max_element(load.begin(), load.end()), 1.02 * static_cast<double>(all) / members);
+    EXPECT_LT(*std::max_element(load.begin(), load.end()), 1.02 * static_cast<double>(all) / static_cast<double>(members));
   }
   EXPECT_EQ(loads(5, {3, 4}).size(), 5U);  // more members than flights
 }
