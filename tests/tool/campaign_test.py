@@ -6,6 +6,7 @@
 Schedulers are not there: their arrays are run as scripts, with the variables that a scheduler sets.
 """
 
+import csv
 import json
 import os
 import re
@@ -20,6 +21,7 @@ from pathlib import Path
 
 TOOL = Path(sys.argv[1]).resolve()
 SOURCE = Path(sys.argv[2]).resolve()
+PAGE = (SOURCE / "docs/campaigns.md").read_text()
 MODEL = SOURCE / "data/scenarios/models/c130-psfd-eq18.toml"
 # Two projects have a flight of one name, and a name has a blank.
 NAMES = [f"{project}/rf{number:02} {project}.nc" for project in ("first", "second") for number in range(1, 6)] + \
@@ -31,6 +33,11 @@ ARRAYS = {"array.pbs": "PBS_ARRAY_INDEX", "array.slurm": "SLURM_ARRAY_TASK_ID"}
 def simulate(path, seed):
     subprocess.run([TOOL, "simulate", SOURCE / "data/scenarios/c130-short.toml", "--seed", str(seed), "-o", path, "--quiet"],
                    check=True)
+
+
+def command_of_the_page(begin):
+    (command,) = re.findall(rf"^{begin}.*$", PAGE, flags=re.MULTILINE)
+    return command
 
 
 class Campaign(unittest.TestCase):
@@ -53,8 +60,7 @@ class Campaign(unittest.TestCase):
         shutil.copytree(SOURCE / "examples/campaign", self.path)
         self.edit("one_flight", "flights=flights", f"flights='{self.flights}'")
         self.edit("one_flight", "model=model.toml", f"model='{MODEL}'")
-        self.run_script(re.search(r"^find .*$", (SOURCE / "docs/campaigns.md").read_text(), re.MULTILINE).group(0)
-                        .replace("flights/", f"'{self.flights}'/"))
+        self.run_script(command_of_the_page("find flights/").replace("flights/", f"'{self.flights}'/"))
         (self.flights / BAD).write_bytes(self.whole[: len(self.whole) // 2])
 
     def edit(self, file, old, new):
@@ -84,7 +90,7 @@ class Campaign(unittest.TestCase):
     def assert_all_but_the_bad_one(self):
         good = set(NAMES) - {BAD}
         self.assertEqual(set(self.made()), good)
-        self.assertEqual(set(self.made("checks")), {name + ".json" for name in good})
+        self.assertEqual(set(self.made("checks")), {name + ".csv" for name in good})
         unfinished = self.run_script("./unfinished")
         self.assertEqual((unfinished.returncode, unfinished.stdout.count("\n")), (1, 1))
         self.assertRegex(unfinished.stdout, f"^{BAD}: .*truncated")
@@ -161,10 +167,17 @@ class JobArrays(Campaign):
 
 
 class OneFlight(Campaign):
-    def test_checks_are_those_of_the_tool(self):
-        self.assertEqual(self.run_script(f"./one_flight '{NAMES[0]}'").returncode, 0)
+    def test_the_checks_of_all_flights_are_one_table(self):
+        for name in NAMES[:2]:
+            self.assertEqual(self.run_script(f"./one_flight '{name}'").returncode, 0)
+        self.run_script(command_of_the_page("find checks"))
+        with open(self.path / "checks.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        verdicts = {name: [row["verdict"] for row in rows if row["flight"] == Path(name).name] for name in NAMES[:2]}
         by_tool = self.run_script(f"pcor check '{self.flights / NAMES[0]}' -m '{MODEL}' --json -")
-        self.assertEqual(json.loads((self.path / "checks" / f"{NAMES[0]}.json").read_text()), json.loads(by_tool.stdout))
+        expected = [check["verdict"] or "not run" for check in json.loads(by_tool.stdout)["checks"]]
+        self.assertEqual(verdicts[NAMES[0]], expected)
+        self.assertEqual(len(verdicts[NAMES[1]]), len(expected))
 
     def test_one_that_is_stopped_is_not_done(self):
         (self.path / "pcor").write_text("#!/bin/sh\ntouch begun\nexec sleep 60\n")
@@ -197,14 +210,12 @@ class Make(Campaign):
 
 
 class Page(unittest.TestCase):
-    page = (SOURCE / "docs/campaigns.md").read_text()
-
     def test_it_names_each_file(self):
         for path in (SOURCE / "examples/campaign").iterdir():
-            self.assertIn(f"`{path.name}`", self.page)
+            self.assertIn(f"`{path.name}`", PAGE)
 
     def test_links_lead_somewhere(self):
-        for target in re.findall(r"\]\(([^)#:]+)\)", self.page):
+        for target in re.findall(r"\]\(([^)#:]+)\)", PAGE):
             self.assertTrue((SOURCE / "docs" / target).exists(), target)
 
 
