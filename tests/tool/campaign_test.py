@@ -30,9 +30,16 @@ BAD = "second/rf06.nc"
 ARRAYS = {"array.pbs": "PBS_ARRAY_INDEX", "array.slurm": "SLURM_ARRAY_TASK_ID"}
 
 
-def simulate(path, seed):
-    subprocess.run([TOOL, "simulate", SOURCE / "data/scenarios/c130-short.toml", "--seed", str(seed), "-o", path, "--quiet"],
-                   check=True)
+def setUpModule():
+    global FLIGHTS, WHOLE
+    folder = tempfile.TemporaryDirectory()
+    unittest.addModuleCleanup(folder.cleanup)
+    FLIGHTS = Path(folder.name) / "all flights"
+    for seed, name in enumerate(NAMES, 1):
+        (FLIGHTS / name).parent.mkdir(parents=True, exist_ok=True)
+        subprocess.run([TOOL, "simulate", SOURCE / "data/scenarios/c130-short.toml", "--seed", str(seed), "-o", FLIGHTS / name,
+                        "--quiet"], check=True)
+    WHOLE = (FLIGHTS / BAD).read_bytes()
 
 
 def command_of_the_page(begin):
@@ -41,27 +48,17 @@ def command_of_the_page(begin):
 
 
 class Campaign(unittest.TestCase):
-    """A folder of the campaign, with its files edited as the page says, and the flights."""
-
-    @classmethod
-    def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.flights = Path(folder.name) / "all flights"
-        for seed, name in enumerate(NAMES, 1):
-            (cls.flights / name).parent.mkdir(parents=True, exist_ok=True)
-            simulate(cls.flights / name, seed)
-        cls.whole = (cls.flights / BAD).read_bytes()
+    """A folder of the campaign, with its files edited as the page says; one flight is cut in half."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.path = Path(folder.name) / "campaign"
         shutil.copytree(SOURCE / "examples/campaign", self.path)
-        self.edit("one_flight", "flights=flights", f"flights='{self.flights}'")
+        self.edit("one_flight", "flights=flights", f"flights='{FLIGHTS}'")
         self.edit("one_flight", "model=model.toml", f"model='{MODEL}'")
-        self.run_script(command_of_the_page("find flights/").replace("flights/", f"'{self.flights}'/"))
-        (self.flights / BAD).write_bytes(self.whole[: len(self.whole) // 2])
+        self.run_script(command_of_the_page("find flights/").replace("flights/", f"'{FLIGHTS}'/"))
+        (FLIGHTS / BAD).write_bytes(WHOLE[: len(WHOLE) // 2])
 
     def edit(self, file, old, new):
         text = (self.path / file).read_text()
@@ -80,7 +77,7 @@ class Campaign(unittest.TestCase):
                 for index in (indices or range(tasks))]
 
     def mend(self):
-        (self.flights / BAD).write_bytes(self.whole)
+        (FLIGHTS / BAD).write_bytes(WHOLE)
 
     def made(self, kind="corrected", suffix=""):
         """When each file was made, by its name."""
@@ -174,21 +171,34 @@ class OneFlight(Campaign):
         with open(self.path / "checks.csv", newline="") as file:
             rows = list(csv.DictReader(file))
         verdicts = {name: [row["verdict"] for row in rows if row["flight"] == Path(name).name] for name in NAMES[:2]}
-        by_tool = self.run_script(f"pcor check '{self.flights / NAMES[0]}' -m '{MODEL}' --json -")
+        by_tool = self.run_script(f"pcor check '{FLIGHTS / NAMES[0]}' -m '{MODEL}' --json -")
         expected = [check["verdict"] or "not run" for check in json.loads(by_tool.stdout)["checks"]]
         self.assertEqual(verdicts[NAMES[0]], expected)
         self.assertEqual(len(verdicts[NAMES[1]]), len(expected))
 
-    def test_one_that_is_stopped_is_not_done(self):
-        (self.path / "pcor").write_text("#!/bin/sh\ntouch begun\nexec sleep 60\n")
+    def tool_that(self, does):
+        """Puts another program in the place of the tool."""
+        (self.path / "pcor").write_text(f"#!/bin/sh\n{does}\n")
         (self.path / "pcor").chmod(0o755)
-        run = subprocess.Popen(["./one_flight", NAMES[0]], cwd=self.path, start_new_session=True,
-                               env={**os.environ, "PATH": f"{self.path}:{os.environ['PATH']}"})
+        return {"PATH": f"{self.path}:{os.environ['PATH']}"}
+
+    def test_one_that_is_stopped_is_not_done(self):
+        environment = {**os.environ, **self.tool_that("touch begun; exec sleep 60")}
+        run = subprocess.Popen(["./one_flight", NAMES[0]], cwd=self.path, start_new_session=True, env=environment)
         while not (self.path / "begun").exists():
             time.sleep(0.01)
         os.killpg(run.pid, signal.SIGKILL)
         run.wait()
         self.assertIn(f"{NAMES[0]}: interrupted\n", self.run_script("./unfinished").stdout)
+
+    def test_a_tool_that_is_killed_has_failed(self):
+        """As by a system that has no memory left."""
+        result = self.run_script(f"./one_flight '{NAMES[0]}'", **self.tool_that("kill -9 $$"))
+        self.assertEqual((result.returncode, result.stderr), (1, f"{NAMES[0]}: killed, status 137\n"))
+
+    def test_the_last_line_of_the_list_may_lack_its_end(self):
+        (self.path / "flights.txt").write_text(NAMES[0])
+        self.assertEqual(self.run_script("./unfinished").stdout, f"{NAMES[0]}: not begun\n")
 
 
 @unittest.skipUnless(shutil.which("make"), "make is not installed")
@@ -197,14 +207,14 @@ class Make(Campaign):
         plain = self.path / "flights"  # make knows no names with blanks
         for name in NAMES:
             (plain / name.replace(" ", "_")).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(self.flights / name, plain / name.replace(" ", "_"))
+            shutil.copy(FLIGHTS / name, plain / name.replace(" ", "_"))
         shutil.copy(MODEL, self.path / "model.toml")
         result = self.run_script("make -k -j 2")
         self.assertEqual(result.returncode, 2)
         self.assertIn(f"corrected/{BAD}] Error", result.stderr)
         before = self.made()
         self.assertEqual(set(before), {name.replace(" ", "_") for name in NAMES} - {BAD})
-        (plain / BAD).write_bytes(self.whole)
+        (plain / BAD).write_bytes(WHOLE)
         self.assertEqual(self.run_script("make -k -j 2").returncode, 0)
         self.assertLessEqual(before.items(), self.made().items())
 
@@ -220,4 +230,4 @@ class Page(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0]])
+    unittest.main(argv=[sys.argv[0]], verbosity=2)  # which gives the reason of a test that is skipped
