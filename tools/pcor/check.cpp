@@ -195,11 +195,15 @@ void print(const Checks& checks, const Options& options, bool has_laser) {
 }
 
 /// A row for each check of each flight, which is checked alone.
+///
+/// @param together the checks of all flights, which are those of the flight where there is one
 void write_flight_table(const Options& options, const std::optional<ModelFile>& model,
-                        const CheckOptions& how) {
+                        const CheckOptions& how, const Checks& together) {
   FlightTable table({"flight", "check", "verdict", "value", "standard_error", "unit", "what"});
-  for (const std::filesystem::path& flight : flight_paths(options.flights)) {
-    for (const CheckResult& result : check({flight}, model, how).results) {
+  const std::vector<std::filesystem::path> flights = flight_paths(options.flights);
+  for (const std::filesystem::path& flight : flights) {
+    const Checks alone = flights.size() == 1 ? together : check({flight}, model, how);
+    for (const CheckResult& result : alone.results) {
       const std::string name = flight.filename().string();
       if (result.ran) {
         table.add({name, result.name, std::string(name_of(result.verdict)), cell(result.key.value),
@@ -248,7 +252,7 @@ void run(const Options& options) {
                         options.common);
   if (!options.table.empty()) {
     check_options.progress = {};
-    write_flight_table(options, model, check_options);
+    write_flight_table(options, model, check_options, checks);
   }
   json.write(as_json(checks));
   together.appear();
