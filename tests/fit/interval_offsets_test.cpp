@@ -70,8 +70,9 @@ class IntervalOffsets : public testing::TestWithParam<Loss> {
   RefitOptions options_;
   ModelFile model_ = made::model({"static-constant", "static-alpha", "static-qp"});
   References references_ = made::pressure_reference();
+  FlightShare share_{10};
   FitTask task_{
-      model_, *references_.front(), options_, fit_parameters(model_, *references_.front(), options_), {}, {},
+      model_, *references_.front(), options_, share_, fit_parameters(model_, *references_.front(), options_), {}, {},
       [] {}};
   std::unique_ptr<FitFlights> whole_;
   std::unique_ptr<FitFlights> stage_;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <fstream>
 #include <limits>
 #include <mutex>
 #include <numeric>
@@ -11,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "support/temporary_directory.hpp"
 #include "support/thread_team.hpp"
 
 namespace pcor::internal {
@@ -54,11 +56,19 @@ TEST(FlightShare, GivesEveryFlightToOneMemberAndAboutAsMuchToEach) {
   EXPECT_EQ(loads(5, {3, 4}).size(), 5U);  // more members than flights
 }
 
-TEST(FlightShare, TakesTheSizesAsTheFirstMemberSeesThem) {
+TEST(FlightShare, TakesTheSizesOfFilesAsTheFirstMemberSeesThem) {
+  const test::TemporaryDirectory folder;
+  const auto file = [&](const std::string& name, std::size_t size) {
+    std::ofstream(folder.path() / name) << std::string(size, 'x');
+    return folder.path() / name;
+  };
+  const auto large = file("large", 9000);
+  const auto small = file("small", 1000);
   std::vector<std::size_t> owned(2, 0);
-  run_as_team(2, [&](Team& team) {
+  test::run_as_team(2, [&](Team& team) {
     const bool first = team.rank() == 0;
-    const FlightShare share(team, first ? std::vector<std::uint64_t>{9, 1, 1} : std::vector<std::uint64_t>{1, 1, 9});
+    const FlightShare share =
+        share_of_flights(team, first ? std::vector{large, small, small} : std::vector{small, large, folder.path() / "none"});
     owned[team.rank()] = share.own();
     EXPECT_EQ(share.owns(0), first);
   });
