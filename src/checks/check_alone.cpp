@@ -16,6 +16,13 @@ void serialize(Archive& archive, CheckInShort& check) {
   archive(check.name, check.ran, check.reason, check.verdict, check.key);
 }
 
+std::vector<CheckInShort> in_short(const Checks& checks) {
+  std::vector<CheckInShort> all;
+  for (const CheckResult& result : checks.results)
+    all.push_back({result.name, result.ran, result.reason, result.verdict, result.key});
+  return all;
+}
+
 std::vector<std::vector<CheckInShort>> check_each_alone(const std::vector<std::filesystem::path>& flights,
                                                         const std::optional<ModelFile>& model,
                                                         const CheckOptions& options) {
@@ -24,10 +31,7 @@ std::vector<std::vector<CheckInShort>> check_each_alone(const std::vector<std::f
   own.progress = nullptr;
   return share_of_flights(*options.team, flights)
       .of_each_flight<std::vector<CheckInShort>>([&](std::size_t number) {
-        std::vector<CheckInShort> in_short;
-        for (const CheckResult& result : check({flights[number]}, model, own).results)
-          in_short.push_back({result.name, result.ran, result.reason, result.verdict, result.key});
-        return in_short;
+        return in_short(check({flights[number]}, model, own));
       });
 }
 

@@ -104,13 +104,12 @@ TEST(TeamFit, SendsATriangleOfEachFlightInOneExchangeAPass) {
 }
 
 TEST(TeamFit, FailsOnAllMembersAlike) {
-  const auto all = flights(3);
   std::vector<std::string> messages(2);
   test::run_as_team(2, [&](Team& team) {
     RefitOptions options;
     options.team = &team;
     try {
-      refit({"nowhere/a.nc", "nowhere/b.nc"}, made::model({"static-constant"}), made::pressure_reference(), options);
+      refit(std::vector<std::filesystem::path>{"nowhere/a.nc", "nowhere/b.nc"}, made::model({"static-constant"}), made::pressure_reference(), options);
     } catch (const Error& error) {
       messages[team.rank()] = error.what();
     }

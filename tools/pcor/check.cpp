@@ -196,10 +196,14 @@ void print(const Checks& checks, const Options& options, bool has_laser) {
 }
 
 /// A row for each check of each flight, which is checked alone.
-FlightTable flight_table(const Options& options, const std::optional<ModelFile>& model, const CheckOptions& how) {
+///
+/// @param together the checks of all flights, which are those of the flight where there is one
+FlightTable flight_table(const Options& options, const std::optional<ModelFile>& model, const CheckOptions& how,
+                         const Checks& together) {
   FlightTable table({"flight", "check", "verdict", "value", "standard_error", "unit", "what"});
   const std::vector<std::filesystem::path> flights = flight_paths(options.flights);
-  const std::vector<std::vector<CheckInShort>> alone = check_each_alone(flights, model, how);
+  std::vector<std::vector<CheckInShort>> alone{in_short(together)};
+  if (flights.size() > 1) alone = check_each_alone(flights, model, how);
   for (std::size_t i = 0; i < flights.size(); ++i) {
     const std::string name = flights[i].filename().string();
     for (const CheckInShort& result : alone[i]) {
@@ -246,7 +250,7 @@ void run(const Options& options) {
     checks = check(flight_paths(options.flights), model, check_options);
   }
   std::optional<FlightTable> table;
-  if (!options.table.empty()) table = flight_table(options, model, check_options);
+  if (!options.table.empty()) table = flight_table(options, model, check_options, checks);
   if (!is_speaker()) return;
   OutputsTogether together;
   if (wants_report(options.common))

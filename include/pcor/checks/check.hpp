@@ -99,6 +99,8 @@ struct CheckInShort {
   KeyNumber key{};
 };
 
+std::vector<CheckInShort> in_short(const Checks& checks);
+
 /// What the checks say of each flight alone; the team of the options shares the flights.
 /// @throws Error as `check`
 std::vector<std::vector<CheckInShort>> check_each_alone(const std::vector<std::filesystem::path>& flights,
