@@ -97,6 +97,32 @@ class Processes(unittest.TestCase):
              "--training-share", "0.8", "--force"],
             ["fitted.toml", "fitted.json"], [2, 4])
 
+    def test_compare_is_so_too(self):
+        self.assert_alike(
+            ["compare", *self.flights[:3], "-m", MODEL, "--report", "compare.html", "--json", "compare.json",
+             "--table", "compare.csv"],
+            ["compare.html", "compare.json", "compare.csv"], [2, 4])
+
+    def test_check_is_so_too(self):
+        self.assert_alike(
+            ["check", *self.flights[:3], "-m", MODEL, "--report", "check.html", "--json", "check.json",
+             "--table", "check.csv"],
+            ["check.html", "check.json", "check.csv"], [2, 4])
+
+    def test_temperature_is_so_too(self):
+        self.assert_alike(
+            ["temperature", *self.flights[:3], "-m", MODEL, "-o", "warm.toml", "--json", "temperature.json", "--report",
+             "temperature.html", "--degree", "0", "--force"],
+            ["warm.toml", "temperature.json", "temperature.html"], [2])
+
+    def test_flights_that_cannot_be_read_are_left_out_by_all(self):
+        self.damage(self.flights[1], "truncated")
+        self.damage(self.flights[2], "missing")
+        self.assert_alike(
+            ["refit", *self.flights[:4], "-m", MODEL, "-o", "fitted.toml", "--json", "fitted.json", "--skip-unreadable",
+             "--force"],
+            ["fitted.toml", "fitted.json"], [3])
+
     def damage(self, flight, how):
         path = self.path / flight
         if how == "missing":
