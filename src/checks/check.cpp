@@ -10,7 +10,10 @@
 #include <pcor/words/error.hpp>
 #include "checks/checks.hpp"
 #include "checks/flown.hpp"
+#include "flight/aircraft_of_flights.hpp"
+#include "residuals/packed_residuals.hpp"
 #include "roles/recorded_model.hpp"
+#include "team/flight_share.hpp"
 
 namespace pcor {
 
@@ -100,6 +103,44 @@ CheckedFlight checked(const Flight& flight, const ModelFile& model, const CheckO
   return result;
 }
 
+/// What a member of a team tells of a flight of its own.
+struct FlightPart {
+  std::string unusable{};  ///< why; empty where it is not
+  std::string model{};     ///< its name
+  std::optional<CheckedFlight> flight{};
+  std::vector<std::string> notes{};
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(unusable, model, flight, notes);
+  }
+};
+
+FlightPart part_of(const std::filesystem::path& path, const std::optional<ModelFile>& model,
+                   const CheckOptions& options) {
+  const Flight flight(path, options.time_stamp);
+  const std::optional<ModelFile> its_model = model ? model : recorded_model(flight);
+  FlightPart part;
+  part.unusable = its_model ? without_values(flight, *its_model)
+                            : fmt::format(
+                                  "{}: there are no static and dynamic pressures with values under the "
+                                  "usual names (PSXC and QCXC, PSFD and QCF); name them in the "
+                                  "[variables] of a model, -m",
+                                  path.string());
+  if (!part.unusable.empty()) return part;
+  part.model = its_model->model.name;
+  part.flight = checked(flight, *its_model, options);
+  part.notes = part.flight->air.notes;
+  if (!model && its_model->variables.count(Quantity::recovery_temperature) > 0) {
+    part.notes.push_back(fmt::format(
+        "{}: without a model the recovery factor of {} is taken as {:g}, by what is published of such "
+        "thermometers; a model (-m) gives its own",
+        part.flight->air.samples->name, its_model->variables.at(Quantity::recovery_temperature),
+        its_model->model.recovery.coefficients[0]));
+  }
+  return part;
+}
+
 /// Notes results that are significant but negligible.
 void add_note_on_small(CheckResult& result) {
   constexpr double significant = 3.0;  // standard errors
@@ -148,37 +189,26 @@ Checks check(const std::vector<std::filesystem::path>& flights, const std::optio
                             "static_pressure and dynamic_pressure to [variables]",
                             options.second->model.name));
   }
+  const FlightShare share = share_of_flights(*options.team, flights);
+  require_one_aircraft(aircraft_of_flights(flights, share));
+  std::size_t done = 0;
+  auto parts = share.of_each_flight<FlightPart>([&](std::size_t number) {
+    FlightPart part = part_of(flights[number], model, options);
+    if (options.progress) options.progress(++done, share.own());
+    return part;
+  });
   Checks checks;
   CheckedFlights read;
-  std::vector<std::pair<std::string, std::string>> aircraft;
   std::vector<std::string> unusable;
-  for (const std::filesystem::path& path : flights) {
-    const Flight flight(path, options.time_stamp);
-    aircraft.emplace_back(path.filename().string(), flight.aircraft());
-    require_one_aircraft(aircraft);
-    const std::optional<ModelFile> its_model = model ? model : recorded_model(flight);
-    std::string why = its_model ? without_values(flight, *its_model)
-                                : fmt::format(
-                                      "{}: there are no static and dynamic pressures with values under the "
-                                      "usual names (PSXC and QCXC, PSFD and QCF); name them in the "
-                                      "[variables] of a model, -m",
-                                      path.string());
-    if (!why.empty()) {
-      unusable.push_back(std::move(why));
-    } else {
-      read.push_back(checked(flight, *its_model, options));
-      checks.flights.push_back(read.back().air.samples->name);
-      if (checks.model.empty()) checks.model = its_model->model.name;
-      for (const std::string& note : read.back().air.notes) checks.notes.push_back(note);
-      if (!model && its_model->variables.count(Quantity::recovery_temperature) > 0) {
-        checks.notes.push_back(fmt::format(
-            "{}: without a model the recovery factor of {} is taken as {:g}, by what is published of such "
-            "thermometers; a model (-m) gives its own",
-            checks.flights.back(), its_model->variables.at(Quantity::recovery_temperature),
-            its_model->model.recovery.coefficients[0]));
-      }
+  for (FlightPart& part : parts) {
+    if (!part.unusable.empty()) {
+      unusable.push_back(part.unusable);
+      continue;
     }
-    if (options.progress) options.progress(aircraft.size(), flights.size());
+    read.push_back(std::move(*part.flight));
+    checks.flights.push_back(read.back().air.samples->name);
+    if (checks.model.empty()) checks.model = part.model;
+    checks.notes.insert(checks.notes.end(), part.notes.begin(), part.notes.end());
   }
   for (const std::string& why : unusable) checks.notes.push_back("Not used: " + why);
   for (const NamedCheck& each : all_checks) {

@@ -15,6 +15,11 @@ struct MeasuredPair {
   std::string name{};  ///< for example "PSFRD/QCFR"
   std::vector<double> static_pressure{};
   std::vector<double> dynamic_pressure{};
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(name, static_pressure, dynamic_pressure);
+  }
 };
 
 /// A flight as the checks see it.
@@ -26,6 +31,11 @@ struct CheckedFlight {
   /// The pairs of the two systems as measured: where the pressures of the first were corrected by the
   /// flight's own processing, its pair is the first that was measured. Fewer where they are not recorded.
   std::vector<MeasuredPair> measured{};
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(air, second, second_name, second_corrected, measured);
+  }
 };
 
 using CheckedFlights = std::vector<CheckedFlight>;

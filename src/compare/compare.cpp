@@ -12,6 +12,7 @@
 #include <pcor/flight/same_aircraft.hpp>
 #include <pcor/words/error.hpp>
 
+#include "flight/aircraft_of_flights.hpp"
 #include "numerics/missing.hpp"
 #include "residuals/flight_statistics.hpp"
 #include "residuals/packed_residuals.hpp"
@@ -272,14 +273,13 @@ FlightResiduals residuals_on(const Flight& flight, const std::vector<Pairing>& p
 
 /// What a member of a team tells of a flight of its own.
 struct FlightPart {
-  std::string aircraft{};
   FlightResiduals residuals{};
   std::vector<std::string> notes{};
 
   template <class Archive>
   void serialize(Archive& archive) {
     FlightResiduals& r = residuals;
-    archive(aircraft, r.samples, r.mask, r.values, r.flaps_out, r.reference_defects, r.model_defects,
+    archive(r.samples, r.mask, r.values, r.flaps_out, r.reference_defects, r.model_defects,
             r.static_pressure, r.corrected_pressure, r.total_pressure, r.reference_total_pressure, r.mach,
             r.dynamic_ratio, notes);
   }
@@ -296,17 +296,12 @@ Comparison compare_with(const std::vector<Pairing>& pairings,
   auto parts = share.of_each_flight<FlightPart>([&](std::size_t number) {
     const Flight flight(flights[number], options.time_stamp);
     FlightPart part;
-    part.aircraft = flight.aircraft();
     part.residuals = residuals_on(flight, pairings, options.mask, part.notes);
     tell();
     return part;
   });
   std::vector<Gathering> gatherings;
   for (const auto& [contender, reference] : pairings) gatherings.emplace_back(contender.name, reference);
-  std::vector<std::pair<std::string, std::string>> aircraft;
-  for (std::size_t f = 0; f < flights.size(); ++f)
-    aircraft.emplace_back(flights[f].filename().string(), parts[f].aircraft);
-  require_one_aircraft(aircraft);
   std::vector<FlightNote> notes;
   for (FlightPart& part : parts) {
     FlightResiduals& residuals = part.residuals;
@@ -332,6 +327,7 @@ Comparison compare(const std::vector<std::filesystem::path>& flights,
   for (const Contender& contender : contenders) first_of(contender.references);
   const std::vector<Field> fields = fields_of(contenders);
   const FlightShare share = share_of_flights(*options.team, flights);
+  require_one_aircraft(aircraft_of_flights(flights, share));
   const auto tell = [&, done = std::size_t{0}]() mutable {
     ++done;
     if (options.progress) options.progress(done, fields.size() * share.own());

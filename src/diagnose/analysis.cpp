@@ -9,6 +9,7 @@
 #include "numerics/spikes.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "numerics/whitening.hpp"
+#include "team/workers.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -235,8 +236,7 @@ void Analysis::find_first_noise(const Eigen::VectorXd& estimate) {
 }
 
 void Analysis::find_noise(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate) {
-  // In a team of several each processor has a member of its own.
-  const std::size_t threads = share_.team().size() > 1 ? 1 : 0;
+  const std::size_t threads = Workers(share_.team(), 0).threads;
   bool is_first = true;
   likelihood_ = 0.0;
   for_each_reference(groups, estimate, [&](const auto& bins, const auto& columns, const auto& residuals) {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <deque>
 #include <future>
-#include <thread>
 
 #include "numerics/missing.hpp"
 #include "numerics/median.hpp"
@@ -49,6 +48,12 @@ struct BinnedRows {
 };
 
 }  // namespace
+
+Eigen::VectorXd Reduction::lengths() const {
+  Eigen::VectorXd squares = factor.leftCols(factor.cols() - 1).colwise().squaredNorm();
+  if (taken_up.size() > 0) squares += taken_up;
+  return squares.cwiseSqrt();
+}
 
 std::uint64_t digest_of(const Eigen::VectorXd& parameters) {
   // Fowler, Noll and Vo's FNV-1a, 64 bits.
@@ -135,8 +140,7 @@ std::shared_ptr<FitFlight> FitFlights::made(std::size_t number,
 
 void FitFlights::visit_those(const std::function<bool(std::size_t)>& chosen,
                              const std::function<void(std::size_t, FitFlight&)>& visit) {
-  const std::size_t wanted = task_.threads();
-  const std::size_t threads = wanted > 0 ? wanted : std::max(1U, std::thread::hardware_concurrency());
+  const std::size_t threads = task_.threads();
   const auto how = threads > 1 ? std::launch::async : std::launch::deferred;
   std::deque<std::pair<std::size_t, std::future<void>>> working;
   const auto finish_first = [&working] {
@@ -184,8 +188,11 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss
     }
     part.bins = fit.bins().size();
     if (weight.sum() > 0.0) part.curvature = curvatures / weight.sum();
-    part.squares = rows.leftCols(fitted).array().square().matrix().transpose() * weight;
     const Eigen::MatrixXd left = fit.without_offsets(rows, weight);
+    if (fit.offsets() > 0) {
+      const Eigen::MatrixXd taken = (rows - left).leftCols(fitted);
+      part.taken_up = taken.array().square().matrix().transpose() * weight;
+    }
     const Eigen::VectorXd scale = weight.cwiseSqrt();
     std::vector<const double*> columns;
     for (Eigen::Index k = 0; k <= fitted; ++k) columns.push_back(left.col(k).data());
@@ -195,12 +202,12 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss
     return part;
   };
   Reduction whole;
-  whole.squares = Eigen::VectorXd::Zero(fitted);
+  whole.taken_up = Eigen::VectorXd::Zero(fitted);
   double curvature = 0.0;
   TriangularFactor sum(fitted + 1);
   for (const Reduction& part : of_each(reduced, parameters)) {
     sum.add(part.factor);
-    whole.squares += part.squares;
+    if (part.taken_up.size() > 0) whole.taken_up += part.taken_up;
     whole.cost += part.cost;
     whole.bins += part.bins;
     if (part.bins > 0) curvature += part.curvature * static_cast<double>(part.bins);
@@ -208,7 +215,6 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss
   for (FitFlights* const other : seeing_) {
     const Reduction more = other->reduce(parameters, loss);
     sum.add(more.factor);
-    whole.squares += more.squares;
     whole.cost += more.cost;
     whole.bins += more.bins;
     curvature += more.curvature * static_cast<double>(more.bins);

@@ -150,8 +150,8 @@ std::uint64_t digest_of(const Eigen::VectorXd& parameters);
 struct Reduction {
   /// Of white rows (derivatives by wanted parameters, residual), weighted, without what offsets take up.
   Eigen::MatrixXd factor;
-  /// Sums of the squares of the same derivatives, with what offsets take up.
-  Eigen::VectorXd squares;
+  /// Sums of the squares that offsets take up of the same derivatives; empty where there is no offset.
+  Eigen::VectorXd taken_up;
   double cost = 0.0;  ///< half the sum of the loss over the innovations
   /// The curvature of the loss over its slope, rho' + 2 s rho'' over rho', mean over the bins: by so much the
   /// second derivative of the cost is less than that of the weighted squares.
@@ -159,9 +159,19 @@ struct Reduction {
   std::size_t bins = 0;
   bool valid = true;  ///< false where some residual is not a number at these parameters
 
+  /// The lengths of the derivatives, with what offsets take up.
+  Eigen::VectorXd lengths() const;
+
   template <class Archive>
-  void serialize(Archive& archive) {
-    archive(factor, squares, cost, curvature, bins);
+  void save(Archive& archive) const {
+    archive(upper_triangle(factor), taken_up, cost, curvature, bins);
+  }
+
+  template <class Archive>
+  void load(Archive& archive) {
+    std::vector<double> triangle;
+    archive(triangle, taken_up, cost, curvature, bins);
+    factor = from_upper_triangle(triangle);
   }
 };
 

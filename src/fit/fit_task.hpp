@@ -6,6 +6,7 @@
 
 #include "fit/fit_parameters.hpp"
 #include "team/flight_share.hpp"
+#include "team/workers.hpp"
 
 namespace pcor::internal {
 
@@ -26,9 +27,7 @@ struct FitTask {
   bool shares_system = true;
 
   /// Flights at a time, in one process.
-  std::size_t threads() const {
-    return options.threads == 0 && options.team->size() > 1 ? 1 : options.threads;
-  }
+  std::size_t threads() const { return Workers(*options.team, options.threads).threads; }
 
   bool uses_prior() const { return options.use_prior || options.fit_reference; }
 };

@@ -27,15 +27,15 @@ double condition_number(const Reduction& reduction, const FitTask& task,
     return task.parameters[wanted[static_cast<std::size_t>(k)]].name;
   };
   Eigen::MatrixXd scaled = reduction.factor.leftCols(as_index(wanted.size()));
+  const Eigen::VectorXd lengths = reduction.lengths();
   for (Eigen::Index k = 0; k < scaled.cols(); ++k) {
     const double length = scaled.col(k).norm();
-    const double with_offsets = std::sqrt(reduction.squares[k]);
-    if (!(with_offsets > 0.0)) {
+    if (!(lengths[k] > 0.0)) {
       throw Error(fmt::format(
           "{} changes nothing on these flights, so it cannot be found; leave it as it is: --fix {}",
           name_of(k), name_of(k)));
     }
-    if (!(length > with_offsets / hopeless_condition)) {
+    if (!(length > lengths[k] / hopeless_condition)) {
       throw Error(fmt::format(
           "--stage: {} cannot be told from the offsets of the intervals; leave it to the last stage",
           name_of(k)));

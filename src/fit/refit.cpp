@@ -18,6 +18,7 @@
 #include "fit/prior.hpp"
 #include "fit/solver.hpp"
 #include "fit/warnings.hpp"
+#include "flight/aircraft_of_flights.hpp"
 #include "numerics/missing.hpp"
 
 namespace pcor {
@@ -50,17 +51,13 @@ void require_one_kind(const Sources& sources, const FlightShare& share, const Re
   }
   require_each_once(paths);
   using OfAircraft = std::pair<std::string, std::string>;
-  const auto of_file = [](const std::filesystem::path& path) {
-    return OfAircraft(path.filename().string(), Flight(path).aircraft());
-  };
   std::vector<OfAircraft> aircraft = share.of_each_flight<OfAircraft>([&](std::size_t number) {
-    const FlightSource& source = sources[number];
-    return source.samples ? OfAircraft(source.samples->name, source.samples->aircraft) : of_file(source.path);
+    const auto& [path, samples] = sources[number];
+    return samples ? OfAircraft(samples->name, samples->aircraft)
+                   : OfAircraft(path.filename().string(), Flight(path).aircraft());
   });
   const FlightShare held_out = share_of_flights(*options.team, options.holdout);
-  for (OfAircraft& each : held_out.of_each_flight<OfAircraft>(
-           [&](std::size_t number) { return of_file(options.holdout[number]); }))
-    aircraft.push_back(std::move(each));
+  for (OfAircraft& each : aircraft_of_flights(options.holdout, held_out)) aircraft.push_back(std::move(each));
   require_one_aircraft(aircraft);
 }
 
@@ -141,7 +138,7 @@ void repeat_stages(Fitted& fitted, const Sources& sources, const FitTask& task,
       each.solution = solution;
       if (round == 0) condition_number(each.flights->reduce(solution.values, {}), task, each.parameters);
     }
-    const Eigen::VectorXd lengths = fitted.flights->reduce(solution.values, {}).squares.cwiseSqrt();
+    const Eigen::VectorXd lengths = fitted.flights->reduce(solution.values, {}).lengths();
     const Eigen::VectorXd step = (solution.values - before)(fitted.parameters);
     fitted.stands_still = lengths.cwiseProduct(step).cwiseAbs().maxCoeff() < 0.01;
   }
@@ -249,7 +246,6 @@ Reduction unweighted(FitFlights& flights, const Eigen::VectorXd& values) {
   for (FitFlights* const each : flights.joint()) sum.add(each->unweighted_factor(values));
   Reduction result;
   result.factor = sum.factor();
-  result.squares = result.factor.colwise().squaredNorm();
   return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include <pcor/words/error.hpp>
 #include "team/flight_share.hpp"
+#include "team/workers.hpp"
 
 namespace pcor {
 
@@ -20,7 +21,7 @@ std::vector<std::vector<FittedParameter>> refit_each_alone(const std::vector<std
   const FlightShare share = share_of_flights(*options.team, flights);
   RefitOptions own = options;
   own.team = &alone();
-  if (options.team->size() > 1 && own.threads == 0) own.threads = 1;
+  own.threads = Workers(*options.team, options.threads).threads;
   own.holdout.clear();
   own.progress = nullptr;
   std::size_t done = 0;

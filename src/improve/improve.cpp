@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include <pcor/flight/flight.hpp>
@@ -17,6 +18,7 @@
 #include "improve/improve_loop.hpp"
 #include "numerics/missing.hpp"
 #include "residuals/flight_statistics.hpp"
+#include "team/flight_share.hpp"
 
 namespace pcor {
 
@@ -482,13 +484,17 @@ class Climb {
 
 /// The variables that all the flights have.
 std::vector<std::string> common_variables(const std::vector<std::filesystem::path>& flights,
-                                          TimeStamp time_stamp) {
+                                          const RefitOptions& options) {
+  const auto of_each = share_of_flights(*options.team, flights)
+                           .of_each_flight<std::vector<std::string>>([&](std::size_t number) {
+                             return Flight(flights[number], options.time_stamp).variables();
+                           });
   std::vector<std::string> common;
-  for (std::size_t i = 0; i < flights.size(); ++i) {
-    const Flight flight(flights[i], time_stamp);
-    if (i == 0) common = flight.variables();
+  for (const std::vector<std::string>& variables : of_each) {
+    if (&variables == &of_each.front()) common = variables;
+    const std::set<std::string> here(variables.begin(), variables.end());
     common.erase(std::remove_if(common.begin(), common.end(),
-                                [&flight](const std::string& name) { return !flight.has(name); }),
+                                [&here](const std::string& name) { return here.count(name) == 0; }),
                  common.end());
   }
   return common;
@@ -532,7 +538,7 @@ Improvement improve(const std::vector<std::filesystem::path>& flights, const Mod
                     const References& references, const ImproveOptions& options) {
   std::vector<std::filesystem::path> all = flights;
   all.insert(all.end(), options.refit.holdout.begin(), options.refit.holdout.end());
-  const std::vector<std::string> variables = common_variables(all, options.refit.time_stamp);
+  const std::vector<std::string> variables = common_variables(all, options.refit);
   std::vector<std::string> names;
   for (const std::filesystem::path& flight : flights) names.push_back(flight.filename().string());
   const auto tell = [&options](const std::string& what) {

@@ -8,6 +8,8 @@
 #include "numerics/missing.hpp"
 #include "residuals/flight_statistics.hpp"
 #include "residuals/masks.hpp"
+#include "residuals/packed_residuals.hpp"
+#include "team/flight_share.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -138,6 +140,8 @@ std::vector<TrialFlight> try_models(const std::vector<std::filesystem::path>& fl
   for (const TrialModel& model : models) files.push_back(model.file);
   const ModelFile whole = union_of(files);
   std::vector<TrialFlight> tried;
+  const FlightShare share = share_of_flights(*options.team, flights);
+  const FlightShare held_out_share = share_of_flights(*options.team, options.holdout);
   for (const std::shared_ptr<const Reference>& reference : references) {
     TrialReference trial{*reference, {}};
     for (const TrialModel& model : models) {
@@ -148,15 +152,16 @@ std::vector<TrialFlight> try_models(const std::vector<std::filesystem::path>& fl
       const std::vector<double> theirs = coefficients_in(without_what_is_alike(*other, model), *other);
       all.insert(all.end(), theirs.begin(), theirs.end());
     }
-    const auto add = [&](const std::vector<std::filesystem::path>& paths, bool held_out) {
-      for (const std::filesystem::path& path : paths) {
-        tried.push_back(tried_on(path, whole, trial, options, held_out));
-        tried.back().first_reference = reference == references.front();
-        tried.back().window = reference->window();
+    const auto add = [&](const std::vector<std::filesystem::path>& paths, const FlightShare& of, bool held_out) {
+      for (TrialFlight& flight : of.of_each_flight<TrialFlight>(
+               [&](std::size_t number) { return tried_on(paths[number], whole, trial, options, held_out); })) {
+        flight.first_reference = reference == references.front();
+        flight.window = reference->window();
+        tried.push_back(std::move(flight));
       }
     };
-    add(flights, false);
-    add(options.holdout, true);
+    add(flights, share, false);
+    add(options.holdout, held_out_share, true);
   }
   return tried;
 }

@@ -32,10 +32,16 @@ struct TrialFlight {
   /// Of each model, of all samples, hPa; NaN where a value is missing.
   std::vector<std::vector<double>> residuals{};
   std::vector<std::vector<double>> static_pressures{};  ///< corrected
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(samples, first_reference, window, fitted, held_out, residuals, static_pressures);
+  }
 };
 
 /// Holds models against the same samples: those of the flights, and of the flights that are held out, that a
 /// model with the effects of all of them would use. Of an effect the models may only differ in coefficients.
+/// The team of the options shares the flights.
 /// @throws Error as `refit`.
 std::vector<TrialFlight> try_models(const std::vector<std::filesystem::path>& flights,
                                     const std::vector<TrialModel>& models, const References& references,

@@ -62,7 +62,11 @@ Eigen::VectorXd bounded_least_squares(const Eigen::MatrixXd& rows, const Eigen::
     if (release < 0) break;
     held[static_cast<std::size_t>(release)] = false;
   }
-  return x.cwiseQuotient(length).cwiseMax(lower).cwiseMin(upper);
+  Eigen::VectorXd result = x.cwiseQuotient(length).cwiseMax(lower).cwiseMin(upper);
+  for (Eigen::Index k = 0; k < size; ++k) {
+    if (held[static_cast<std::size_t>(k)]) result[k] = x[k] <= low[k] ? lower[k] : upper[k];
+  }
+  return result;
 }
 
 }  // namespace pcor::internal

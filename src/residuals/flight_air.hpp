@@ -14,6 +14,11 @@ struct LaserAir {
   std::vector<double> airspeed;       ///< true airspeed from the beam, m/s
   std::vector<double> static_defect;  ///< delta-p from LAMS, hPa
   std::vector<double> temperature;    ///< eq. 12 with the model's pressures, K
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(airspeed, static_defect, temperature);
+  }
 };
 
 /// The air along a flight, as a model sees it: what checks and the fit of temperature look at. One value for
@@ -53,6 +58,14 @@ struct FlightAir {
   std::vector<double> tail_wind;
 
   std::vector<std::string> notes;  ///< what a user should know, a sentence each
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(samples, flying, measured_static, measured_dynamic, static_defect, pressure, dynamic, mach,
+            temperature, airspeed, gas_constant, attack, sideslip, attack_ratio, sideslip_ratio, laser,
+            height_variable, height, latitude, geopotential_height, pressure_altitude, d_value, east_speed,
+            north_speed, tail_wind, notes);
+  }
 
   std::size_t size() const { return flying.size(); }
   double step() const { return samples->step; }

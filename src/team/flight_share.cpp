@@ -9,17 +9,15 @@ FlightShare::FlightShare(std::size_t flights) : team_(&alone()), owner_(flights,
 
 FlightShare::FlightShare(Team& team, const std::vector<std::uint64_t>& sizes)
     : team_(&team), owner_(sizes.size(), 0) {
-  const auto seen =
-      team.size() == 1 ? sizes : unpacked<std::vector<std::uint64_t>>(team.gather(packed(sizes)).front());
-  std::vector<std::size_t> longest_first(seen.size());
+  std::vector<std::size_t> longest_first(sizes.size());
   std::iota(longest_first.begin(), longest_first.end(), std::size_t{0});
   std::stable_sort(longest_first.begin(), longest_first.end(),
-                   [&seen](std::size_t a, std::size_t b) { return seen[a] > seen[b]; });
+                   [&sizes](std::size_t a, std::size_t b) { return sizes[a] > sizes[b]; });
   std::vector<std::uint64_t> load(team.size(), 0);
   for (const std::size_t flight : longest_first) {
     const auto least = std::min_element(load.begin(), load.end());
     owner_[flight] = static_cast<std::size_t>(least - load.begin());
-    *least += std::max<std::uint64_t>(seen[flight], 1);
+    *least += std::max<std::uint64_t>(sizes[flight], 1);
   }
   own_ = static_cast<std::size_t>(std::count(owner_.begin(), owner_.end(), team.rank()));
 }
@@ -46,6 +44,7 @@ FlightShare share_of_flights(Team& team, const std::vector<std::filesystem::path
     const std::uintmax_t size = std::filesystem::file_size(path, unknown);
     sizes.push_back(unknown ? 0 : size);
   }
+  if (team.size() > 1) sizes = unpacked<std::vector<std::uint64_t>>(team.gather(packed(sizes)).front());
   return {team, sizes};
 }
 

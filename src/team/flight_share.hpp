@@ -31,8 +31,8 @@ class FlightShare {
   /// All flights are of one member.
   explicit FlightShare(std::size_t flights);
 
-  /// The longest first, each to the member that has least to read; as the first member sees the sizes.
-  /// @param sizes of the flights, in bytes or anything that their work is in proportion to
+  /// The longest first, each to the member that has least to read.
+  /// @param sizes of the flights, in bytes or anything that their work is in proportion to; the same on all
   FlightShare(Team& team, const std::vector<std::uint64_t>& sizes);
 
   std::size_t flights() const { return owner_.size(); }
@@ -134,7 +134,8 @@ class FlightShare {
   std::size_t own_ = 0;
 };
 
-/// The flights of these files, by their sizes. A file that cannot be looked at is for its owner to tell of.
+/// The flights of these files, by their sizes as the first member sees them. A file that cannot be looked at is
+/// for its owner to tell of.
 FlightShare share_of_flights(Team& team, const std::vector<std::filesystem::path>& paths);
 
 }  // namespace pcor::internal

@@ -9,6 +9,7 @@
 
 #include "numerics/decompositions.hpp"
 #include "numerics/in_parallel.hpp"
+#include "team/flight_share.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 
@@ -164,8 +165,8 @@ class AroundLikeliest {
   };
 
   AroundLikeliest(const std::vector<HeightRecord>& records, Eigen::Index terms, const HeightPrior& prior,
-                  const MostLikely& likely, std::size_t threads)
-      : records_(records), terms_(terms), prior_(prior), likely_(likely), threads_(threads) {
+                  const MostLikely& likely, const Workers& workers)
+      : records_(records), terms_(terms), prior_(prior), likely_(likely), workers_(workers) {
     const std::vector<double> x = as_logarithms(likely.noise);
     for (std::size_t i = 0; i < searched.size(); ++i) {
       const Eigen::Index row = as_index(i);
@@ -217,7 +218,7 @@ class AroundLikeliest {
     Point point;
     point.x = x.cwiseMax(lower_).cwiseMin(upper_);
     point.equations =
-        height_equations(records_, as_noise({point.x.begin(), point.x.end()}), prior_, threads_);
+        height_equations(records_, as_noise({point.x.begin(), point.x.end()}), prior_, workers_);
     // Noise that does not matter has no least value: all is taken for known to a factor of 4.5.
     constexpr double known_to = 1.5;
     point.rise = restricted_deviance(point.equations, terms_) - likely_.deviance +
@@ -241,7 +242,7 @@ class AroundLikeliest {
   Eigen::Index terms_;
   const HeightPrior& prior_;
   const MostLikely& likely_;
-  std::size_t threads_;
+  const Workers& workers_;
   Logarithms centre_;
   Logarithms lower_;
   Logarithms upper_;
@@ -384,10 +385,15 @@ HeightRecord without_unknowns(HeightRecord record, const HeightEquations::Vector
 }
 
 HeightEquations height_equations(const std::vector<HeightRecord>& records, const HeightNoise& noise,
-                                 const HeightPrior& prior, std::size_t threads) {
-  std::vector<HeightEquations> each(records.size());
-  in_parallel(records.size(), threads,
-              [&](std::size_t i) { each[i] = height_equations(records[i], noise, prior); });
+                                 const HeightPrior& prior, const Workers& workers) {
+  std::vector<std::uint64_t> sizes;
+  for (const HeightRecord& record : records) sizes.push_back(record.blocks.size());
+  const FlightShare share(workers.team, sizes);
+  const auto each = share.on_each_flight<HeightEquations>([&](std::vector<HeightEquations>& parts) {
+    in_parallel(records.size(), workers.threads, [&](std::size_t i) {
+      if (share.owns(i)) parts[i] = height_equations(records[i], noise, prior);
+    });
+  });
   HeightEquations sum;
   sum.sizes = prior.pressure;
   for (const HeightEquations& one : each) sum += one;
@@ -395,13 +401,13 @@ HeightEquations height_equations(const std::vector<HeightRecord>& records, const
 }
 
 MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::Index terms,
-                               const HeightPrior& prior, const HeightNoise& start, std::size_t threads,
+                               const HeightPrior& prior, const HeightNoise& start, const Workers& workers,
                                const HeldCoefficient* held) {
   MostLikely best;
   best.deviance = std::numeric_limits<double>::infinity();
   std::function<double(const std::vector<double>&)> deviance = [&](const std::vector<double>& x) {
     const HeightNoise noise = as_noise(x);
-    const HeightEquations equations = height_equations(records, noise, prior, threads);
+    const HeightEquations equations = height_equations(records, noise, prior, workers);
     double value = 0.0;
     if (held == nullptr) {
       value = restricted_deviance(equations, terms);
@@ -455,11 +461,11 @@ MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::
 
 Eigen::MatrixXd covariance_over_noise(const std::vector<HeightRecord>& records, Eigen::Index terms,
                                       const HeightPrior& prior, const MostLikely& likely,
-                                      std::size_t threads) {
+                                      const Workers& workers) {
   Eigen::MatrixXd covariance = likely.equations.covariance(terms);
   Eigen::MatrixXd more = Eigen::MatrixXd::Zero(terms, terms);
   for (const auto& [above, below] :
-       AroundLikeliest(records, terms, prior, likely, threads).standard_deviations()) {
+       AroundLikeliest(records, terms, prior, likely, workers).standard_deviations()) {
     more += 0.5 * (above.equations.covariance(terms) + below.equations.covariance(terms)) - covariance;
     const Eigen::VectorXd moved = above.equations.best(terms) - below.equations.best(terms);
     more += 0.25 * moved * moved.transpose();

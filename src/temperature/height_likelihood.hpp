@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "team/workers.hpp"
 #include "temperature/height_record.hpp"
 
 namespace pcor::internal {
@@ -53,6 +54,12 @@ struct HeightEquations {
   std::size_t blocks = 0;
 
   HeightEquations& operator+=(const HeightEquations& other);
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(information, right, sizes, squares, log_determinant, blocks);
+  }
+
   /// -2 ln L at the best coefficients of the first `terms` powers, the others zero.
   double deviance(Eigen::Index terms) const;
   /// The best coefficients of the first `terms` powers, and their covariance: with the errors of the pressure
@@ -85,9 +92,9 @@ std::vector<double> height_innovations(const HeightRecord& record, const HeightN
 /// The record with the unknowns taken off its heights.
 HeightRecord without_unknowns(HeightRecord record, const HeightEquations::Vector& unknowns);
 
-/// The sum over flights, several at a time: the same to the last bit for any number of threads.
+/// The sum over flights, which the workers share: the same to the last bit whoever they are.
 HeightEquations height_equations(const std::vector<HeightRecord>& records, const HeightNoise& noise,
-                                 const HeightPrior& prior, std::size_t threads);
+                                 const HeightPrior& prior, const Workers& workers);
 
 /// What `maximise_likelihood` found.
 struct MostLikely {
@@ -105,7 +112,7 @@ struct HeldCoefficient {
 /// The noise that makes the heights likeliest, with the coefficients of the first `terms` powers at their
 /// best, or one of them held. NLopt searches (BOBYQA) over the logarithms of the noise from `start` on.
 MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::Index terms,
-                               const HeightPrior& prior, const HeightNoise& start, std::size_t threads,
+                               const HeightPrior& prior, const HeightNoise& start, const Workers& workers,
                                const HeldCoefficient* held = nullptr);
 
 /// The covariance of the best coefficients of the first `terms` powers, with what is not known of the noise
@@ -124,6 +131,6 @@ MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::
 /// @param likely what `maximise_likelihood` found for the same flights, terms and prior, with none held
 Eigen::MatrixXd covariance_over_noise(const std::vector<HeightRecord>& records, Eigen::Index terms,
                                       const HeightPrior& prior, const MostLikely& likely,
-                                      std::size_t threads);
+                                      const Workers& workers);
 
 }  // namespace pcor::internal

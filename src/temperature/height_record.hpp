@@ -40,6 +40,12 @@ struct HeightBlock {
   double slope_east = 0.0;  ///< of isobaric surfaces by the geostrophic wind, 1; NaN where there is no wind
   double slope_north = 0.0;
   std::size_t samples = 0;
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(starts_stretch, time, length, excess, columns, east, north, height, pressure, temperature,
+            metres_per_hpa, errors, climb, slope_east, slope_north, samples);
+  }
 };
 
 /// What is known of the way that a flight went.
@@ -66,6 +72,12 @@ struct HeightRecord {
   double least_temperature = 0.0;  ///< degC
   double greatest_temperature = 0.0;  ///< degC
   std::vector<std::string> notes;
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(name, blocks, stretches, samples, height_steps, height_spikes, missing_heights, unknown_ways, way,
+            has_wind, slope_left, returns, least_temperature, greatest_temperature, notes);
+  }
 };
 
 struct HeightRecordOptions {

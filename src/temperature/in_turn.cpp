@@ -7,6 +7,7 @@
 #include "fit/lineage.hpp"
 #include "laws/calibration.hpp"
 #include "residuals/flight_air.hpp"
+#include "team/flight_share.hpp"
 
 namespace pcor {
 
@@ -21,18 +22,25 @@ constexpr double settled_temperature = 1e-3;  // K
 /// The rms difference of delta-p of two models over the flights, in the air, hPa.
 double defect_change(const std::vector<std::filesystem::path>& flights, const ModelFile& before,
                      const ModelFile& after, const TemperatureOptions& options) {
+  const FlightShare share = share_of_flights(*options.team, flights);
+  using SquaresAndCount = std::pair<double, double>;
   double squares = 0.0;
   double count = 0.0;
-  for (const std::filesystem::path& path : flights) {
-    const Flight flight(path, options.time_stamp);
-    const FlightAir first = read_flight_air(flight, before, options.mask);
-    const FlightAir second = read_flight_air(flight, after, options.mask);
-    for (std::size_t i = 0; i < first.size(); ++i) {
-      const double change = second.static_defect[i] - first.static_defect[i];
-      if (!first.flying[i] || std::isnan(change)) continue;
-      squares += change * change;
-      count += 1.0;
-    }
+  for (const SquaresAndCount& part : share.of_each_flight<SquaresAndCount>([&](std::size_t number) {
+         const Flight flight(flights[number], options.time_stamp);
+         const FlightAir first = read_flight_air(flight, before, options.mask);
+         const FlightAir second = read_flight_air(flight, after, options.mask);
+         SquaresAndCount own{0.0, 0.0};
+         for (std::size_t i = 0; i < first.size(); ++i) {
+           const double change = second.static_defect[i] - first.static_defect[i];
+           if (!first.flying[i] || std::isnan(change)) continue;
+           own.first += change * change;
+           own.second += 1.0;
+         }
+         return own;
+       })) {
+    squares += part.first;
+    count += part.second;
   }
   return std::sqrt(squares / count);
 }

@@ -61,10 +61,10 @@ std::vector<PartCorrection> corrections_of_climbs_and_descents(const std::vector
                                                                const HeightNoise& noise,
                                                                const HeightPrior& prior,
                                                                const HeightEquations::Vector& unknowns,
-                                                               std::size_t threads) {
+                                                               const Workers& workers) {
   std::vector<HeightRecord> parted;
   for (const HeightRecord& record : records) parted.push_back(with_climbs_and_descents(record, unknowns));
-  const HeightEquations equations = height_equations(parted, noise, prior, threads);
+  const HeightEquations equations = height_equations(parted, noise, prior, workers);
   std::vector<PartCorrection> parts;
   for (Eigen::Index k = 0; k < 2; ++k) {
     if (!(equations.information(k, k) > 0.0)) return {};

@@ -20,7 +20,7 @@ std::vector<PartCorrection> corrections_of_climbs_and_descents(const std::vector
                                                                const HeightNoise& noise,
                                                                const HeightPrior& prior,
                                                                const HeightEquations::Vector& unknowns,
-                                                               std::size_t threads);
+                                                               const Workers& workers);
 
 /// Whether parts differ by more than their errors explain, and by how much.
 struct Disagreement {

@@ -8,7 +8,6 @@
 #include <limits>
 #include <map>
 #include <numeric>
-#include <thread>
 #include <utility>
 
 #include <pcor/effects/psfd_bias.hpp>
@@ -31,6 +30,7 @@
 #include "temperature/height_least_squares.hpp"
 #include "temperature/height_likelihood.hpp"
 #include "temperature/isobar_slope.hpp"
+#include "team/flight_share.hpp"
 #include "temperature/parts.hpp"
 
 namespace pcor {
@@ -60,12 +60,25 @@ constexpr double seen = 3.0;                               // standard errors th
 constexpr double matters = usual_size<effects::PsfdBias>;  // hPa
 constexpr double told = 2.6;  // standard errors, which chance makes once in 100 times
 
+/// What a member of a team tells of a flight of its own.
+struct FlightPart {
+  std::string aircraft{};
+  std::string left_out{};  ///< why; empty where it is not
+  std::optional<HeightRecord> record{};
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(aircraft, left_out, record);
+  }
+};
+
 class TemperatureCalibration {
  public:
   TemperatureCalibration(const ModelFile& model, const TemperatureOptions& options)
-      : model_(model), bare_(without_calibration(model)), options_(options) {
-    threads_ =
-        options.threads > 0 ? options.threads : std::max<std::size_t>(1, std::thread::hardware_concurrency());
+      : model_(model),
+        bare_(without_calibration(model)),
+        options_(options),
+        workers_(*options.team, options.threads) {
     prior_.slope = options.slope == IsobarSlope::none ? 0.0 : options.slope_size;
     has_radome_ = model.variables.count(Quantity::attack_differential_pressure) > 0;
     prior_.pressure = {0.0, 0.0, usual_size<effects::StaticQp>,
@@ -75,7 +88,7 @@ class TemperatureCalibration {
   TemperatureResult run(const std::vector<std::filesystem::path>& paths) {
     read(paths);
     const std::size_t most = static_cast<std::size_t>(options_.degree.value_or(2)) + 1;
-    likeliest_ = maximise_likelihood(records_, static_cast<Eigen::Index>(most), prior_, start(), threads_);
+    likeliest_ = maximise_likelihood(records_, static_cast<Eigen::Index>(most), prior_, start(), workers_);
     std::vector<HeightEquations> equations;
     for (const HeightRecord& record : records_)
       equations.push_back(height_equations(record, likeliest_.noise, prior_));
@@ -94,31 +107,40 @@ class TemperatureCalibration {
  private:
   void read(const std::vector<std::filesystem::path>& paths) {
     require_each_once(paths);
-    std::string first_trouble;
-    std::vector<std::pair<std::string, std::string>> aircraft;
-    for (const std::filesystem::path& path : paths) {
-      const Flight flight(path, options_.time_stamp);
-      aircraft.emplace_back(path.string(), flight.aircraft());
-      FlightHeights heights;
-      heights.flight = path.filename().string();
+    const FlightShare share = share_of_flights(*options_.team, paths);
+    std::size_t done = 0;
+    auto parts = share.of_each_flight<FlightPart>([&](std::size_t number) {
+      const Flight flight(paths[number], options_.time_stamp);
+      FlightPart part;
+      part.aircraft = flight.aircraft();
       try {
-        HeightRecord record = read_record(flight);
-        if (options_.skip_returning && record.returns) {
-          heights.left_out = "it ends where it began (--skip-returning)";
-        } else {
-          levelled_.push_back(record);
-          // Least squares and pictures know no slope of their own.
-          const bool fitted = options_.slope == IsobarSlope::fitted;
-          take_off_isobar_slope(levelled_.back(), fitted ? IsobarSlope::whole_flight : options_.slope);
-          take_off_isobar_slope(record, options_.slope);
-          records_.push_back(std::move(record));
+        part.record = read_record(flight);
+        if (options_.skip_returning && part.record->returns) {
+          part.record.reset();
+          part.left_out = "it ends where it began (--skip-returning)";
         }
       } catch (const Error& error) {
-        heights.left_out = error.what();
+        part.left_out = error.what();
       }
-      if (first_trouble.empty()) first_trouble = heights.left_out;
-      result_.flights.push_back(std::move(heights));
-      if (options_.progress) options_.progress(result_.flights.size(), paths.size());
+      if (options_.progress) options_.progress(++done, share.own());
+      return part;
+    });
+    std::string first_trouble;
+    std::vector<std::pair<std::string, std::string>> aircraft;
+    for (std::size_t number = 0; number < paths.size(); ++number) {
+      FlightPart& part = parts[number];
+      aircraft.emplace_back(paths[number].string(), part.aircraft);
+      FlightHeights& heights = result_.flights.emplace_back();
+      heights.flight = paths[number].filename().string();
+      heights.left_out = part.left_out;
+      if (first_trouble.empty()) first_trouble = part.left_out;
+      if (!part.record) continue;
+      levelled_.push_back(*part.record);
+      // Least squares and pictures know no slope of their own.
+      const bool fitted = options_.slope == IsobarSlope::fitted;
+      take_off_isobar_slope(levelled_.back(), fitted ? IsobarSlope::whole_flight : options_.slope);
+      take_off_isobar_slope(*part.record, options_.slope);
+      records_.push_back(std::move(*part.record));
     }
     require_one_aircraft(aircraft);
     if (!records_.empty()) return;
@@ -174,7 +196,7 @@ class TemperatureCalibration {
 
   void maximise() {
     likeliest_ =
-        maximise_likelihood(records_, static_cast<Eigen::Index>(terms_), prior_, likeliest_.noise, threads_);
+        maximise_likelihood(records_, static_cast<Eigen::Index>(terms_), prior_, likeliest_.noise, workers_);
   }
 
   /// What the most likely correction has that no thermometer needs: "a1 = -0.0785, outside [-0.05, 0.05]".
@@ -211,7 +233,7 @@ class TemperatureCalibration {
     const auto n = static_cast<Eigen::Index>(terms_);
     const HeightEquations& equations = likeliest_.equations;
     const Eigen::VectorXd best = equations.best(n);
-    Eigen::MatrixXd covariance = covariance_over_noise(records_, n, prior_, likeliest_, threads_);
+    Eigen::MatrixXd covariance = covariance_over_noise(records_, n, prior_, likeliest_, workers_);
     const Eigen::MatrixXd moved_by =
         equations.covariance_of_unknowns(n) * equations.information.rightCols<pressure_errors>();
     const Eigen::VectorXd per_hpa = moved_by.col(lasting).head(n);
@@ -288,7 +310,7 @@ class TemperatureCalibration {
     const HeightEquations::Vector unknowns = likeliest_.equations.best_unknowns(as_index(terms_));
     result_.parts_by_flight = corrections_of_flights(records_, likeliest_.noise, prior_, unknowns);
     result_.parts_by_climb =
-        corrections_of_climbs_and_descents(records_, likeliest_.noise, prior_, unknowns, threads_);
+        corrections_of_climbs_and_descents(records_, likeliest_.noise, prior_, unknowns, workers_);
     result_.spread_of_flights = disagreement_of(result_.parts_by_flight).spread;
     result_.spread_of_climbs = disagreement_of(result_.parts_by_climb).spread;
   }
@@ -331,7 +353,7 @@ class TemperatureCalibration {
     const auto deviance_at = [&](double value) {
       const HeldCoefficient held{term, value};
       return maximise_likelihood(records_, static_cast<Eigen::Index>(terms_), prior_, likeliest_.noise,
-                                 threads_, &held)
+                                 workers_, &held)
           .deviance;
     };
     const double least = deviance_at(best);
@@ -611,7 +633,7 @@ class TemperatureCalibration {
   const ModelFile& model_;
   ModelFile bare_;  // without a correction of the temperature
   const TemperatureOptions& options_;
-  std::size_t threads_ = 1;
+  Workers workers_;
   bool has_radome_ = false;
   HeightPrior prior_;
   std::vector<HeightRecord> records_;

@@ -70,8 +70,9 @@ class IntervalOffsets : public testing::TestWithParam<Loss> {
   RefitOptions options_;
   ModelFile model_ = made::model({"static-constant", "static-alpha", "static-qp"});
   References references_ = made::pressure_reference();
+  FlightShare share_{10};
   FitTask task_{
-      model_, *references_.front(), options_, fit_parameters(model_, *references_.front(), options_), {}, {},
+      model_, *references_.front(), options_, share_, fit_parameters(model_, *references_.front(), options_), {}, {},
       [] {}};
   std::unique_ptr<FitFlights> whole_;
   std::unique_ptr<FitFlights> stage_;
@@ -85,7 +86,7 @@ TEST_P(IntervalOffsetsOfLeastSquares, AreThoseOfOneSystemOfAllUnknowns) {
   std::vector<Eigen::MatrixXd> columns;  // of each flight: derivatives by the slopes and by its offsets
   std::vector<Eigen::VectorXd> residuals;
   Eigen::Index bins = 0;
-  stage_->visit([&](std::size_t, FitFlight& fit) {
+  const auto systems = stage_->of_each([&](std::size_t, FitFlight& fit) {
     const FlightSamples& samples = fit.residuals().samples();
     const std::vector<double>& pressure = *samples.model.find(Quantity::static_pressure);
     const Eigen::MatrixXd rows = fit.white(fit.rows(task_.start));
@@ -100,10 +101,15 @@ TEST_P(IntervalOffsetsOfLeastSquares, AreThoseOfOneSystemOfAllUnknowns) {
       own.conservativeResize(Eigen::NoChange, own.cols() + 1);
       own.rightCols(1) = fit.white(fit.bins().means(shift));
     }
-    columns.push_back(own);
-    residuals.emplace_back(rows.rightCols(1));
-    bins += rows.rows();
+    own.conservativeResize(Eigen::NoChange, own.cols() + 1);
+    own.rightCols(1) = rows.rightCols(1);
+    return own;
   });
+  for (const Eigen::MatrixXd& system : systems) {
+    columns.emplace_back(system.leftCols(system.cols() - 1));
+    residuals.emplace_back(system.rightCols(1));
+    bins += system.rows();
+  }
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(bins, 2 + 40);
   Eigen::VectorXd residual(bins);
   Eigen::Index row = 0;
@@ -122,8 +128,9 @@ TEST_P(IntervalOffsetsOfLeastSquares, AreThoseOfOneSystemOfAllUnknowns) {
   const Eigen::MatrixXd information = (all.transpose() * all).inverse().topLeftCorner(2, 2).inverse();
   const Eigen::MatrixXd factor = reduction.factor.leftCols(2);
   EXPECT_LT((factor.transpose() * factor - information).norm(), 1e-9 * information.norm());
-  EXPECT_LT((reduction.squares - all.leftCols(2).colwise().squaredNorm().transpose()).norm(),
-            1e-10 * reduction.squares.norm());
+  const Eigen::VectorXd lengths = reduction.lengths();
+  EXPECT_LT((lengths - all.leftCols(2).colwise().norm().transpose()).norm(),
+            1e-10 * lengths.norm());
 }
 
 INSTANTIATE_TEST_SUITE_P(Stage, IntervalOffsetsOfLeastSquares, testing::Values(Loss::none));
@@ -134,7 +141,7 @@ TEST_P(IntervalOffsetsOfAnyLoss, LeaveTheDerivativesOfTheLeastLoss) {
   const Reduction reduction = stage_->reduce(values, loss);
   const Eigen::VectorXd gradient = reduction.factor.leftCols(2).transpose() * reduction.factor.col(2);
   for (const Eigen::Index k : {0, 1}) {
-    const double step = 1e-3 / std::sqrt(reduction.squares[k]);
+    const double step = 1e-3 / reduction.lengths()[k];
     Eigen::VectorXd more = values;
     Eigen::VectorXd less = values;
     more[1 + k] += step;

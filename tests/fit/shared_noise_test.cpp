@@ -24,8 +24,9 @@ std::vector<double> deviations(std::size_t memory) {
   options.memory = memory;
   const ModelFile model = made::model({"static-constant", "static-alpha", "static-qp"});
   const References references = made::pressure_reference();
+  const FlightShare share(count);
   FitTask task{
-      model, *references.front(), options, fit_parameters(model, *references.front(), options), {}, {},
+      model, *references.front(), options, share, fit_parameters(model, *references.front(), options), {}, {},
       [] {}};
   task.start = Eigen::Vector3d(0.004127875, 0.021279816, 0.030849643);
   std::vector<FlightSource> sources;
@@ -38,12 +39,10 @@ std::vector<double> deviations(std::size_t memory) {
   }
   FitFlights flights(sources, task, FitSetup{task.start, {0, 1, 2}});
   flights.measure_noise(task.start, true);
-  std::vector<double> each(count);
-  flights.visit([&](std::size_t number, FitFlight& fit) {
+  return flights.of_each([&](std::size_t, FitFlight& fit) {
     const Eigen::VectorXd innovations = fit.white_rows(task.start, {}).rightCols(1);
-    each[number] = robust_deviation({innovations.begin(), innovations.end()});
+    return robust_deviation({innovations.begin(), innovations.end()});
   });
-  return each;
 }
 
 TEST(SharedNoise, LeavesEveryFlightItsOwnLevels) {

@@ -55,6 +55,9 @@ TEST(BoundedLeastSquares, IsTheLeastOfAllWaysToHoldBounds) {
     const Eigen::VectorXd x =
         pcor::internal::bounded_least_squares(rows, right, lower, upper, Eigen::VectorXd::Zero(size));
     EXPECT_TRUE((x.array() >= lower.array()).all() && (x.array() <= upper.array()).all());
+    for (const double each : x) {
+      for (const double bound : {-0.7, 0.4}) EXPECT_TRUE(each == bound || std::abs(each - bound) > 1e-14);
+    }
     EXPECT_NEAR((rows * x - right).squaredNorm(), least_of_all_ways(rows, right, lower, upper), 1e-8)
         << trial;
   }

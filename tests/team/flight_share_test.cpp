@@ -3,12 +3,16 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <fstream>
 #include <limits>
+#include <mutex>
 #include <numeric>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "support/temporary_directory.hpp"
 #include "support/thread_team.hpp"
 
 namespace pcor::internal {
@@ -47,16 +51,24 @@ TEST(FlightShare, GivesEveryFlightToOneMemberAndAboutAsMuchToEach) {
   for (const std::size_t members : {1, 2, 3, 7}) {
     const std::vector<std::uint64_t> load = loads(members, sizes);
     // The longest first is at most a third beyond the best that can be (Graham 1969), far less for so many.
-    EXPECT_LT(*std::max_element(load.begin(), load.end()), 1.02 * static_cast<double>(all) / members);
+    EXPECT_LT(*std::max_element(load.begin(), load.end()), 1.02 * static_cast<double>(all) / static_cast<double>(members));
   }
   EXPECT_EQ(loads(5, {3, 4}).size(), 5U);  // more members than flights
 }
 
-TEST(FlightShare, TakesTheSizesAsTheFirstMemberSeesThem) {
+TEST(FlightShare, TakesTheSizesOfFilesAsTheFirstMemberSeesThem) {
+  const test::TemporaryDirectory folder;
+  const auto file = [&](const std::string& name, std::size_t size) {
+    std::ofstream(folder.path() / name) << std::string(size, 'x');
+    return folder.path() / name;
+  };
+  const auto large = file("large", 9000);
+  const auto small = file("small", 1000);
   std::vector<std::size_t> owned(2, 0);
-  run_as_team(2, [&](Team& team) {
+  test::run_as_team(2, [&](Team& team) {
     const bool first = team.rank() == 0;
-    const FlightShare share(team, first ? std::vector<std::uint64_t>{9, 1, 1} : std::vector<std::uint64_t>{1, 1, 9});
+    const FlightShare share =
+        share_of_flights(team, first ? std::vector{large, small, small} : std::vector{small, large, folder.path() / "none"});
     owned[team.rank()] = share.own();
     EXPECT_EQ(share.owns(0), first);
   });

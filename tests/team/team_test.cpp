@@ -2,7 +2,8 @@
 
 #include <gmock/gmock.h>
 
-#include <mutex>
+#include <algorithm>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -125,7 +126,7 @@ TEST(Team, EndsForAllWhateverAnyMemberDoes) {
       std::mt19937 chance(seed * 4 + static_cast<unsigned>(team.rank()));
       try {
         for (int step = 0; step < 6; ++step) {
-          const unsigned luck = chance() % 20;
+          const auto luck = chance() % 20;
           if (luck == 0) team.fail(Error("failed"), chance() % 9);
           if (luck == 1) throw Error("unexpected");
           if (luck == 2) break;

@@ -15,6 +15,7 @@
 #include "model_of_flight.hpp"
 #include "progress.hpp"
 #include "report_origin.hpp"
+#include "team.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -195,12 +196,17 @@ void print(const Checks& checks, const Options& options, bool has_laser) {
 }
 
 /// A row for each check of each flight, which is checked alone.
-void write_flight_table(const Options& options, const std::optional<ModelFile>& model,
-                        const CheckOptions& how) {
+///
+/// @param together the checks of all flights, which are those of the flight where there is one
+FlightTable flight_table(const Options& options, const std::optional<ModelFile>& model, const CheckOptions& how,
+                         const Checks& together) {
   FlightTable table({"flight", "check", "verdict", "value", "standard_error", "unit", "what"});
-  for (const std::filesystem::path& flight : flight_paths(options.flights)) {
-    for (const CheckResult& result : check({flight}, model, how).results) {
-      const std::string name = flight.filename().string();
+  const std::vector<std::filesystem::path> flights = flight_paths(options.flights);
+  std::vector<std::vector<CheckInShort>> alone{in_short(together)};
+  if (flights.size() > 1) alone = check_each_alone(flights, model, how);
+  for (std::size_t i = 0; i < flights.size(); ++i) {
+    const std::string name = flights[i].filename().string();
+    for (const CheckInShort& result : alone[i]) {
       if (result.ran) {
         table.add({name, result.name, std::string(name_of(result.verdict)), cell(result.key.value),
                    cell(result.key.standard_error), result.key.unit, result.key.what});
@@ -209,7 +215,7 @@ void write_flight_table(const Options& options, const std::optional<ModelFile>& 
       }
     }
   }
-  table.write(options.table);
+  return table;
 }
 
 std::vector<std::string> models_of(const Options& options) {
@@ -235,6 +241,7 @@ void run(const Options& options) {
   CheckOptions check_options;
   check_options.mask = mask_options(options.flights);
   check_options.time_stamp = time_stamp(options.flights);
+  check_options.team = &team();
   if (!options.reference.empty()) check_options.second = read_model(second_model(options));
   Checks checks;
   {
@@ -242,14 +249,14 @@ void run(const Options& options) {
     check_options.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
     checks = check(flight_paths(options.flights), model, check_options);
   }
+  std::optional<FlightTable> table;
+  if (!options.table.empty()) table = flight_table(options, model, check_options, checks);
+  if (!is_speaker()) return;
   OutputsTogether together;
   if (wants_report(options.common))
     write_report_of_run(check_report(checks), {models_of(options), options.flights.flights, {}},
                         options.common);
-  if (!options.table.empty()) {
-    check_options.progress = {};
-    write_flight_table(options, model, check_options);
-  }
+  if (table) table->write(options.table);
   json.write(as_json(checks));
   together.appear();
   const bool has_laser = model && model->variables.count(Quantity::lams_airspeed) > 0;

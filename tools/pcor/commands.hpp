@@ -15,6 +15,6 @@ inline constexpr std::array commands{
     &add_check,   &add_process, &add_temperature, &add_simulate, &add_completion, &add_man};
 
 /// Those whose flights a team of several processes shares. The others are work of one process.
-inline constexpr std::array<const char*, 2> commands_of_a_team{"compare", "refit"};
+inline constexpr std::array<const char*, 4> commands_of_a_team{"compare", "refit", "check", "temperature"};
 
 }  // namespace pcor::tool

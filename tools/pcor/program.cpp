@@ -70,7 +70,7 @@ void require_command_of_a_team(const CLI::App& program) {
   throw CLI::ArgumentMismatch(fmt::format(
       "{} is work of one process, and several processes share that of {} alone: run it with one, or flight by "
       "flight as docs/campaigns.md says",
-      name, fmt::join(commands_of_a_team, " and ")));
+      name, fmt::join(commands_of_a_team, ", ")));
 }
 
 /// Reads the command line and does what it says. @return the exit status

@@ -15,6 +15,7 @@
 #include "progress.hpp"
 #include "refusal.hpp"
 #include "report_origin.hpp"
+#include "team.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -39,6 +40,7 @@ TemperatureOptions temperature_options(const Options& options) {
   TemperatureOptions result;
   result.mask = mask_options(options.comparison);
   result.time_stamp = time_stamp(options.comparison);
+  result.team = &team();
   if (options.degree != "auto") result.degree = std::stoi(options.degree);
   result.slope = *isobar_slope_named(options.slope);
   result.slope_size = options.slope_size * 1e-5;
@@ -249,6 +251,7 @@ void run(const Options& options) {
       RefitOptions refit_with;
       refit_with.mask = with.mask;
       refit_with.time_stamp = with.time_stamp;
+      refit_with.team = with.team;
       refit_with.progress = with.progress;
       const References references = references_to_fit(options.comparison, model).used;
       in_turn = calibrate_in_turn(flight_paths(options.comparison), model, references, refit_with, with);
@@ -257,6 +260,7 @@ void run(const Options& options) {
       result = fit_temperature(flight_paths(options.comparison), model, with);
     }
   }
+  if (!is_speaker()) return;
   const bool is_refused = !result.worse.empty() && !options.force;
   OutputsTogether together;
   if (wants_report(options.common))

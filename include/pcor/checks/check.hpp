@@ -3,6 +3,7 @@
 #include <pcor/laws/model_file.hpp>
 #include <pcor/report/report.hpp>
 #include <pcor/residuals/residuals.hpp>
+#include <pcor/team/team.hpp>
 
 #include <cstddef>
 #include <filesystem>
@@ -61,7 +62,8 @@ struct CheckOptions {
   /// The model of a second static system of the aircraft, for the checks of redundant systems. Without it the
   /// second pair of pressures is looked for by its usual names, and is as measured.
   std::optional<ModelFile> second{};
-  std::function<void(std::size_t done, std::size_t total)> progress{};  ///< told after every flight
+  Team* team = &alone();  ///< which shares the flights; all of its members get the result
+  std::function<void(std::size_t done, std::size_t total)> progress{};  ///< told after every flight of this member
 };
 
 /// All checks over some flights.
@@ -87,6 +89,23 @@ struct Checks {
 /// are of different aircraft, or both models are of the same pressures.
 Checks check(const std::vector<std::filesystem::path>& flights, const std::optional<ModelFile>& model,
              const CheckOptions& options = {});
+
+/// What a check says in short; the members are those of `CheckResult`.
+struct CheckInShort {
+  std::string name{};
+  bool ran = false;
+  std::string reason{};
+  CheckVerdict verdict = CheckVerdict::cannot_tell;
+  KeyNumber key{};
+};
+
+std::vector<CheckInShort> in_short(const Checks& checks);
+
+/// What the checks say of each flight alone; the team of the options shares the flights.
+/// @throws Error as `check`
+std::vector<std::vector<CheckInShort>> check_each_alone(const std::vector<std::filesystem::path>& flights,
+                                                        const std::optional<ModelFile>& model,
+                                                        const CheckOptions& options = {});
 
 /// The report of the checks: a table of verdicts, and for each check its numbers, tables and pictures.
 Report check_report(const Checks& checks);

@@ -49,8 +49,9 @@ struct TemperatureOptions {
   /// The flights were written by `pcor process --hydrostatic` with the same model, but for its correction of
   /// the temperature: take -(R_a/g0) ln(p_i/p_(i-1)) and the temperature from there.
   bool archived = false;
-  std::size_t threads = 0;                                              ///< 0: as many as processors
-  std::function<void(std::size_t done, std::size_t total)> progress{};  ///< told after every flight
+  std::size_t threads = 0;  ///< 0: as many as processors, and one in a team of several
+  Team* team = &alone();    ///< which shares the flights; all of its members get the result
+  std::function<void(std::size_t done, std::size_t total)> progress{};  ///< told after every flight of this member
 };
 
 /// A correction of the temperature by one method: T_corrected = T + a0 + a1 t + a2 t^2, t in degC.

@@ -1,0 +1,120 @@
+#include <gmock/gmock.h>
+#include <pcor/fit/refit.hpp>
+#include <pcor/laws/model_file.hpp>
+
+#include <fmt/format.h>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "support/made_samples.hpp"
+#include "support/thread_team.hpp"
+
+// A fit whose flights are shared is the fit of one process, and sends little.
+
+using namespace pcor;
+using ::testing::Each;
+
+namespace {
+
+std::vector<std::shared_ptr<const FlightSamples>> flights(std::size_t count) {
+  std::vector<std::shared_ptr<const FlightSamples>> made;
+  for (std::size_t f = 0; f < count; ++f) {
+    made::Plan plan;
+    plan.seed = static_cast<unsigned>(f + 1);
+    plan.samples = 1200 + 300 * (f % 4);
+    plan.outliers = 0.01;
+    plan.defect = made::equation_18;
+    made.push_back(made::shared(plan));
+  }
+  return made;
+}
+
+/// Every number of a result, to the last bit.
+std::string text_of(const RefitResult& result) {
+  std::string text;
+  const auto add = [&text](double value) { text += fmt::format("{:a} ", value); };
+  for (const FittedParameter& each : result.parameters) {
+    for (const double value : {each.value, each.standard_error, each.jackknife_error}) add(value);
+  }
+  for (const std::vector<double>& row : result.covariance) {
+    for (const double value : row) add(value);
+  }
+  for (const double value : {result.rms, result.bulk_rms, result.noise_rms, result.drift_rms, result.r_squared,
+                             result.condition_number, result.samples_per_independent})
+    add(value);
+  for (const FlightFit& flight : result.flights) {
+    text += flight.flight + " ";
+    for (const double value : {flight.before.rms, flight.after.rms, flight.after.bias, flight.gain}) add(value);
+  }
+  for (const Omission& each : result.omissions) add(each.rms);
+  for (const std::string& each : result.warnings) text += each;
+  for (const std::string& each : result.notes) text += each;
+  return text + fmt::format("{} {}", result.samples, result.outliers);
+}
+
+RefitResult fit_of(const std::vector<std::shared_ptr<const FlightSamples>>& of, Team& team, std::size_t threads = 1) {
+  RefitOptions options;
+  options.team = &team;
+  options.threads = threads;
+  options.training_share = 0.9;
+  return refit(of, made::model({"static-constant", "static-alpha", "static-qp"}), made::pressure_reference(), options);
+}
+
+TEST(TeamFit, IsThatOfOneProcessForAnyNumberOfMembersAndThreads) {
+  const auto all = flights(5);
+  const std::string alone_result = text_of(fit_of(all, alone()));
+  EXPECT_EQ(text_of(fit_of(all, alone(), 2)), alone_result);
+  for (const std::size_t members : {2, 3, 7}) {
+    std::vector<std::string> results(members);
+    test::run_as_team(members, [&](Team& team) { results[team.rank()] = text_of(fit_of(all, team)); });
+    EXPECT_THAT(results, Each(alone_result)) << members;
+  }
+}
+
+/// The bytes of each exchange of all members together.
+std::vector<std::size_t> bytes_of_exchanges(std::size_t count) {
+  const auto all = flights(count);
+  const auto sent = test::run_as_team(3, [&](Team& team) { fit_of(all, team); });
+  std::vector<std::size_t> bytes(sent.front().size(), 0);
+  for (const std::vector<std::size_t>& member : sent) {
+    EXPECT_EQ(member.size(), bytes.size());
+    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] += member[i];
+  }
+  return bytes;
+}
+
+TEST(TeamFit, SendsATriangleOfEachFlightInOneExchangeAPass) {
+  constexpr std::size_t unknowns = 3;
+  constexpr std::size_t few = 17;
+  constexpr std::size_t many = 34;
+  const std::vector<std::size_t> with_few = bytes_of_exchanges(few);
+  const std::vector<std::size_t> with_many = bytes_of_exchanges(many);
+  // Of which exchanges there are, most are passes of the solver: the growth that is met most often is theirs.
+  std::map<std::size_t, std::size_t> growths;
+  for (std::size_t i = 0; i < std::min(with_few.size(), with_many.size()); ++i) {
+    if (with_many[i] > with_few[i]) ++growths[(with_many[i] - with_few[i]) / (many - few)];
+  }
+  const auto most = std::max_element(growths.begin(), growths.end(),
+                                     [](const auto& a, const auto& b) { return a.second < b.second; });
+  EXPECT_LE(most->first, 8 * (unknowns + 1) * (unknowns + 2) / 2 + 64);
+  EXPECT_GT(most->second, 5U);
+}
+
+TEST(TeamFit, FailsOnAllMembersAlike) {
+  std::vector<std::string> messages(2);
+  test::run_as_team(2, [&](Team& team) {
+    RefitOptions options;
+    options.team = &team;
+    try {
+      refit(std::vector<std::filesystem::path>{"nowhere/a.nc", "nowhere/b.nc"}, made::model({"static-constant"}), made::pressure_reference(), options);
+    } catch (const Error& error) {
+      messages[team.rank()] = error.what();
+    }
+  });
+  EXPECT_THAT(messages, Each(::testing::HasSubstr("nowhere/a.nc")));
+}
+
+}  // namespace
