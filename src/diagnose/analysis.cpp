@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <string>
 
 #include "diagnose/rms.hpp"
 #include "numerics/decompositions.hpp"
@@ -49,6 +51,14 @@ struct BinnedRows {
 std::size_t held_out_part(const FlightSamples& samples, double time) {
   return static_cast<std::size_t>(std::fmod(std::floor((time - samples.time.front()) / stretch_time),
                                             static_cast<double>(held_out_parts)));
+}
+
+std::vector<std::size_t> few_of(std::size_t flights) {
+  constexpr std::size_t enough = 16;
+  const std::size_t every = (flights + enough - 1) / enough;
+  std::vector<std::size_t> few;
+  for (std::size_t flight = 0; flight < flights; flight += every) few.push_back(flight);
+  return few;
 }
 
 Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::uint64_t seed, double explained)
@@ -190,27 +200,28 @@ void Analysis::replace_outliers(const std::vector<std::size_t>& groups, const Ei
 template <class Find>
 void Analysis::for_each_reference(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate,
                                   const Find& find) {
-  constexpr std::size_t enough = 16;
   noise_.resize(bins_.size());
+  const std::vector<Eigen::Index> places = places_of(groups);
   for (std::size_t first = 0; first < bins_.size();) {
     std::size_t last = first;
     while (last < bins_.size() && flight(last).reference == flight(first).reference) ++last;
-    const std::size_t every = (last - first + enough - 1) / enough;
-    const auto is_one = [&](std::size_t f) { return f >= first && f < last && (f - first) % every == 0; };
-    const std::vector<Eigen::Index> places = places_of(groups);
-    const auto rows_of = share_.of_each_flight<BinnedRows>([&](std::size_t f) {
-      if (!is_one(f)) return BinnedRows{};
-      BinnedRows some{bins_[f], {columns_[f].rows(), as_index(places.size()) + 1}};
-      some.rows << columns_[f](Eigen::all, places), left_of(f, groups, estimate);
-      return some;
-    });
+    std::vector<std::size_t> few = few_of(last - first);
+    for (std::size_t& f : few) f += first;
+    const auto rows_of = share_.of_entries(few).of_each_flight<BinnedRows>(
+        [&](std::size_t k) {
+          const std::size_t f = few[k];
+          BinnedRows some{bins_[f], {columns_[f].rows(), as_index(places.size()) + 1}};
+          some.rows << columns_[f](Eigen::all, places), left_of(f, groups, estimate);
+          return some;
+        },
+        std::hash<std::string>()(packed(estimate)));
     std::vector<Binning> bins;
     std::vector<Eigen::MatrixXd> columns;
     std::vector<Eigen::VectorXd> residuals;
-    for (std::size_t f = first; f < last; f += every) {
-      bins.push_back(rows_of[f].bins);
-      columns.emplace_back(rows_of[f].rows.leftCols(as_index(places.size())));
-      residuals.emplace_back(rows_of[f].rows.rightCols(1));
+    for (const BinnedRows& some : rows_of) {
+      bins.push_back(some.bins);
+      columns.emplace_back(some.rows.leftCols(as_index(places.size())));
+      residuals.emplace_back(some.rows.rightCols(1));
     }
     NoiseModel shared = find(bins, columns, residuals);
     shared.level.clear();

@@ -19,6 +19,10 @@ inline constexpr std::size_t held_out_parts = 5;
 /// The part that a time of a flight belongs to.
 std::size_t held_out_part(const FlightSamples& samples, double time);
 
+/// A few of so many flights, sixteen at most, at even distances: what flights have in common is found from
+/// these.
+std::vector<std::size_t> few_of(std::size_t flights);
+
 /// What is left on stretches that took no part in a fit.
 struct HeldOut {
   double rms = 0.0;      ///< hPa, with the first reference, without outliers

@@ -62,14 +62,6 @@ Means find_means(const std::vector<Eigen::MatrixXd>& sums, double rows) {
   return {unit.cwiseProduct(inverse * left), variance * (unit.asDiagonal() * inverse * unit.asDiagonal())};
 }
 
-/// The weights with which means make the difference of one of some flights to the others.
-Eigen::VectorXd difference(std::size_t one, const std::vector<std::size_t>& flights, Eigen::Index all) {
-  Eigen::VectorXd weights = Eigen::VectorXd::Zero(all);
-  for (const std::size_t flight : flights)
-    weights[as_index(flight)] = flight == one ? 1.0 : -1.0 / static_cast<double>(flights.size() - 1);
-  return weights;
-}
-
 /// The square of a normal variable that is exceeded as rarely as one of Student with so many degrees of
 /// freedom (Wallace 1959, Annals of Mathematical Statistics 30, 1121).
 double normal_square(double student_square, double freedom) {
@@ -77,25 +69,37 @@ double normal_square(double student_square, double freedom) {
   return scale * scale * freedom * std::log1p(student_square / freedom);
 }
 
-MeanStep step_of(std::size_t one, const std::vector<std::size_t>& flights, const Means& means) {
-  const Eigen::VectorXd weights = difference(one, flights, means.value.size());
-  const double known = weights.dot(means.covariance * weights);
+/// Means of the flights, and sums over all of them.
+struct SummedMeans {
+  Means means;
+  double sum = means.value.sum();
+  Eigen::VectorXd covariances = means.covariance.rowwise().sum();  // of each with the sum
+  double variance = covariances.sum();                             // of the sum
+};
+
+MeanStep step_of(std::size_t one, const std::vector<std::size_t>& flights, const SummedMeans& all) {
+  const Eigen::VectorXd& value = all.means.value;
+  const Eigen::MatrixXd& covariance = all.means.covariance;
+  const Eigen::Index own = as_index(one);
+  const auto count = static_cast<double>(flights.size() - 1);  // of the others
+  const double mean = (all.sum - value[own]) / count;          // of them
+  const double variance =
+      (all.variance - 2.0 * all.covariances[own] + covariance(own, own)) / (count * count);
+  const double shared = (all.covariances[own] - covariance(own, own)) / count;  // with that mean
+  const double known = covariance(own, own) - 2.0 * shared + variance;
   if (!(known > 0.0)) return {};
-  std::vector<std::size_t> others;
-  for (const std::size_t flight : flights) {
-    if (flight != one) others.push_back(flight);
-  }
-  const auto count = static_cast<double>(others.size());
   double scatter = 0.0;  // of the others' means, beyond what drift makes of it
-  for (const std::size_t other : others) {
-    if (others.size() < 2) break;
-    const Eigen::VectorXd among = difference(other, others, means.value.size()) * (count - 1.0) / count;
-    const double size = among.dot(means.value);
-    scatter += (size * size - among.dot(means.covariance * among)) / (count - 1.0);
+  for (const std::size_t flight : flights) {
+    if (flight == one || count < 2.0) continue;
+    const Eigen::Index other = as_index(flight);
+    const double size = value[other] - mean;
+    const double by_drift =
+        covariance(other, other) - 2.0 * (all.covariances[other] - covariance(other, own)) / count + variance;
+    scatter += (size * size - by_drift) / (count - 1.0);
   }
   scatter = std::max(0.0, scatter) * (1.0 + 1.0 / count);
   MeanStep step;
-  step.size = weights.dot(means.value);
+  step.size = value[own] - mean;
   step.error = std::sqrt(known + scatter);
   double square = step.size * step.size / (known + scatter);
   if (scatter > 0.0) {
@@ -128,7 +132,7 @@ std::vector<MeanStep> find_mean_steps(const FlightShare& share, const std::vecto
     if (found[f].rows > 0) flights.push_back(f);
   }
   if (flights.size() < 2) return steps;
-  const Means means = find_means(sums, static_cast<double>(rows));
+  const SummedMeans means{find_means(sums, static_cast<double>(rows))};
   for (const std::size_t flight : flights) {
     const bool told_of_the_other = flights.size() == 2 && flight == flights.front();
     if (!told_of_the_other) steps[flight] = step_of(flight, flights, means);

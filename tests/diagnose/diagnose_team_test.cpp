@@ -7,9 +7,9 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iostream>
 #include <iterator>
-#include <mutex>
 #include <numeric>
 #include <string>
 #include <vector>
@@ -96,6 +96,31 @@ void serialize(Archive& archive, HeldOutPart& part) {
   archive(part.flight, part.statistics, part.expected);
 }
 
+template <class Archive>
+void serialize(Archive& archive, WhatIfCoefficient& coefficient) {
+  archive(coefficient.name, coefficient.given, coefficient.start, coefficient.fixed, coefficient.size);
+}
+
+template <class Archive>
+void serialize(Archive& archive, WhatIfSums& sums) {
+  archive(sums.products, sums.samples);
+}
+
+template <class Archive>
+void serialize(Archive& archive, WhatIfWeights& weights) {
+  archive(weights.effects, weights.parts, weights.inflation);
+}
+
+template <class Archive>
+void serialize(Archive& archive, WhatIfSeparation& separation) {
+  archive(separation.effect, separation.rival, separation.text);
+}
+
+template <class Archive>
+void serialize(Archive& archive, WhatIfFlight& flight) {
+  archive(flight.samples, flight.columns);
+}
+
 namespace {
 
 using internal::packed;
@@ -149,30 +174,85 @@ void expect_same(const Diagnosis& one, const Diagnosis& other) {
   EXPECT_EQ(one.notes, other.notes);
 }
 
-/// Diagnoses of a team, which have to be that of one process.
+/// Runs a team, and tells what it exchanged.
+void run(std::size_t size, const std::function<void(Team&)>& work) {
+  testing::internal::CaptureStderr();  // in further threads HDF5 tells what netCDF asks it for in vain
+  const auto sent = run_as_team(size, work, true);
+  testing::internal::GetCapturedStderr();
+  std::size_t bytes = 0;
+  for (const auto& member : sent) bytes = std::accumulate(member.begin(), member.end(), bytes);
+  std::cout << size << " members: " << sent.front().size() << " exchanges, " << bytes << " bytes\n";
+}
+
+/// The diagnosis of one process, which that of a team has to be.
 Diagnosis expect_that_of_one(const Paths& paths, const References& references, DiagnoseOptions options = {}) {
   const Diagnosis alone = diagnose(paths, model(), references, options);
   for (const std::size_t size : {1U, 2U, 3U, 6U}) {
     SCOPED_TRACE(size);
-    const auto sent = run_as_team(
-        size,
-        [&](Team& team) {
-          DiagnoseOptions own = options;
-          own.team = &team;
-          expect_same(diagnose(paths, model(), references, own), alone);
-        },
-        true);
-    std::size_t bytes = 0;
-    for (const auto& member : sent) bytes = std::accumulate(member.begin(), member.end(), bytes);
-    std::cout << size << " members: " << sent.front().size() << " exchanges, " << bytes << " bytes\n";
+    run(size, [&](Team& team) {
+      DiagnoseOptions own = options;
+      own.team = &team;
+      expect_same(diagnose(paths, model(), references, own), alone);
+    });
   }
   return alone;
 }
 
-TEST(DiagnosisOfATeam, NamesTheSameEffect) {
-  const Diagnosis diagnosis =
-      expect_that_of_one(flights("id = \"static-beta-odd\"\nb1 = -0.02\n", 10), {lams_reference()});
-  EXPECT_THAT(diagnosis.findings, Not(IsEmpty()));
+ModelEffect formula(const std::string& text) {
+  ModelEffect effect;
+  effect.id = "try-1";
+  effect.formula = text;
+  effect.parameter_names = {"k"};
+  effect.parameters = {0.0};
+  return effect;
+}
+
+const std::string beta_odd = "id = \"static-beta-odd\"\nb1 = -0.02\n";
+
+TEST(DiagnosisOfATeam, NamesTheSameEffectAndWhatWouldTellItFromOthers) {
+  DiagnoseOptions options;
+  options.formulas = {formula("k * sideslip")};
+  const Diagnosis diagnosis = expect_that_of_one(flights(beta_odd, 10), {lams_reference()}, options);
+  ASSERT_THAT(diagnosis.findings, Not(IsEmpty()));
+  EXPECT_THAT(diagnosis.findings[0].aliases, Not(IsEmpty()));
+  EXPECT_THAT(diagnosis.findings[0].advice.sentence, Not(IsEmpty()));
+}
+
+TEST(DiagnosisOfATeam, FindsTheSameOnSamplesWithFlapsOut) {
+  const std::string flaps = "id = \"flaps-gear\"\ndefect = 3.0\n";
+  DiagnoseOptions options;
+  options.whole_file = false;
+  const Diagnosis diagnosis = expect_that_of_one(flights(flaps, 40), {lams_reference()}, options);
+  ASSERT_THAT(diagnosis.findings, Not(IsEmpty()));
+  EXPECT_EQ(diagnosis.findings[0].effect.id, "flaps-gear");
+}
+
+TEST(WhatIfOfATeam, IsThatOfOne) {
+  const Paths paths = flights(beta_odd, 10);
+  const Diagnosis diagnosis = diagnose(paths, model(), {lams_reference()});
+  const auto candidates = what_if_candidates(diagnosis, {});
+  WhatIfOptions options;
+  options.diagnose.training_share = 0.8;
+  options.own = diagnosis.own;
+  options.holdout = {paths.back()};
+  const Paths fitted(paths.begin(), paths.end() - 1);
+  const WhatIf alone = what_if(fitted, model(), {lams_reference()}, candidates, options);
+  EXPECT_THAT(alone.panel.separations, Not(IsEmpty()));
+  EXPECT_GT(alone.panel.held_out.samples, 0.0);
+  for (const std::size_t size : {2U, 6U}) {
+    run(size, [&](Team& team) {
+      WhatIfOptions own = options;
+      own.diagnose.team = &team;
+      const WhatIf found = what_if(fitted, model(), {lams_reference()}, candidates, own);
+      EXPECT_EQ(packed(found.panel.coefficients), packed(alone.panel.coefficients));
+      EXPECT_EQ(packed(found.panel.weights), packed(alone.panel.weights));
+      EXPECT_EQ(packed(found.panel.alike), packed(alone.panel.alike));
+      EXPECT_EQ(packed(found.panel.outliers), packed(alone.panel.outliers));
+      EXPECT_EQ(packed(found.panel.held_out), packed(alone.panel.held_out));
+      EXPECT_EQ(packed(found.panel.separations), packed(alone.panel.separations));
+      EXPECT_EQ(packed(found.flights), packed(alone.flights));
+    });
+  }
 }
 
 TEST(DiagnosisOfATeam, FindsTheSameVariablesOfTheFiles) {
@@ -207,19 +287,16 @@ TEST(DiagnosisOfATeam, FailsOnAllMembersAsOneAlone) {
   }
   EXPECT_THAT(alone, HasSubstr("broken.nc"));
   for (const std::size_t size : {2U, 3U, 6U}) {
-    run_as_team(
-        size,
-        [&](Team& team) {
-          DiagnoseOptions options;
-          options.team = &team;
-          try {
-            diagnose(paths, model(), {lams_reference()}, options);
-            ADD_FAILURE() << "of " << team.rank();
-          } catch (const Error& error) {
-            EXPECT_EQ(error.what(), alone);
-          }
-        },
-        true);
+    run(size, [&](Team& team) {
+      DiagnoseOptions options;
+      options.team = &team;
+      try {
+        diagnose(paths, model(), {lams_reference()}, options);
+        ADD_FAILURE() << "of " << team.rank();
+      } catch (const Error& error) {
+        EXPECT_EQ(error.what(), alone);
+      }
+    });
   }
 }
 
