@@ -6,14 +6,16 @@
 
 #include <pcor/numerics/noise.hpp>
 
-namespace pcor {
+namespace cereal {
 
 template <class Archive>
-void serialize(Archive& archive, Stretch& stretch) {
+void serialize(Archive& archive, pcor::Stretch& stretch) {
   archive(stretch.first, stretch.count);
 }
 
-namespace internal {
+}  // namespace cereal
+
+namespace pcor::internal {
 
 /// Means over about four seconds: long enough that the noise of sensors is not what whitening amplifies,
 /// short enough for every manoeuvre. Longer ones for residuals that are not of one sample alone.
@@ -60,5 +62,4 @@ class Binning {
   std::vector<Stretch> stretches_;
 };
 
-}  // namespace internal
-}  // namespace pcor
+}  // namespace pcor::internal

@@ -9,64 +9,57 @@
 #include "team/packed.hpp"
 
 /// How what is known of flights is packed for the other members of a team.
-namespace pcor {
+namespace cereal {
 
 template <class Archive>
-void serialize(Archive& archive, Statistics& statistics) {
+void serialize(Archive& archive, pcor::Statistics& statistics) {
   archive(statistics.samples, statistics.bias, statistics.bias_error, statistics.rms, statistics.noise_rms);
 }
 
 template <class Archive>
-void serialize(Archive& archive, Interval& interval) {
+void serialize(Archive& archive, pcor::Interval& interval) {
   archive(interval.regime, interval.begin, interval.end, interval.pair, interval.note, interval.by_user);
 }
 
 template <class Archive>
-void serialize(Archive& archive, FlightMotion& motion) {
+void serialize(Archive& archive, pcor::FlightMotion& motion) {
   archive(motion.time, motion.airspeed, motion.altitude, motion.vertical_speed, motion.roll, motion.pitch,
           motion.heading, motion.attack, motion.sideslip, motion.ground_speed, motion.ground_track,
           motion.liquid_water);
 }
 
 template <class Archive>
-void serialize(Archive& archive, FrozenSpan& span) {
+void serialize(Archive& archive, pcor::FrozenSpan& span) {
   archive(span.quantity, span.first, span.count);
 }
 
 template <class Archive>
-void serialize(Archive& archive, MovingColumn& column) {
+void serialize(Archive& archive, pcor::MovingColumn& column) {
   archive(column.quantity, column.effect, column.parameter, column.at, column.slope);
 }
 
 template <class Archive>
-void serialize(Archive& archive, FastSeries& series) {
+void serialize(Archive& archive, pcor::FastSeries& series) {
   archive(series.values, series.in_record, series.shortest_period);
 }
 
 template <class Archive>
-void serialize(Archive& archive, ModelSamples& samples) {
+void serialize(Archive& archive, pcor::ModelSamples& samples) {
   archive(samples.roles, samples.columns, samples.variables, samples.frozen, samples.moving,
           samples.along_beam);
 }
 
 template <class Archive>
-void serialize(Archive& archive, FlightSamples& samples) {
+void serialize(Archive& archive, pcor::FlightSamples& samples) {
   archive(samples.name, samples.aircraft, samples.step, samples.time, samples.latitude, samples.longitude,
           samples.motion, samples.flaps, samples.flaps_variable, samples.flaps_by_lift, samples.intervals,
           samples.model, samples.reference, samples.notes);
 }
 
-namespace internal {
-
 template <class Archive>
-void serialize(Archive& archive, ResidualSums& sums) {
+void serialize(Archive& archive, pcor::internal::ResidualSums& sums) {
   archive(sums.samples, sums.sum, sums.squares, sums.noise_squares, sums.independent);
 }
-
-}  // namespace internal
-}  // namespace pcor
-
-namespace cereal {
 
 /// The samples of a flight that several may hold: each that gets them holds its own.
 template <class Archive>

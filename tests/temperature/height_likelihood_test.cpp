@@ -22,6 +22,9 @@ using pcor::internal::HeightNoise;
 using pcor::internal::HeightPrior;
 using pcor::internal::HeightRecord;
 
+const pcor::internal::Workers one_thread(pcor::alone(), 1);
+const pcor::internal::Workers three_threads(pcor::alone(), 3);
+
 HeightRecord record_of(const made::AirPlan& plan) {
   return pcor::internal::height_record(made::air(plan), {}, {});
 }
@@ -148,8 +151,8 @@ TEST(HeightLikelihood, FlightsAddUpWhateverTheThreads) {
     plan.gps = 0.5;
     records.push_back(record_of(plan));
   }
-  const HeightEquations one = height_equations(records, HeightNoise{}, HeightPrior{}, 1);
-  const HeightEquations three = height_equations(records, HeightNoise{}, HeightPrior{}, 3);
+  const HeightEquations one = height_equations(records, HeightNoise{}, HeightPrior{}, one_thread);
+  const HeightEquations three = height_equations(records, HeightNoise{}, HeightPrior{}, three_threads);
   EXPECT_EQ(one.squares, three.squares);
   EXPECT_EQ(one.blocks, three.blocks);
   HeightEquations sum;
@@ -168,7 +171,7 @@ TEST(HeightLikelihood, FindsTheNoiseThatThereIs) {
     plan.offset = 0.4;
     records.push_back(record_of(plan));
   }
-  const pcor::internal::MostLikely found = maximise_likelihood(records, 2, HeightPrior{}, HeightNoise{}, 1);
+  const pcor::internal::MostLikely found = maximise_likelihood(records, 2, HeightPrior{}, HeightNoise{}, one_thread);
   // 8 hours hold 360 memories of the noise: its variance is known to 10 %, its memory to about as much.
   EXPECT_NEAR(found.noise.wander, 0.5, 0.05);
   EXPECT_NEAR(found.noise.wander_time, 80.0, 16.0);
@@ -230,7 +233,7 @@ Eigen::MatrixXd sampled_covariance(const std::vector<HeightRecord>& records, Eig
       next.*moved[i] *= std::exp(steps[i] * normal(engine));
       there += std::pow(std::log(next.*moved[i] / likely.noise.*moved[i]) / 1.5, 2);
     }
-    const HeightEquations tried = height_equations(records, next, HeightPrior{}, 1);
+    const HeightEquations tried = height_equations(records, next, HeightPrior{}, one_thread);
     there += tried.deviance(terms) + tried.log_information(terms);
     if (std::log(uniform(engine)) < 0.5 * (deviance - there)) {
       here = next;
@@ -251,8 +254,8 @@ TEST(HeightLikelihood, ErrorsKnowThatTheNoiseIsFoundToo) {
   for (const HeightRecord& record : noisy_records(flights, 7200)) {
     const std::vector<HeightRecord> records{record};
     const pcor::internal::MostLikely likely =
-        maximise_likelihood(records, 2, HeightPrior{}, HeightNoise{}, 1);
-    const Eigen::MatrixXd stated = covariance_over_noise(records, 2, HeightPrior{}, likely, 1);
+        maximise_likelihood(records, 2, HeightPrior{}, HeightNoise{}, one_thread);
+    const Eigen::MatrixXd stated = covariance_over_noise(records, 2, HeightPrior{}, likely, one_thread);
     const Eigen::MatrixXd sampled = sampled_covariance(records, 2, likely, 8000);
     for (Eigen::Index k = 0; k < 2; ++k) {
       const double as_if_known = std::sqrt(likely.equations.covariance(2)(k, k));
@@ -273,8 +276,8 @@ TEST(HeightLikelihood, TheLessTheBetterTheNoiseIsKnown) {
   for (const std::size_t flights : {1U, 4U, 16U}) {
     const std::vector<HeightRecord> records = noisy_records(flights, 3600);
     const pcor::internal::MostLikely likely =
-        maximise_likelihood(records, 2, HeightPrior{}, HeightNoise{}, 1);
-    const Eigen::MatrixXd stated = covariance_over_noise(records, 2, HeightPrior{}, likely, 1);
+        maximise_likelihood(records, 2, HeightPrior{}, HeightNoise{}, one_thread);
+    const Eigen::MatrixXd stated = covariance_over_noise(records, 2, HeightPrior{}, likely, one_thread);
     const Eigen::MatrixXd more = stated - likely.equations.covariance(2);
     // No combination of coefficients gets surer, but for rounding.
     EXPECT_GT(more.trace(), 0.0);
@@ -282,7 +285,7 @@ TEST(HeightLikelihood, TheLessTheBetterTheNoiseIsKnown) {
     const double part = more(0, 0) / stated(0, 0);
     EXPECT_LT(part, before) << flights;
     before = part;
-    EXPECT_EQ(covariance_over_noise(records, 2, HeightPrior{}, likely, 3), stated) << flights;
+    EXPECT_EQ(covariance_over_noise(records, 2, HeightPrior{}, likely, three_threads), stated) << flights;
   }
 }
 

@@ -3,7 +3,7 @@
 #include <unistd.h>
 
 #include <pcor/mpi/mpi_team.hpp>
-#include "../pcor/program.hpp"
+#include "program.hpp"
 
 namespace {
 
