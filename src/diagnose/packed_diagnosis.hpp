@@ -3,13 +3,13 @@
 #include <pcor/diagnose/diagnose.hpp>
 #include "residuals/packed_residuals.hpp"
 
-namespace pcor {
-
 /// How the other members of a team get the pictures of a flight.
+namespace cereal {
+
 template <class Archive>
-void serialize(Archive& archive, FlightDiagnosis& flight) {
+void serialize(Archive& archive, pcor::FlightDiagnosis& flight) {
   archive(flight.samples, flight.mask, flight.before, flight.after, flight.added, flight.evidence,
           flight.drift, flight.traced, flight.static_pressure, flight.mach, flight.attack, flight.sideslip);
 }
 
-}  // namespace pcor
+}  // namespace cereal

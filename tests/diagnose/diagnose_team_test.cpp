@@ -19,37 +19,37 @@
 #include "support/thread_team.hpp"
 #include "team/packed.hpp"
 
-namespace pcor {
+namespace cereal {
 
 template <class Archive>
-void serialize(Archive& archive, ModelEffect& effect) {
+void serialize(Archive& archive, pcor::ModelEffect& effect) {
   archive(effect.id, effect.parameters, effect.parameter_names, effect.formula, effect.where, effect.unit,
           effect.source, effect.scaling.static_pressure, effect.scaling.dynamic_pressure);
 }
 
 template <class Archive>
-void serialize(Archive& archive, Estimate& estimate) {
+void serialize(Archive& archive, pcor::Estimate& estimate) {
   archive(estimate.name, estimate.unit, estimate.value, estimate.standard_error, estimate.typical);
 }
 
 template <class Archive>
-void serialize(Archive& archive, Evidence& evidence) {
+void serialize(Archive& archive, pcor::Evidence& evidence) {
   archive(evidence.flight, evidence.begin, evidence.end, evidence.regimes, evidence.share);
 }
 
 template <class Archive>
-void serialize(Archive& archive, Alias& alias) {
+void serialize(Archive& archive, pcor::Alias& alias) {
   archive(alias.effect, alias.title, alias.correlation, alias.chi2_less, alias.size_to_usual, alias.estimates,
           alias.log_likelihood_less, alias.probability, alias.correction, alias.held, alias.is_alike);
 }
 
 template <class Archive>
-void serialize(Archive& archive, Advice& advice) {
+void serialize(Archive& archive, pcor::Advice& advice) {
   archive(advice.sentence, advice.manoeuvre, advice.duration, advice.power);
 }
 
 template <class Archive>
-void serialize(Archive& archive, Finding& finding) {
+void serialize(Archive& archive, pcor::Finding& finding) {
   archive(finding.effect, finding.is_alike, finding.of_reference, finding.system, finding.title,
           finding.estimates, finding.held, finding.rms, finding.worst, finding.worst_flight,
           finding.worst_time, finding.chi2, finding.p_value, finding.rms_before, finding.rms_after,
@@ -59,68 +59,71 @@ void serialize(Archive& archive, Finding& finding) {
 }
 
 template <class Archive>
-void serialize(Archive& archive, AbsorbedEffect& effect) {
+void serialize(Archive& archive, pcor::AbsorbedEffect& effect) {
   archive(effect.effect, effect.title, effect.by, effect.remaining);
 }
 
 template <class Archive>
-void serialize(Archive& archive, UpperLimit& limit) {
+void serialize(Archive& archive, pcor::UpperLimit& limit) {
   archive(limit.effect, limit.title, limit.estimates, limit.limits, limit.rms, limit.note);
 }
 
 template <class Archive>
-void serialize(Archive& archive, NotTestable& effect) {
+void serialize(Archive& archive, pcor::NotTestable& effect) {
   archive(effect.effect, effect.title, effect.reason);
 }
 
 template <class Archive>
-void serialize(Archive& archive, TracedVariable& variable) {
+void serialize(Archive& archive, pcor::TracedVariable& variable) {
   archive(variable.name, variable.unit, variable.description, variable.r2, variable.p_value,
           variable.linear_r2, variable.slope, variable.slope_error, variable.centre, variable.formula,
           variable.sampling, variable.places, variable.where);
 }
 
 template <class Archive>
-void serialize(Archive& archive, FlightStep& step) {
+void serialize(Archive& archive, pcor::FlightStep& step) {
   archive(step.flight, step.size, step.standard_error, step.p_value);
 }
 
 template <class Archive>
-void serialize(Archive& archive, Unexplained& found) {
+void serialize(Archive& archive, pcor::Unexplained& found) {
   archive(found.significant, found.rms, found.drift_rms, found.p_value, found.regime, found.variables,
           found.steps, found.shares_noise, found.computed);
 }
 
 template <class Archive>
-void serialize(Archive& archive, HeldOutPart& part) {
+void serialize(Archive& archive, pcor::HeldOutPart& part) {
   archive(part.flight, part.statistics, part.expected);
 }
 
 template <class Archive>
-void serialize(Archive& archive, WhatIfCoefficient& coefficient) {
+void serialize(Archive& archive, pcor::WhatIfCoefficient& coefficient) {
   archive(coefficient.name, coefficient.given, coefficient.start, coefficient.fixed, coefficient.size);
 }
 
 template <class Archive>
-void serialize(Archive& archive, WhatIfSums& sums) {
+void serialize(Archive& archive, pcor::WhatIfSums& sums) {
   archive(sums.products, sums.samples);
 }
 
 template <class Archive>
-void serialize(Archive& archive, WhatIfWeights& weights) {
+void serialize(Archive& archive, pcor::WhatIfWeights& weights) {
   archive(weights.effects, weights.parts, weights.inflation);
 }
 
 template <class Archive>
-void serialize(Archive& archive, WhatIfSeparation& separation) {
+void serialize(Archive& archive, pcor::WhatIfSeparation& separation) {
   archive(separation.effect, separation.rival, separation.text);
 }
 
 template <class Archive>
-void serialize(Archive& archive, WhatIfFlight& flight) {
+void serialize(Archive& archive, pcor::WhatIfFlight& flight) {
   archive(flight.samples, flight.columns);
 }
 
+}  // namespace cereal
+
+namespace pcor {
 namespace {
 
 using internal::packed;
