@@ -555,6 +555,7 @@ Improvement improve(const std::vector<std::filesystem::path>& flights, const Mod
   DiagnoseOptions diagnose_with;
   diagnose_with.mask = options.refit.mask;
   diagnose_with.time_stamp = options.refit.time_stamp;
+  diagnose_with.team = options.refit.team;
   diagnose_with.formulas = options.formulas;
   diagnose_with.training_share = options.refit.training_share;
   diagnose_with.progress = options.refit.progress;

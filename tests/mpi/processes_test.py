@@ -115,6 +115,19 @@ class Processes(unittest.TestCase):
              "temperature.html", "--degree", "0", "--force"],
             ["warm.toml", "temperature.json", "temperature.html"], [2])
 
+    def test_diagnose_is_so_too(self):
+        self.assert_alike(
+            ["diagnose", *self.flights[:3], "-m", MODEL, "--report", "diagnose.html", "--json", "diagnose.json"],
+            ["diagnose.html", "diagnose.json"], [2])
+        self.assert_alike(
+            ["diagnose", *self.flights[:3], "-m", MODEL, "--json", "diagnose.json"], ["diagnose.json"], [4])
+
+    def test_improve_is_so_too(self):
+        self.assert_alike(
+            ["improve", *self.flights[:2], "-m", MODEL, "--holdout", self.flights[2], "-o", "best.toml", "--report",
+             "improve.html", "--json", "improve.json", "--force"],
+            ["best.toml", "improve.html", "improve.json"], [2])
+
     def test_flights_that_cannot_be_read_are_left_out_by_all(self):
         self.damage(self.flights[1], "truncated")
         self.damage(self.flights[2], "missing")

@@ -16,6 +16,7 @@
 #include "model_of_flight.hpp"
 #include "progress.hpp"
 #include "report_origin.hpp"
+#include "team.hpp"
 #include "shaped_effect.hpp"
 
 namespace pcor::tool {
@@ -195,6 +196,8 @@ void run(const Options& options) {
   DiagnoseOptions diagnose_with;
   diagnose_with.mask = mask_options(options.comparison);
   diagnose_with.time_stamp = time_stamp(options.comparison);
+  diagnose_with.team = &team();
+  diagnose_with.series = wants_report(options.common);
   diagnose_with.formulas = candidate_formulas(options.candidates, model, options.comparison.flights);
   diagnose_with.whole_file = !options.no_file_variables;
   diagnose_with.not_variables = options.not_variables;
@@ -214,6 +217,7 @@ void run(const Options& options) {
       add_commands(tried, options.model, options.comparison.flights.front(), fit);
     }
   }
+  if (!is_speaker()) return;
   OutputsTogether together;
   if (wants_report(options.common))
     write_report_of_run(diagnosis_report(diagnosis, model, &tried),

@@ -17,6 +17,7 @@
 #include "progress.hpp"
 #include "refusal.hpp"
 #include "report_origin.hpp"
+#include "team.hpp"
 
 namespace pcor::tool {
 namespace {
@@ -126,6 +127,7 @@ ImproveOptions improve_options(const Options& options, const ModelFile& model) {
   ImproveOptions improve_with;
   improve_with.refit.mask = mask_options(options.comparison);
   improve_with.refit.time_stamp = time_stamp(options.comparison);
+  improve_with.refit.team = &team();
   improve_with.refit.loss = *loss_named(options.loss);
   improve_with.refit.training_share = options.training_share;
   improve_with.refit.holdout.assign(options.holdout.begin(), options.holdout.end());
@@ -165,6 +167,7 @@ void run(const Options& options) {
     }
   }
   refuse_worse(improvement.worse, options.force, improvement.model);
+  if (!is_speaker()) return;
   OutputsTogether together;
   deliver(improvement.model, options.output, inputs);
   if (wants_report(options.common))
