@@ -9,8 +9,8 @@
 #include <pcor/mpi/mpi_team.hpp>
 #include "team/flight_share.hpp"
 
-// How evenly flights are shared, and what an exchange costs, without any work of a processor: a visit sleeps, 20
-// milliseconds for a flight of the usual length. It says nothing of a file system.
+// How evenly flights are shared, and what an exchange costs, without any work of a processor: a visit sleeps,
+// 20 milliseconds for a flight of the usual length. It says nothing of a file system.
 //
 //   mpirun -n 32 team_balance [FLIGHTS OF EACH PROCESS] [PASSES]
 int main(int argc, char** argv) {

@@ -30,9 +30,8 @@ std::vector<std::vector<CheckInShort>> check_each_alone(const std::vector<std::f
   own.team = &alone();
   own.progress = nullptr;
   return share_of_flights(*options.team, flights)
-      .of_each_flight<std::vector<CheckInShort>>([&](std::size_t number) {
-        return in_short(check({flights[number]}, model, own));
-      });
+      .of_each_flight<std::vector<CheckInShort>>(
+          [&](std::size_t number) { return in_short(check({flights[number]}, model, own)); });
 }
 
 }  // namespace pcor

@@ -279,9 +279,9 @@ struct FlightPart {
   template <class Archive>
   void serialize(Archive& archive) {
     FlightResiduals& r = residuals;
-    archive(r.samples, r.mask, r.values, r.flaps_out, r.reference_defects, r.model_defects,
-            r.static_pressure, r.corrected_pressure, r.total_pressure, r.reference_total_pressure, r.mach,
-            r.dynamic_ratio, notes);
+    archive(r.samples, r.mask, r.values, r.flaps_out, r.reference_defects, r.model_defects, r.static_pressure,
+            r.corrected_pressure, r.total_pressure, r.reference_total_pressure, r.mach, r.dynamic_ratio,
+            notes);
   }
 };
 

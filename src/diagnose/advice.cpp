@@ -24,7 +24,7 @@ void advise(const Analysis& analysis, const CandidateSet& set, const ModelFile& 
                                [](const Finding& finding) { return !finding.aliases.empty(); });
   if (!any) return;
   // What the aircraft can fly is learnt from whole flights, which every member gets.
-  const std::vector<std::size_t> few = few_of(analysis.flights().size());
+  const std::vector<std::size_t> few = analysis.few();
   const auto flights = analysis.share().of_entries(few).of_each_flight<std::shared_ptr<const FlightSamples>>(
       [&](std::size_t k) { return analysis.flights()[few[k]].samples; });
   const double usual_level = median_of_absolute_values(analysis.share().team(), levels_of(analysis.noise()));

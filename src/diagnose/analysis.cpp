@@ -53,14 +53,6 @@ std::size_t held_out_part(const FlightSamples& samples, double time) {
                                             static_cast<double>(held_out_parts)));
 }
 
-std::vector<std::size_t> few_of(std::size_t flights) {
-  constexpr std::size_t enough = 16;
-  const std::size_t every = (flights + enough - 1) / enough;
-  std::vector<std::size_t> few;
-  for (std::size_t flight = 0; flight < flights; flight += every) few.push_back(flight);
-  return few;
-}
-
 Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::uint64_t seed, double explained)
     : share_(columns.share),
       first_share_(share_.of_entries(first_entries(columns.flights))),
@@ -75,6 +67,9 @@ Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::ui
     (flight.reference == 0 ? flights_ : further_).push_back(std::move(flight));
   }
   first_bins_ = part(bins_, 0, flights_.size());
+  binned_ = share_.of_each_flight<NoiseFlight>([this](std::size_t f) {
+    return NoiseFlight{bins_[f].size() > 0 ? bins_[f].time().front() : 0.0, bins_[f].size()};
+  });
   const auto normal = share_.sum_of_each_flight<Eigen::MatrixXd>([this](std::size_t f) {
     Eigen::MatrixXd part(base_, base_ + 1);
     part.leftCols(base_) = columns_[f].leftCols(base_).transpose() * columns_[f].leftCols(base_);
@@ -205,7 +200,7 @@ void Analysis::for_each_reference(const std::vector<std::size_t>& groups, const 
   for (std::size_t first = 0; first < bins_.size();) {
     std::size_t last = first;
     while (last < bins_.size() && flight(last).reference == flight(first).reference) ++last;
-    std::vector<std::size_t> few = few_of(last - first);
+    std::vector<std::size_t> few = flights_for_noise(part(binned_, first, last));
     for (std::size_t& f : few) f += first;
     const auto rows_of = share_.of_entries(few).of_each_flight<BinnedRows>(
         [&](std::size_t k) {
@@ -214,7 +209,7 @@ void Analysis::for_each_reference(const std::vector<std::size_t>& groups, const 
           some.rows << columns_[f](Eigen::all, places), left_of(f, groups, estimate);
           return some;
         },
-        std::hash<std::string>()(packed(estimate)));
+        digest_of(packed(estimate)));
     std::vector<Binning> bins;
     std::vector<Eigen::MatrixXd> columns;
     std::vector<Eigen::VectorXd> residuals;

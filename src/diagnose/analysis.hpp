@@ -9,6 +9,7 @@
 #include "diagnose/flight_columns.hpp"
 #include "diagnose/scores.hpp"
 #include "diagnose/search.hpp"
+#include "numerics/noise_flights.hpp"
 #include "numerics/noise_model.hpp"
 
 namespace pcor::internal {
@@ -18,10 +19,6 @@ inline constexpr std::size_t held_out_parts = 5;
 
 /// The part that a time of a flight belongs to.
 std::size_t held_out_part(const FlightSamples& samples, double time);
-
-/// A few of so many flights, sixteen at most, at even distances: what flights have in common is found from
-/// these.
-std::vector<std::size_t> few_of(std::size_t flights);
 
 /// What is left on stretches that took no part in a fit.
 struct HeldOut {
@@ -51,6 +48,11 @@ class Analysis {
   std::size_t flight_count() const { return bins_.size(); }
   const FlightColumns& flight(std::size_t number) const {
     return number < flights_.size() ? flights_[number] : further_[number - flights_.size()];
+  }
+  /// Of the flights against the first reference the few from which what flights have in common is learnt.
+  std::vector<std::size_t> few() const {
+    return flights_for_noise(
+        {binned_.begin(), binned_.begin() + static_cast<std::ptrdiff_t>(flights_.size())});
   }
   const std::vector<Binning>& bins() const { return first_bins_; }
   const Binning& bins(std::size_t flight) const { return bins_[flight]; }
@@ -123,6 +125,7 @@ class Analysis {
   Eigen::Index base_ = 0;
   std::vector<Binning> bins_{};
   std::vector<Binning> first_bins_{};
+  std::vector<NoiseFlight> binned_{};
   std::vector<Eigen::MatrixXd> columns_{};  // base and candidates, in bins
   std::vector<Eigen::VectorXd> residuals_{};
   std::vector<Eigen::VectorXd> first_residuals_{};

@@ -6,9 +6,11 @@
 #include <deque>
 #include <future>
 
-#include "numerics/missing.hpp"
 #include "numerics/median.hpp"
+#include "numerics/missing.hpp"
+#include "numerics/noise_flights.hpp"
 #include "residuals/moving_columns.hpp"
+#include "team/digest.hpp"
 #include "team/median_of_all.hpp"
 
 namespace pcor::internal {
@@ -29,10 +31,11 @@ struct FlightCounts {
   std::size_t offsets = 0;
   std::array<std::size_t, mask_count> masks{};
   std::vector<bool> linear{};  ///< for each of the parameters whether the residual is linear in it
+  double begin = 0.0;          ///< of the first bin, s since 1970 UTC
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(samples, bins, offsets, masks, linear);
+    archive(samples, bins, offsets, masks, linear, begin);
   }
 };
 
@@ -56,19 +59,20 @@ Eigen::VectorXd Reduction::lengths() const {
 }
 
 std::uint64_t digest_of(const Eigen::VectorXd& parameters) {
-  // Fowler, Noll and Vo's FNV-1a, 64 bits.
-  std::uint64_t digest = 14695981039346656037U;
-  const auto* const bytes = reinterpret_cast<const unsigned char*>(parameters.data());
-  for (std::size_t i = 0; i < static_cast<std::size_t>(parameters.size()) * sizeof(double); ++i)
-    digest = (digest ^ bytes[i]) * 1099511628211U;
-  return digest;
+  const auto* const bytes = reinterpret_cast<const char*>(parameters.data());
+  return digest_of(std::string_view(bytes, static_cast<std::size_t>(parameters.size()) * sizeof(double)));
 }
 
 FitFlights::FitFlights(std::vector<FlightSource> sources, const FitTask& task, FitSetup setup)
     : sources_(std::move(sources)), task_(task), setup_(std::move(setup)), cache_(sources_.size()) {
   const auto counts = of_each([](std::size_t, FitFlight& fit) {
-    return FlightCounts{fit.kept().size(), fit.bins().size(), fit.offsets(), fit.residuals().mask_counts(),
-                        fit.residuals().is_linear()};
+    const std::vector<double>& time = fit.bins().time();
+    return FlightCounts{fit.kept().size(),
+                        fit.bins().size(),
+                        fit.offsets(),
+                        fit.residuals().mask_counts(),
+                        fit.residuals().is_linear(),
+                        time.empty() ? 0.0 : time.front()};
   });
   linear_ = counts.front().linear;
   for (const FlightCounts& flight : counts) {
@@ -77,6 +81,9 @@ FitFlights::FitFlights(std::vector<FlightSource> sources, const FitTask& task, F
     offsets_ += flight.offsets;
     for (std::size_t m = 0; m < mask_count; ++m) masks_[m] += flight.masks[m];
   }
+  std::vector<NoiseFlight> binned;
+  for (const FlightCounts& flight : counts) binned.push_back({flight.begin, flight.bins});
+  for_noise_ = flights_for_noise(binned);
   if (!setup_.regimes.empty()) return;
   for (const FitTask& with : task_.further) {
     further_.push_back(std::make_unique<FitFlights>(sources_, with, setup_));
@@ -250,27 +257,28 @@ void FitFlights::measure_noise(const Eigen::VectorXd& parameters, bool drift) {
   if (!shares_noise_) noise_.reset();  // what is found anew need not be applied before
   prepare(parameters);
   if (shares_noise_) return;
-  constexpr std::size_t enough = 16;
-  const std::size_t every = (count() + enough - 1) / enough;
   const auto some = task_.share.on_each_flight<BinnedRows>(
       [&](std::vector<BinnedRows>& parts) {
-        visit_those([every](std::size_t number) { return number % every == 0; },
-                    [&](std::size_t number, FitFlight& fit) {
-                      parts[number] = {fit.bins(), fit.rows(parameters)};
-                    });
+        visit_those(
+            [this](std::size_t number) {
+              return std::binary_search(for_noise_.begin(), for_noise_.end(), number);
+            },
+            [&](std::size_t number, FitFlight& fit) {
+              parts[number] = {fit.bins(), fit.rows(parameters)};
+            });
       },
       digest_of(parameters));
   std::vector<Binning> bins;
   std::vector<Eigen::VectorXd> residuals;
   std::vector<Eigen::MatrixXd> columns;
-  for (std::size_t number = 0; number < count(); number += every) {
+  for (const std::size_t number : for_noise_) {
     bins.push_back(some[number].bins);
     residuals.emplace_back(some[number].rows.rightCols(1));
     columns.emplace_back(some[number].rows.leftCols(as_index(setup_.wanted.size())));
   }
   const auto found = std::make_shared<FitNoise>();
-  found->shared = drift ? find_noise(bins, columns, residuals, task_.threads()).model
-                        : estimate_noise(bins, residuals);
+  found->shared =
+      drift ? find_noise(bins, columns, residuals, task_.threads()).model : estimate_noise(bins, residuals);
   found->shared.level.clear();
   found->levels.resize(count());
   task_.share.attempt([&] {

@@ -175,9 +175,9 @@ struct Reduction {
   }
 };
 
-/// The flights of a fit. Passes over them run several flights at a time, and each member of a team passes over
-/// its own; results are added in the order of the flights, so they do not depend on the number of threads or
-/// members.
+/// The flights of a fit. Passes over them run several flights at a time, and each member of a team passes
+/// over its own; results are added in the order of the flights, so they do not depend on the number of
+/// threads or members.
 class FitFlights {
  public:
   FitFlights(std::vector<FlightSource> sources, const FitTask& task, FitSetup setup);
@@ -282,6 +282,7 @@ class FitFlights {
   std::size_t offsets_ = 0;
   std::size_t bins_ = 0;
   std::array<std::size_t, mask_count> masks_{};
+  std::vector<std::size_t> for_noise_;  // the flights from which that is found which all share
   std::shared_ptr<const FitNoise> noise_;
   bool shares_noise_ = false;
   Eigen::VectorXd prepared_parameters_;

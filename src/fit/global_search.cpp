@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlopt.hpp>
+#include <functional>
 
 #include <pcor/words/error.hpp>
 #include "numerics/decompositions.hpp"
+#include "numerics/least_cost.hpp"
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
@@ -66,10 +67,6 @@ class Trial {
   Eigen::VectorXd best_;
 };
 
-double squares_of(const std::vector<double>& x, std::vector<double>&, void* trial) {
-  return (*static_cast<Trial*>(trial))(x);
-}
-
 }  // namespace
 
 Eigen::VectorXd global_search(FitFlights& flights, const Eigen::VectorXd& values) {
@@ -101,15 +98,9 @@ Eigen::VectorXd global_search(FitFlights& flights, const Eigen::VectorXd& values
   nlopt::opt search(nlopt::GN_CRS2_LM, static_cast<unsigned>(lower.size()));
   search.set_lower_bounds(lower);
   search.set_upper_bounds(upper);
-  search.set_min_objective(squares_of, &trial);
   search.set_maxeval(trials_per_dimension * static_cast<int>(lower.size()));
   search.set_ftol_rel(1e-6);
-  double least = 0.0;
-  try {
-    search.optimize(start, least);
-  } catch (const nlopt::roundoff_limited&) {
-    // What was found by then is what counts.
-  }
+  find_least_cost(search, std::ref(trial), start);
   return trial.best();
 }
 

@@ -152,9 +152,11 @@ std::vector<TrialFlight> try_models(const std::vector<std::filesystem::path>& fl
       const std::vector<double> theirs = coefficients_in(without_what_is_alike(*other, model), *other);
       all.insert(all.end(), theirs.begin(), theirs.end());
     }
-    const auto add = [&](const std::vector<std::filesystem::path>& paths, const FlightShare& of, bool held_out) {
-      for (TrialFlight& flight : of.of_each_flight<TrialFlight>(
-               [&](std::size_t number) { return tried_on(paths[number], whole, trial, options, held_out); })) {
+    const auto add = [&](const std::vector<std::filesystem::path>& paths, const FlightShare& of,
+                         bool held_out) {
+      for (TrialFlight& flight : of.of_each_flight<TrialFlight>([&](std::size_t number) {
+             return tried_on(paths[number], whole, trial, options, held_out);
+           })) {
         flight.first_reference = reference == references.front();
         flight.window = reference->window();
         tried.push_back(std::move(flight));

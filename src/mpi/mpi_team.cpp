@@ -39,10 +39,11 @@ std::vector<std::string> MpiTeam::exchange(const std::string& own) {
       end += counts.back();
     }
     std::string bytes(static_cast<std::size_t>(end), '\0');
-    MPI_Allgatherv(own.data() + std::min(first, own.size()), counts[rank_], MPI_BYTE, bytes.data(), counts.data(),
-                   places.data(), MPI_BYTE, MPI_COMM_WORLD);
+    MPI_Allgatherv(own.data() + std::min(first, own.size()), counts[rank_], MPI_BYTE, bytes.data(),
+                   counts.data(), places.data(), MPI_BYTE, MPI_COMM_WORLD);
     for (std::size_t member = 0; member < size_; ++member)
-      all[member].append(bytes, static_cast<std::size_t>(places[member]), static_cast<std::size_t>(counts[member]));
+      all[member].append(bytes, static_cast<std::size_t>(places[member]),
+                         static_cast<std::size_t>(counts[member]));
   }
   return all;
 }

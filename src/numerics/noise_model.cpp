@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <nlopt.hpp>
 #include <numeric>
 
 #include "numerics/decompositions.hpp"
 #include "numerics/in_parallel.hpp"
+#include "numerics/least_cost.hpp"
 #include "numerics/local_noise.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "numerics/whitening.hpp"
@@ -213,8 +213,6 @@ class RestrictedLikelihood {
   Eigen::MatrixXd white_;
 };
 
-using Cost = std::function<double(const std::vector<double>&)>;
-
 /// The sizes of the first `parts` slow parts, of the rms of the residuals, with the least cost.
 std::vector<double> least_of(const Cost& cost, std::size_t parts) {
   constexpr double most = 5.0;
@@ -224,19 +222,10 @@ std::vector<double> least_of(const Cost& cost, std::size_t parts) {
   nlopt::opt search(nlopt::LN_BOBYQA, static_cast<unsigned>(parts));
   search.set_lower_bounds(0.0);
   search.set_upper_bounds(most);
-  Cost own = cost;
-  search.set_min_objective([](const std::vector<double>& x, std::vector<double>&,
-                              void* data) { return (*static_cast<Cost*>(data))(x); },
-                           &own);
   search.set_initial_step(0.2);
   search.set_xtol_abs(0.03);
   search.set_maxeval(120);
-  double least = 0.0;
-  try {
-    search.optimize(sizes, least);
-  } catch (const nlopt::roundoff_limited&) {
-    // What was found by then is what counts.
-  }
+  find_least_cost(search, cost, sizes);
   return sizes;
 }
 

@@ -59,6 +59,7 @@ Allowed allowed_by(const Flight& flight, const ModelFile& model) {
   constexpr std::string_view filtered_and_late = "PS_A";  // of the avionics
   Allowed allowed;
   allowed.laser = flight.has(model.variables.at(Quantity::lams_airspeed));
+  if (!allowed.laser) return allowed;
   for (const PressurePair& pair : family_of(model, flight).measured) {
     if (pair.static_pressure != filtered_and_late && has_other_pair(flight, model, pair))
       allowed.pairs.emplace_back(pair.static_pressure, pair.dynamic_pressure);

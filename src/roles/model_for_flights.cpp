@@ -1,7 +1,7 @@
 #include <pcor/roles/model_for_flights.hpp>
 
-#include <cereal/types/map.hpp>
 #include <fmt/format.h>
+#include <cereal/types/map.hpp>
 
 #include <algorithm>
 #include <map>
@@ -45,7 +45,9 @@ ModelFile model_for_flights(const ModelFile& open, const std::vector<std::filesy
   });
   const auto completes = [](const Choice& choice) { return choice.completes; };
   const auto first = std::find_if(choices.begin(), choices.end(), completes);
-  const auto path_of = [&](auto choice) { return flights[static_cast<std::size_t>(choice - choices.begin())]; };
+  const auto path_of = [&](auto choice) {
+    return flights[static_cast<std::size_t>(choice - choices.begin())];
+  };
   for (auto other = first; other != choices.end(); ++other) {
     if (other->completes && (other->variables != first->variables || other->moist != first->moist)) {
       throw Error(fmt::format(

@@ -39,12 +39,15 @@ FlightShare FlightShare::those_from(std::size_t first, std::size_t count) const 
 
 FlightShare share_of_flights(Team& team, const std::vector<std::filesystem::path>& paths) {
   std::vector<std::uint64_t> sizes;
+  std::uint64_t names = paths.size();
   for (const std::filesystem::path& path : paths) {
+    names = digest_of(path.string(), names);
     std::error_code unknown;
     const std::uintmax_t size = std::filesystem::file_size(path, unknown);
     sizes.push_back(unknown ? 0 : size);
   }
-  if (team.size() > 1) sizes = unpacked<std::vector<std::uint64_t>>(team.gather(packed(sizes)).front());
+  if (team.size() > 1)
+    sizes = unpacked<std::vector<std::uint64_t>>(team.gather(packed(sizes), names).front());
   return {team, sizes};
 }
 

@@ -7,9 +7,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <typeinfo>
 #include <utility>
 #include <vector>
 
+#include "team/digest.hpp"
 #include "team/packed.hpp"
 
 namespace pcor::internal {
@@ -119,7 +121,8 @@ class FlightShare {
     for (std::size_t flight = 0; flight < parts.size(); ++flight) {
       if (owns(flight)) own.push_back(std::move(parts[flight]));
     }
-    const std::vector<std::string> all = team_->gather(packed(own), state);
+    const std::vector<std::string> all =
+        team_->gather(packed(own), digest_of(typeid(Part).name(), state + parts.size()));
     std::vector<std::vector<Part>> of_members;
     for (const std::string& bytes : all) of_members.push_back(unpacked<std::vector<Part>>(bytes));
     std::vector<std::size_t> next(of_members.size(), 0);
@@ -134,8 +137,8 @@ class FlightShare {
   std::size_t own_ = 0;
 };
 
-/// The flights of these files, by their sizes as the first member sees them. A file that cannot be looked at is
-/// for its owner to tell of.
+/// The flights of these files, by their sizes as the first member sees them. A file that cannot be looked at
+/// is for its owner to tell of.
 FlightShare share_of_flights(Team& team, const std::vector<std::filesystem::path>& paths);
 
 }  // namespace pcor::internal

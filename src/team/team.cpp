@@ -10,11 +10,10 @@ using namespace internal;
 
 namespace internal {
 
-enum class Saying : std::uint8_t { part, failed, left };
+enum class Kind : std::uint8_t { part, failed, left };
 
 struct Message {
-  Saying saying = Saying::part;
-  std::uint64_t number = 0;  ///< of the exchanges of its member
+  Kind kind = Kind::part;
   std::uint64_t state = 0;
   std::string part{};
   // Of an error:
@@ -25,7 +24,7 @@ struct Message {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(saying, number, state, part, has_error, place, code, text);
+    archive(kind, state, part, has_error, place, code, text);
   }
 };
 
@@ -42,8 +41,8 @@ class Alone final : public Team {
   std::vector<std::string> exchange(const std::string& own) override { return {own}; }
 };
 
-Message saying(const Error& error, std::size_t place) {
-  Message message{Saying::failed};
+Message message_of(const Error& error, std::size_t place) {
+  Message message{Kind::failed};
   message.has_error = true;
   message.place = place;
   message.code = error.code();
@@ -63,7 +62,7 @@ const Message* first_error(const std::vector<Message>& all) {
 bool agree(const std::vector<Message>& all) {
   const Message& first = all.front();
   return std::all_of(all.begin(), all.end(), [&first](const Message& each) {
-    return each.saying == first.saying && each.number == first.number && each.state == first.state;
+    return each.kind == first.kind && each.state == first.state;
   });
 }
 
@@ -71,11 +70,10 @@ bool agree(const std::vector<Message>& all) {
 
 std::vector<Message> Team::talk(Message own) {
   if (has_parted_) throw parted_with_ ? *parted_with_ : Error("a member of the team has left it before");
-  own.number = ++talks_;
   std::vector<Message> all;
   for (const std::string& bytes : exchange(packed(own))) all.push_back(unpacked<Message>(bytes));
-  has_parted_ = std::any_of(all.begin(), all.end(),
-                            [](const Message& each) { return each.saying == Saying::left; });
+  has_parted_ =
+      std::any_of(all.begin(), all.end(), [](const Message& each) { return each.kind == Kind::left; });
   if (const Message* const error = first_error(all)) {
     const Error agreed(error->code, error->text);
     if (has_parted_) parted_with_ = agreed;
@@ -84,8 +82,8 @@ std::vector<Message> Team::talk(Message own) {
   if (!agree(all)) {
     has_parted_ = true;
     parted_with_ = Error(
-        "the processes of this run came to different numbers, so their processors are not of one kind, or "
-        "their flights differ; run them on nodes of one kind that see the same files");
+        "the processes of this run came to different numbers: their commands or their files differ, or their "
+        "processors are not of one kind; run one command on nodes of one kind that see the same files");
     throw *parted_with_;
   }
   return all;
@@ -102,15 +100,15 @@ std::vector<std::string> Team::gather(const std::string& own, std::uint64_t stat
 }
 
 void Team::fail(const Error& error, std::size_t place) {
-  if (size() > 1) talk(saying(error, place));
+  if (size() > 1) talk(message_of(error, place));
   throw error;
 }
 
 std::optional<Error> Team::leave(const std::optional<Error>& error) {
   if (size() == 1) return error;
   if (has_parted_) return parted_with_ ? parted_with_ : error;
-  Message last = error ? saying(*error, 0) : Message{};
-  last.saying = Saying::left;
+  Message last = error ? message_of(*error, 0) : Message{};
+  last.kind = Kind::left;
   try {
     talk(std::move(last));
   } catch (const Error& of_all) {

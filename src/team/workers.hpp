@@ -17,7 +17,7 @@ struct Workers {
   ///        each member
   Workers(Team& of, std::size_t wanted)
       : team(of),
-        threads(wanted > 0        ? wanted
+        threads(wanted > 0      ? wanted
                 : of.size() > 1 ? 1
                                 : std::max<std::size_t>(1, std::thread::hardware_concurrency())) {}
 };

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <nlopt.hpp>
 
 #include "numerics/decompositions.hpp"
 #include "numerics/in_parallel.hpp"
-#include "team/flight_share.hpp"
+#include "numerics/least_cost.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
+#include "team/flight_share.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -248,10 +248,6 @@ class AroundLikeliest {
   Logarithms upper_;
 };
 
-double objective(const std::vector<double>& x, std::vector<double>&, void* function) {
-  return (*static_cast<std::function<double(const std::vector<double>&)>*>(function))(x);
-}
-
 /// Which unknowns there are: the coefficients of the first `terms` powers, and errors that have a size.
 std::vector<Eigen::Index> free_unknowns(const std::array<double, pressure_errors>& sizes,
                                         Eigen::Index terms) {
@@ -405,7 +401,7 @@ MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::
                                const HeldCoefficient* held) {
   MostLikely best;
   best.deviance = std::numeric_limits<double>::infinity();
-  std::function<double(const std::vector<double>&)> deviance = [&](const std::vector<double>& x) {
+  const Cost deviance = [&](const std::vector<double>& x) {
     const HeightNoise noise = as_noise(x);
     const HeightEquations equations = height_equations(records, noise, prior, workers);
     double value = 0.0;
@@ -441,18 +437,12 @@ MostLikely maximise_likelihood(const std::vector<HeightRecord>& records, Eigen::
     nlopt::opt search(nlopt::LN_BOBYQA, static_cast<unsigned>(x.size()));
     search.set_lower_bounds(lower);
     search.set_upper_bounds(upper);
-    search.set_min_objective(objective, &deviance);
     search.set_initial_step(held == nullptr ? 1.0 : 0.3);
     // Where the slope of isobars and the walk can hardly be told apart the valley is flat: a small gain of
     // one trial is no sign of its floor, but trials that are close together are.
     search.set_xtol_abs(1e-3);
     search.set_maxeval(1000);
-    double least = 0.0;
-    try {
-      search.optimize(x, least);
-    } catch (const nlopt::roundoff_limited&) {
-      // What was found by then is what counts.
-    }
+    find_least_cost(search, deviance, x);
     x = as_logarithms(best.noise);
     if (held != nullptr) break;
   }

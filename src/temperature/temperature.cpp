@@ -25,12 +25,12 @@
 #include "numerics/triangular_factor.hpp"
 #include "residuals/flight_air.hpp"
 #include "roles/recorded_model.hpp"
+#include "team/flight_share.hpp"
 #include "temperature/archived_steps.hpp"
 #include "temperature/degrees.hpp"
 #include "temperature/height_least_squares.hpp"
 #include "temperature/height_likelihood.hpp"
 #include "temperature/isobar_slope.hpp"
-#include "team/flight_share.hpp"
 #include "temperature/parts.hpp"
 
 namespace pcor {

@@ -71,9 +71,14 @@ class IntervalOffsets : public testing::TestWithParam<Loss> {
   ModelFile model_ = made::model({"static-constant", "static-alpha", "static-qp"});
   References references_ = made::pressure_reference();
   FlightShare share_{10};
-  FitTask task_{
-      model_, *references_.front(), options_, share_, fit_parameters(model_, *references_.front(), options_), {}, {},
-      [] {}};
+  FitTask task_{model_,
+                *references_.front(),
+                options_,
+                share_,
+                fit_parameters(model_, *references_.front(), options_),
+                {},
+                {},
+                [] {}};
   std::unique_ptr<FitFlights> whole_;
   std::unique_ptr<FitFlights> stage_;
 };
@@ -129,8 +134,7 @@ TEST_P(IntervalOffsetsOfLeastSquares, AreThoseOfOneSystemOfAllUnknowns) {
   const Eigen::MatrixXd factor = reduction.factor.leftCols(2);
   EXPECT_LT((factor.transpose() * factor - information).norm(), 1e-9 * information.norm());
   const Eigen::VectorXd lengths = reduction.lengths();
-  EXPECT_LT((lengths - all.leftCols(2).colwise().norm().transpose()).norm(),
-            1e-10 * lengths.norm());
+  EXPECT_LT((lengths - all.leftCols(2).colwise().norm().transpose()).norm(), 1e-10 * lengths.norm());
 }
 
 INSTANTIATE_TEST_SUITE_P(Stage, IntervalOffsetsOfLeastSquares, testing::Values(Loss::none));

@@ -3,7 +3,10 @@
 #include <pcor/laws/model_file.hpp>
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <string>
@@ -42,12 +45,13 @@ std::string text_of(const RefitResult& result) {
   for (const std::vector<double>& row : result.covariance) {
     for (const double value : row) add(value);
   }
-  for (const double value : {result.rms, result.bulk_rms, result.noise_rms, result.drift_rms, result.r_squared,
-                             result.condition_number, result.samples_per_independent})
+  for (const double value : {result.rms, result.bulk_rms, result.noise_rms, result.drift_rms,
+                             result.r_squared, result.condition_number, result.samples_per_independent})
     add(value);
   for (const FlightFit& flight : result.flights) {
     text += flight.flight + " ";
-    for (const double value : {flight.before.rms, flight.after.rms, flight.after.bias, flight.gain}) add(value);
+    for (const double value : {flight.before.rms, flight.after.rms, flight.after.bias, flight.gain})
+      add(value);
   }
   for (const Omission& each : result.omissions) add(each.rms);
   for (const std::string& each : result.warnings) text += each;
@@ -55,12 +59,14 @@ std::string text_of(const RefitResult& result) {
   return text + fmt::format("{} {}", result.samples, result.outliers);
 }
 
-RefitResult fit_of(const std::vector<std::shared_ptr<const FlightSamples>>& of, Team& team, std::size_t threads = 1) {
+RefitResult fit_of(const std::vector<std::shared_ptr<const FlightSamples>>& of, Team& team,
+                   std::size_t threads = 1) {
   RefitOptions options;
   options.team = &team;
   options.threads = threads;
   options.training_share = 0.9;
-  return refit(of, made::model({"static-constant", "static-alpha", "static-qp"}), made::pressure_reference(), options);
+  return refit(of, made::model({"static-constant", "static-alpha", "static-qp"}), made::pressure_reference(),
+               options);
 }
 
 TEST(TeamFit, IsThatOfOneProcessForAnyNumberOfMembersAndThreads) {
@@ -74,13 +80,36 @@ TEST(TeamFit, IsThatOfOneProcessForAnyNumberOfMembersAndThreads) {
   }
 }
 
+TEST(TeamFit, IsSoWithMoreFlightsThanTheNoiseIsFoundFromOfWhichSomeTellNothing) {
+  std::vector<std::shared_ptr<const FlightSamples>> all = flights(19);
+  for (const std::size_t blind : {0U, 2U, 4U, 18U}) {
+    auto without = std::make_shared<FlightSamples>(*all[blind]);
+    for (auto& [quantity, values] : without->reference.columns)
+      std::fill(values.begin() + 5, values.end(), NAN);
+    all[blind] = without;
+  }
+  const RefitResult alone_result = fit_of(all, alone());
+  std::vector<std::string> results(4);
+  test::run_as_team(4, [&](Team& team) { results[team.rank()] = text_of(fit_of(all, team)); });
+  EXPECT_THAT(results, Each(text_of(alone_result)));
+  // The order of the flights does not matter, but for the rounding of sums.
+  std::reverse(all.begin(), all.end());
+  const RefitResult reversed = fit_of(all, alone());
+  for (std::size_t p = 0; p < reversed.parameters.size(); ++p) {
+    const FittedParameter& one = alone_result.parameters[p];
+    EXPECT_NEAR(reversed.parameters[p].value, one.value, 1e-6 * one.standard_error);
+    EXPECT_NEAR(reversed.parameters[p].standard_error / one.standard_error, 1.0, 1e-6);
+  }
+}
+
 /// The bytes of each exchange of all members together.
 std::vector<std::size_t> bytes_of_exchanges(std::size_t count) {
   const auto all = flights(count);
   const auto sent = test::run_as_team(3, [&](Team& team) { fit_of(all, team); });
   std::vector<std::size_t> bytes(sent.front().size(), 0);
   for (const std::vector<std::size_t>& member : sent) {
-    EXPECT_EQ(member.size(), bytes.size());
+    EXPECT_EQ(member.size(), sent.front().size());
+    if (member.size() != bytes.size()) break;
     for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] += member[i];
   }
   return bytes;
@@ -109,7 +138,8 @@ TEST(TeamFit, FailsOnAllMembersAlike) {
     RefitOptions options;
     options.team = &team;
     try {
-      refit(std::vector<std::filesystem::path>{"nowhere/a.nc", "nowhere/b.nc"}, made::model({"static-constant"}), made::pressure_reference(), options);
+      refit(std::vector<std::filesystem::path>{"nowhere/a.nc", "nowhere/b.nc"},
+            made::model({"static-constant"}), made::pressure_reference(), options);
     } catch (const Error& error) {
       messages[team.rank()] = error.what();
     }

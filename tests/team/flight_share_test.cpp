@@ -4,7 +4,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <fstream>
 #include <limits>
 #include <mutex>
 #include <numeric>
@@ -12,14 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "support/temporary_directory.hpp"
 #include "support/thread_team.hpp"
 
 namespace pcor::internal {
 namespace {
 
-using ::testing::Each;
 using test::run_as_team;
+using ::testing::Each;
 
 /// What the flights of each member weigh together.
 std::vector<std::uint64_t> loads(std::size_t members, const std::vector<std::uint64_t>& sizes) {
@@ -51,28 +49,22 @@ TEST(FlightShare, GivesEveryFlightToOneMemberAndAboutAsMuchToEach) {
   for (const std::size_t members : {1, 2, 3, 7}) {
     const std::vector<std::uint64_t> load = loads(members, sizes);
     // The longest first is at most a third beyond the best that can be (Graham 1969), far less for so many.
-    EXPECT_LT(*std::max_element(load.begin(), load.end()), 1.02 * static_cast<double>(all) / static_cast<double>(members));
+    EXPECT_LT(*std::max_element(load.begin(), load.end()),
+              1.02 * static_cast<double>(all) / static_cast<double>(members));
   }
   EXPECT_EQ(loads(5, {3, 4}).size(), 5U);  // more members than flights
 }
 
-TEST(FlightShare, TakesTheSizesOfFilesAsTheFirstMemberSeesThem) {
-  const test::TemporaryDirectory folder;
-  const auto file = [&](const std::string& name, std::size_t size) {
-    std::ofstream(folder.path() / name) << std::string(size, 'x');
-    return folder.path() / name;
-  };
-  const auto large = file("large", 9000);
-  const auto small = file("small", 1000);
-  std::vector<std::size_t> owned(2, 0);
+TEST(FlightShare, FailsWhereTheMembersHaveOtherFlights) {
+  std::vector<std::string> messages(2);
   test::run_as_team(2, [&](Team& team) {
-    const bool first = team.rank() == 0;
-    const FlightShare share =
-        share_of_flights(team, first ? std::vector{large, small, small} : std::vector{small, large, folder.path() / "none"});
-    owned[team.rank()] = share.own();
-    EXPECT_EQ(share.owns(0), first);
+    try {
+      share_of_flights(team, {"a.nc", team.rank() == 0 ? "b.nc" : "c.nc"});
+    } catch (const Error& error) {
+      messages[team.rank()] = error.what();
+    }
   });
-  EXPECT_EQ(owned, (std::vector<std::size_t>{1, 2}));
+  EXPECT_THAT(messages, Each(::testing::HasSubstr("different numbers")));
 }
 
 /// A part of everything that is sent.

@@ -20,9 +20,8 @@ double of_team(std::size_t members, const std::vector<double>& values) {
   std::vector<std::vector<double>> dealt(members);
   for (const double value : values) dealt[chance() % members].push_back(value);
   std::vector<double> found(members);
-  const auto sent = test::run_as_team(members, [&](Team& team) {
-    found[team.rank()] = median_of_absolute_values(team, dealt[team.rank()]);
-  });
+  const auto sent = test::run_as_team(
+      members, [&](Team& team) { found[team.rank()] = median_of_absolute_values(team, dealt[team.rank()]); });
   for (const double each : found) EXPECT_TRUE(each == found.front() || std::isnan(found.front()));
   for (const auto& member : sent) EXPECT_LE(member.size(), 8U);
   return found.front();
@@ -31,11 +30,13 @@ double of_team(std::size_t members, const std::vector<double>& values) {
 TEST(MedianOfAll, IsThatOfOneList) {
   std::mt19937 chance(3);
   std::normal_distribution<double> normal;
-  std::vector<double> values{0.0, -0.0, nan, -std::numeric_limits<double>::infinity(), 5e-324, -5e-324, 1e300};
+  std::vector<double> values{0.0,    -0.0,    nan,  -std::numeric_limits<double>::infinity(),
+                             5e-324, -5e-324, 1e300};
   for (int count = 0; count < 300; ++count) {
     const double alone = of_team(1, values);
     for (const std::size_t members : {2, 5}) EXPECT_EQ(of_team(members, values), alone) << values.size();
-    values.push_back(count % 5 == 0 ? values[chance() % values.size()] : std::ldexp(normal(chance), count % 40 - 20));
+    values.push_back(count % 5 == 0 ? values[chance() % values.size()]
+                                    : std::ldexp(normal(chance), count % 40 - 20));
   }
 }
 

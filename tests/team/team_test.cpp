@@ -13,10 +13,10 @@
 namespace pcor {
 namespace {
 
+using test::run_as_team;
 using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using test::run_as_team;
 
 /// What each member of a team comes to, as text.
 template <class Work>
@@ -109,11 +109,12 @@ TEST(Team, FailsWhereMembersComeToDifferentNumbersOrPlaces) {
 }
 
 TEST(Team, OfOneIsSilent) {
-  EXPECT_TRUE(run_as_team(1, [](Team& team) {
-                team.gather("part");
-                EXPECT_THROW(team.fail(Error("wrong"), 0), Error);
-                EXPECT_STREQ(team.leave(Error("wrong"))->what(), "wrong");
-              })
+  EXPECT_TRUE(run_as_team(1,
+                          [](Team& team) {
+                            team.gather("part");
+                            EXPECT_THROW(team.fail(Error("wrong"), 0), Error);
+                            EXPECT_STREQ(team.leave(Error("wrong"))->what(), "wrong");
+                          })
                   .front()
                   .empty());
 }

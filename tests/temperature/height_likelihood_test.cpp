@@ -171,7 +171,8 @@ TEST(HeightLikelihood, FindsTheNoiseThatThereIs) {
     plan.offset = 0.4;
     records.push_back(record_of(plan));
   }
-  const pcor::internal::MostLikely found = maximise_likelihood(records, 2, HeightPrior{}, HeightNoise{}, one_thread);
+  const pcor::internal::MostLikely found =
+      maximise_likelihood(records, 2, HeightPrior{}, HeightNoise{}, one_thread);
   // 8 hours hold 360 memories of the noise: its variance is known to 10 %, its memory to about as much.
   EXPECT_NEAR(found.noise.wander, 0.5, 0.05);
   EXPECT_NEAR(found.noise.wander_time, 80.0, 16.0);

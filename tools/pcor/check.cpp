@@ -198,8 +198,8 @@ void print(const Checks& checks, const Options& options, bool has_laser) {
 /// A row for each check of each flight, which is checked alone.
 ///
 /// @param together the checks of all flights, which are those of the flight where there is one
-FlightTable flight_table(const Options& options, const std::optional<ModelFile>& model, const CheckOptions& how,
-                         const Checks& together) {
+FlightTable flight_table(const Options& options, const std::optional<ModelFile>& model,
+                         const CheckOptions& how, const Checks& together) {
   FlightTable table({"flight", "check", "verdict", "value", "standard_error", "unit", "what"});
   const std::vector<std::filesystem::path> flights = flight_paths(options.flights);
   std::vector<std::vector<CheckInShort>> alone{in_short(together)};

@@ -58,8 +58,8 @@ CLI::Validator is_file_name();
 void deliver(const ModelFile& model, const std::string& output,
              const std::vector<std::filesystem::path>& inputs);
 
-/// The result as JSON, which the first member of a team writes. Made before the work, so that a place that cannot be written stops it in time; the
-/// file appears whole or not at all.
+/// The result as JSON, which the first member of a team writes. Made before the work, so that a place that
+/// cannot be written stops it in time; the file appears whole or not at all.
 class JsonResult {
  public:
   /// @throws Error if the place that the options name cannot be written.
@@ -81,8 +81,8 @@ class JsonResult {
 void refuse_overwriting(const std::vector<std::filesystem::path>& outputs,
                         const std::vector<std::filesystem::path>& inputs);
 
-/// Makes sure, before the work, that the first member of a team can write a file there. Empty names and `-` are
-/// no files.
+/// Makes sure, before the work, that the first member of a team can write a file there. Empty names and `-`
+/// are no files.
 /// @throws Error if it cannot.
 void require_writable(const std::filesystem::path& output);
 

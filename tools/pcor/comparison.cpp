@@ -45,7 +45,8 @@ void leave_out_unreadable(std::vector<std::string>& flights) {
   const ReadableFlights readable = readable_flights({flights.begin(), flights.end()}, team());
   for (const std::string& trouble : readable.troubles)
     tell_choices({fmt::format("left out: {}", trouble)}, false);
-  if (readable.flights.empty()) throw Error(fmt::format("none of the {} flights can be read", flights.size()));
+  if (readable.flights.empty())
+    throw Error(fmt::format("none of the {} flights can be read", flights.size()));
   flights.clear();
   for (const std::filesystem::path& flight : readable.flights) flights.push_back(flight.string());
 }

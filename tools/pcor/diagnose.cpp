@@ -16,8 +16,8 @@
 #include "model_of_flight.hpp"
 #include "progress.hpp"
 #include "report_origin.hpp"
-#include "team.hpp"
 #include "shaped_effect.hpp"
+#include "team.hpp"
 
 namespace pcor::tool {
 namespace {

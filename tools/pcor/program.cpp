@@ -64,13 +64,18 @@ void fill_closed_streams() {
 /// @throws CLI::ArgumentMismatch if several processes would all do the whole work of a command
 void require_command_of_a_team(const CLI::App& program) {
   const std::string name = program.get_subcommands().front()->get_name();
-  if (team().size() == 1 || std::find(commands_of_a_team.begin(), commands_of_a_team.end(), name) !=
-                                commands_of_a_team.end())
+  if (team().size() == 1 ||
+      std::find(commands_of_a_team.begin(), commands_of_a_team.end(), name) != commands_of_a_team.end())
     return;
   throw CLI::ArgumentMismatch(fmt::format(
-      "{} is work of one process, and several processes share that of {} alone: run it with one, or flight by "
-      "flight as docs/campaigns.md says",
-      name, fmt::join(commands_of_a_team, ", ")));
+      "several processes work together on {} only; run pcor {} as one process, or flight by flight as "
+      "docs/campaigns.md says",
+      fmt::join(commands_of_a_team, ", "), name));
+}
+
+/// @throws Error if the processes of the team were given different commands
+void require_one_command(const std::vector<std::string>& words) {
+  team().gather("", std::hash<std::string>()(fmt::format("{}", fmt::join(words, "\n"))));
 }
 
 /// Reads the command line and does what it says. @return the exit status
@@ -92,6 +97,7 @@ int run(int argc, char** argv) {
   take_models_by_name(program);
 
   const std::vector<std::string> words(argv + 1, argv + argc);
+  require_one_command(words);
   try {
     program.parse(argc, argv);
     const std::string misplaced = flights_behind_holdout(program, words);
@@ -121,6 +127,9 @@ bool is_final(const Error& error) {
 
 /// Ends the work that failed here, or with another member of the team.
 Ending failed(const Error& error, bool at_once) {
+  // What was said goes out before others know that this is the end.
+  finish_text();
+  std::fflush(stdout);
   const Error of_all = team().leave(error).value_or(error);
   tell(fmt::format("pcor: {}", of_all.what()));
   return {work_not_done, at_once || is_final(of_all)};
@@ -149,15 +158,16 @@ Ending run_program(int argc, char** argv, Team& team) {
                   false);
   } catch (const std::system_error& error) {
     // fmt::print throws it where the text does not go out.
-    return failed(Error(fmt::format("standard output: {}; check the space where it goes", error.code().message())),
-                  false);
+    return failed(
+        Error(fmt::format("standard output: {}; check the space where it goes", error.code().message())),
+        false);
   } catch (const std::bad_alloc&) {
     return failed(
         Error("the memory is exhausted; give fewer or shorter flights at a time, or a machine with more"),
         true);
   } catch (const std::exception& error) {
-    return failed(
-        Error(fmt::format("a fault of the program itself, please report it: {}", error.what())), false);
+    return failed(Error(fmt::format("a fault of the program itself, please report it: {}", error.what())),
+                  false);
   }
 }
 

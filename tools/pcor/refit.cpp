@@ -248,8 +248,8 @@ void print_next_step(const Options& options) {
 }
 
 /// The flights with the model before and after the fit, for the report.
-Comparison before_against_after(const RefitResult& result, const ModelFile& model, const References& references,
-                                const Options& options) {
+Comparison before_against_after(const RefitResult& result, const ModelFile& model,
+                                const References& references, const Options& options) {
   CompareOptions compare_options;
   compare_options.team = &team();
   compare_options.mask = mask_options(options.comparison);

@@ -19,6 +19,8 @@ namespace {
 constexpr std::size_t least_width = 20;
 constexpr auto none = std::string_view::npos;
 
+bool is_plain = false;
+
 std::string& program_name() {
   static std::string name = "pcor";
   return name;
@@ -26,7 +28,7 @@ std::string& program_name() {
 
 /// The width of the terminal that standard output is, which COLUMNS may state; 0 where it is none.
 std::size_t terminal_width() {
-  if (isatty(fileno(stdout)) != 1) return 0;
+  if (is_plain || isatty(fileno(stdout)) != 1) return 0;
   winsize size{};
   long width = ioctl(fileno(stdout), TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
   if (const char* const stated = std::getenv("COLUMNS")) width = std::atol(stated);
@@ -82,6 +84,8 @@ std::string_view take_line(std::string_view& text, std::size_t width, bool is_ro
 const std::string& program() { return program_name(); }
 
 void set_program(const std::string& name_as_called) { program_name() = quoted(name_as_called); }
+
+void say_plainly() { is_plain = true; }
 
 std::string quoted(const std::string& word) {
   const bool plain =

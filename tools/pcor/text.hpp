@@ -23,6 +23,9 @@ std::string quoted(const std::string& word);
 /// they stay as they are.
 void say_text(std::string_view text);
 
+/// From now on standard output counts as no terminal. MPI may pass what its processes print through one.
+void say_plainly();
+
 /// As `say_text`, formatted as by fmt::print.
 template <class... Arguments>
 void say(fmt::format_string<Arguments...> format, Arguments&&... arguments) {

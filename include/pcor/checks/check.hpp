@@ -63,7 +63,8 @@ struct CheckOptions {
   /// second pair of pressures is looked for by its usual names, and is as measured.
   std::optional<ModelFile> second{};
   Team* team = &alone();  ///< which shares the flights; all of its members get the result
-  std::function<void(std::size_t done, std::size_t total)> progress{};  ///< told after every flight of this member
+  std::function<void(std::size_t done, std::size_t total)>
+      progress{};  ///< told after every flight of this member
 };
 
 /// All checks over some flights.

@@ -54,8 +54,8 @@ struct RefitOptions {
   /// Flights reduced at a time; 0: as many as processors, and one in a team of several.
   std::size_t threads = 0;
   Team* team = &alone();  ///< which shares the flights; all of its members get the result
-  /// Bytes of flights that a member of the team may keep between passes; what is beyond is read again in every pass, so memory
-  /// does not grow with the number of flights.
+  /// Bytes of flights that a member of the team may keep between passes; what is beyond is read again in
+  /// every pass, so memory does not grow with the number of flights.
   std::size_t memory = std::size_t{512} << 20U;
   std::function<void(std::size_t pass, std::size_t passes)> progress{};
 };
@@ -155,8 +155,8 @@ RefitResult refit(const std::vector<std::filesystem::path>& flights, const Model
 RefitResult refit(const std::vector<std::shared_ptr<const FlightSamples>>& flights, const ModelFile& model,
                   const References& references, const RefitOptions& options = {});
 
-/// The coefficients as each flight alone finds them, without held-out flights; none of a flight that cannot tell
-/// them. The team of the options shares the flights.
+/// The coefficients as each flight alone finds them, without held-out flights; none of a flight that cannot
+/// tell them. The team of the options shares the flights.
 /// @throws Error if a flight cannot be read
 std::vector<std::vector<FittedParameter>> refit_each_alone(const std::vector<std::filesystem::path>& flights,
                                                            const ModelFile& model,

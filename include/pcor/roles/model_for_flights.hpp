@@ -10,8 +10,8 @@
 namespace pcor {
 
 /// A model that leaves variables open, completed (`with_roles`) by the first flight that can be read and
-/// completes it. All others have to choose the same variables: a result must not depend on which flights stand
-/// beside.
+/// completes it. All others have to choose the same variables: a result must not depend on which flights
+/// stand beside.
 /// @param flights at least one
 /// @param notes get what was chosen, a sentence each
 /// @throws Error that of the first flight where none completes the model, or Error if two choose differently

@@ -18,8 +18,8 @@ struct Message;
 /// each looks at some of the flights, and what they made of them is gathered on all: so every member comes to
 /// the same result, which is that of one member alone, bit by bit, on processors of one kind.
 ///
-/// A class derived from it says how bytes are exchanged; `pcor_mpi` does it by MPI. Members of a team call the
-/// same functions of it in the same order, each from one thread.
+/// A class derived from it says how bytes are exchanged; `pcor_mpi` does it by MPI. Members of a team call
+/// the same functions of it in the same order, each from one thread.
 class Team {
  public:
   Team() = default;
@@ -31,9 +31,11 @@ class Team {
   virtual std::size_t size() const = 0;  ///< members, at least 1
 
   /// What every member has, in the order of ranks: one exchange.
-  /// @param state in which the members have to agree, such as a digest of the coefficients
+  /// @param state in which the members have to agree, such as a digest of the coefficients and of the place
+  /// in
+  ///        the work
   /// @throws Error the error that members failed with here instead: of the lowest place, then of the lowest
-  ///         rank. Error if the members are not at the same place of the work, or in another state.
+  ///         rank. Error if the members are in different states.
   std::vector<std::string> gather(const std::string& own, std::uint64_t state = 0);
 
   /// Fails where the others gather, and throws there what they throw; after that the members may go on.
@@ -51,7 +53,6 @@ class Team {
 
   std::vector<internal::Message> talk(internal::Message own);
 
-  std::uint64_t talks_ = 0;
   bool has_parted_ = false;
   std::optional<Error> parted_with_{};
 };

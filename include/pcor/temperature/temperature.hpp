@@ -51,7 +51,8 @@ struct TemperatureOptions {
   bool archived = false;
   std::size_t threads = 0;  ///< 0: as many as processors, and one in a team of several
   Team* team = &alone();    ///< which shares the flights; all of its members get the result
-  std::function<void(std::size_t done, std::size_t total)> progress{};  ///< told after every flight of this member
+  std::function<void(std::size_t done, std::size_t total)>
+      progress{};  ///< told after every flight of this member
 };
 
 /// A correction of the temperature by one method: T_corrected = T + a0 + a1 t + a2 t^2, t in degC.
