@@ -39,7 +39,9 @@ TEST(NoiseFlights, AreTheSameInAnyOrder) {
     std::vector<double> now;
     for (const std::size_t f : flights_for_noise(all)) now.push_back(all[f].begin);
     std::sort(now.begin(), now.end());
-    if (order > 0) EXPECT_EQ(now, begins);
+    if (order > 0) {
+      EXPECT_EQ(now, begins);
+    }
     begins = now;
     std::shuffle(all.begin(), all.end(), chance);
   }
