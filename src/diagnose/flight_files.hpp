@@ -24,7 +24,8 @@ struct FileOutline {
   }
 };
 
-/// The files of some flights. Each member of a team has its own open.
+/// The files of some flights. Each member of a team has the first sixteen of its own open, and opens the
+/// others where they are asked for: systems limit how many files are open.
 class FlightFiles {
  public:
   FlightFiles() = default;  // of no flight
@@ -34,13 +35,17 @@ class FlightFiles {
 
   const FlightShare& share() const { return share_; }
   std::size_t count() const { return outlines_.size(); }
-  /// One of the own files.
-  const Flight& operator[](std::size_t flight) const { return *files_[flight]; }
+  /// One of the own files, until another is asked for. @throws Error if it has to be opened and cannot be
+  const Flight& operator[](std::size_t flight) const;
   const std::vector<FileOutline>& outlines() const { return outlines_; }
 
  private:
   FlightShare share_ = FlightShare(0);
-  std::vector<std::optional<Flight>> files_{};
+  std::vector<std::filesystem::path> paths_{};
+  TimeStamp time_stamp_ = TimeStamp::begin;
+  std::vector<std::optional<Flight>> kept_{};
+  mutable std::optional<Flight> last_{};  // of those that are not kept
+  mutable std::size_t number_of_last_ = 0;
   std::vector<FileOutline> outlines_{};
 };
 

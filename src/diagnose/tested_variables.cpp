@@ -218,9 +218,10 @@ std::vector<TestedVariable> recorded_variables(const FlightFiles& files,
           })
           .front();
   const auto has = files.share().of_each_flight<std::vector<bool>>([&](std::size_t number) {
+    const Flight& file = files[number];
     std::vector<bool> all;
     for (const Described& each : of_first)
-      all.push_back(files[number].has(each.name) && files[number].variable(each.name).is_series);
+      all.push_back(file.has(each.name) && file.variable(each.name).is_series);
     return all;
   });
   std::vector<Described> everywhere;
@@ -230,9 +231,10 @@ std::vector<TestedVariable> recorded_variables(const FlightFiles& files,
   }
   std::vector<std::vector<Values>> values(everywhere.size(), std::vector<Values>(files.count()));
   const auto seen = files.share().of_each_flight<std::vector<Seen>>([&](std::size_t number) {
+    const Flight& file = files[number];
     std::vector<Seen> of_file(everywhere.size());
     for (std::size_t k = 0; k < everywhere.size(); ++k)
-      values[k][number] = read_variable(files[number], everywhere[k], of_file[k]);
+      values[k][number] = read_variable(file, everywhere[k], of_file[k]);
     return of_file;
   });
   std::vector<TestedVariable> result;

@@ -28,7 +28,7 @@ FIREFOX = shutil.which("firefox-esr") or shutil.which("firefox")
 # What takes long is for those with most kinds of pictures, and for all of them in the long tests.
 EVERY_REPORT = os.environ.get("PCOR_EVERY_REPORT")
 AXE_VERSION = "4.14.1"
-MADE = tempfile.TemporaryDirectory()
+MADE = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # a browser that ends still writes
 FOLDER = Path(MADE.name)
 FITTED = ("one.nc", "two.nc")
 COMMANDS = {

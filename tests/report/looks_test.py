@@ -58,7 +58,7 @@ def blocks(picture):
 class Looks(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.directory = tempfile.TemporaryDirectory()
+        cls.directory = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # a browser that ends still writes
         folder = Path(cls.directory.name)
         fonts = folder / "fonts"
         fonts.mkdir()

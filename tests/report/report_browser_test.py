@@ -46,7 +46,7 @@ def coloured(rows):
 class ReportInBrowser(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.directory = tempfile.TemporaryDirectory()
+        cls.directory = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # a browser that ends still writes
         cls.folder = Path(cls.directory.name)
         cls.report = cls.folder / "report.html"
         run(SAMPLE_REPORT, cls.report)
@@ -172,7 +172,7 @@ class ReportUnderTheHand(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        cls.directory = tempfile.TemporaryDirectory()
+        cls.directory = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # a browser that ends still writes
         cls.report = Path(cls.directory.name) / "report.html"
         run(SAMPLE_REPORT, cls.report, "6000", "2")
         cls.browser = Browser(CHROMIUM, Path(cls.directory.name) / "profile")
