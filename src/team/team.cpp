@@ -68,7 +68,7 @@ bool agree(const std::vector<Message>& all) {
 
 }  // namespace
 
-std::vector<Message> Team::talk(Message own) {
+std::vector<Message> Team::talk(const Message& own) {
   if (has_parted_) throw parted_with_ ? *parted_with_ : Error("a member of the team has left it before");
   std::vector<Message> all;
   for (const std::string& bytes : exchange(packed(own))) all.push_back(unpacked<Message>(bytes));
@@ -95,7 +95,7 @@ std::vector<std::string> Team::gather(const std::string& own, std::uint64_t stat
   message.state = state;
   message.part = own;
   std::vector<std::string> parts;
-  for (Message& each : talk(std::move(message))) parts.push_back(std::move(each.part));
+  for (Message& each : talk(message)) parts.push_back(std::move(each.part));
   return parts;
 }
 
@@ -110,7 +110,7 @@ std::optional<Error> Team::leave(const std::optional<Error>& error) {
   Message last = error ? message_of(*error, 0) : Message{};
   last.kind = Kind::left;
   try {
-    talk(std::move(last));
+    talk(last);
   } catch (const Error& of_all) {
     return of_all;
   }

@@ -51,7 +51,7 @@ class Team {
   /// Gives each member the bytes of all, in the order of ranks.
   virtual std::vector<std::string> exchange(const std::string& own) = 0;
 
-  std::vector<internal::Message> talk(internal::Message own);
+  std::vector<internal::Message> talk(const internal::Message& own);
 
   bool has_parted_ = false;
   std::optional<Error> parted_with_{};
