@@ -11,6 +11,7 @@
 #include "checks/checks.hpp"
 #include "checks/flown.hpp"
 #include "flight/aircraft_of_flights.hpp"
+#include "flight/trouble_with_values.hpp"
 #include "residuals/packed_residuals.hpp"
 #include "roles/recorded_model.hpp"
 #include "team/flight_share.hpp"
@@ -35,12 +36,7 @@ std::string without_values(const Flight& flight, const ModelFile& model) {
   const PressurePair pair = pair_of(model);
   for (const std::string& variable : {pair.static_pressure, pair.dynamic_pressure}) {
     if (!flight.has(variable)) return "";  // for the message that says what may have been meant
-    try {
-      flight.require_values(variable);
-    } catch (const Error& error) {
-      if (error.code() == Error::Code::file) throw;
-      return error.what();
-    }
+    if (std::string trouble = trouble_with_values(flight, variable); !trouble.empty()) return trouble;
   }
   return "";
 }
@@ -190,7 +186,7 @@ Checks check(const std::vector<std::filesystem::path>& flights, const std::optio
                             options.second->model.name));
   }
   const FlightShare share = share_of_flights(*options.team, flights);
-  require_one_aircraft(aircraft_of_flights(flights, share));
+  require_one_aircraft(aircraft_of_flights(flights, share, options.time_stamp));
   std::size_t done = 0;
   auto parts = share.of_each_flight<FlightPart>([&](std::size_t number) {
     FlightPart part = part_of(flights[number], model, options);

@@ -327,7 +327,7 @@ Comparison compare(const std::vector<std::filesystem::path>& flights,
   for (const Contender& contender : contenders) first_of(contender.references);
   const std::vector<Field> fields = fields_of(contenders);
   const FlightShare share = share_of_flights(*options.team, flights);
-  require_one_aircraft(aircraft_of_flights(flights, share));
+  require_one_aircraft(aircraft_of_flights(flights, share, options.time_stamp));
   const auto tell = [&, done = std::size_t{0}]() mutable {
     ++done;
     if (options.progress) options.progress(done, fields.size() * share.own());

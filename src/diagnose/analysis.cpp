@@ -6,6 +6,7 @@
 #include <string>
 
 #include "diagnose/rms.hpp"
+#include "numerics/binned_rows.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/spikes.hpp"
@@ -34,17 +35,6 @@ std::vector<std::size_t> first_entries(const std::vector<FlightColumns>& flights
   for (std::size_t f = 0; f < flights.size() && flights[f].reference == 0; ++f) first.push_back(f);
   return first;
 }
-
-/// A flight in bins: columns, and the residual last.
-struct BinnedRows {
-  Binning bins{};
-  Eigen::MatrixXd rows{};
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(bins, rows);
-  }
-};
 
 }  // namespace
 

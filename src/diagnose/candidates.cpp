@@ -11,6 +11,7 @@
 #include <pcor/residuals/residuals.hpp>
 #include <pcor/units/units.hpp>
 #include <pcor/words/error.hpp>
+#include "flight/trouble_with_values.hpp"
 #include "residuals/moving_columns.hpp"
 #include "roles/model_inputs.hpp"
 #include "roles/recorded_series.hpp"
@@ -136,13 +137,7 @@ Candidate candidate_of(const ModelEffect& formula) {
 /// Why a flight has no values of a variable; empty where it has.
 std::string trouble_with(const Flight& flight, const std::string& variable) {
   if (!flight.has(variable)) return fmt::format("{} has no variable {}", flight.path().string(), variable);
-  try {
-    flight.require_values(variable);
-  } catch (const Error& error) {
-    if (error.code() == Error::Code::file) throw;
-    return error.what();
-  }
-  return "";
+  return trouble_with_values(flight, variable);
 }
 
 /// Of a formula: the variable that some flight lacks; empty where there is none.

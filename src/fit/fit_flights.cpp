@@ -6,6 +6,7 @@
 #include <deque>
 #include <future>
 
+#include "numerics/binned_rows.hpp"
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/noise_flights.hpp"
@@ -36,17 +37,6 @@ struct FlightCounts {
   template <class Archive>
   void serialize(Archive& archive) {
     archive(samples, bins, offsets, masks, linear, begin);
-  }
-};
-
-/// The bins of a flight, and its rows in them: derivatives by the wanted parameters, residual.
-struct BinnedRows {
-  Binning bins{};
-  Eigen::MatrixXd rows{};
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(bins, rows);
   }
 };
 

@@ -202,7 +202,6 @@ class FitFlights {
   bool has_moving_columns() const;
 
   std::size_t count() const { return sources_.size(); }
-  const FlightShare& share() const { return task_.share; }
 
   /// What a flight is called.
   std::string name(std::size_t number) const {

@@ -54,10 +54,11 @@ void require_one_kind(const Sources& sources, const FlightShare& share, const Re
   std::vector<OfAircraft> aircraft = share.of_each_flight<OfAircraft>([&](std::size_t number) {
     const auto& [path, samples] = sources[number];
     return samples ? OfAircraft(samples->name, samples->aircraft)
-                   : OfAircraft(path.filename().string(), Flight(path).aircraft());
+                   : OfAircraft(path.filename().string(), Flight(path, options.time_stamp).aircraft());
   });
   const FlightShare held_out = share_of_flights(*options.team, options.holdout);
-  for (OfAircraft& each : aircraft_of_flights(options.holdout, held_out)) aircraft.push_back(std::move(each));
+  for (OfAircraft& each : aircraft_of_flights(options.holdout, held_out, options.time_stamp))
+    aircraft.push_back(std::move(each));
   require_one_aircraft(aircraft);
 }
 

@@ -31,9 +31,9 @@ class Team {
   virtual std::size_t size() const = 0;  ///< members, at least 1
 
   /// What every member has, in the order of ranks: one exchange.
+  ///
   /// @param state in which the members have to agree, such as a digest of the coefficients and of the place
-  /// in
-  ///        the work
+  ///        in the work
   /// @throws Error the error that members failed with here instead: of the lowest place, then of the lowest
   ///         rank. Error if the members are in different states.
   std::vector<std::string> gather(const std::string& own, std::uint64_t state = 0);

@@ -1,0 +1,17 @@
+#include "flight/trouble_with_values.hpp"
+
+#include <pcor/words/error.hpp>
+
+namespace pcor::internal {
+
+std::string trouble_with_values(const Flight& flight, const std::string& variable) {
+  try {
+    flight.require_values(variable);
+  } catch (const Error& error) {
+    if (error.code() == Error::Code::file) throw;
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace pcor::internal

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include <pcor/flight/flight.hpp>
+
+namespace pcor::internal {
+
+/// Why a variable that a flight has is no series with a value; empty where it is one.
+/// @throws Error if the file is damaged
+std::string trouble_with_values(const Flight& flight, const std::string& variable);
+
+}  // namespace pcor::internal
