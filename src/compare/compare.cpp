@@ -4,9 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cereal/types/map.hpp>
 #include <cmath>
 #include <map>
-#include <numeric>
+#include <optional>
 
 #include <pcor/flight/flight_writer.hpp>
 #include <pcor/flight/same_aircraft.hpp>
@@ -14,12 +15,29 @@
 
 #include "flight/aircraft_of_flights.hpp"
 #include "numerics/missing.hpp"
+#include "report/shown_flights.hpp"
 #include "residuals/flight_statistics.hpp"
 #include "residuals/packed_residuals.hpp"
 #include "team/flight_share.hpp"
 #include "words/phrasing.hpp"
 
 namespace pcor {
+
+template <class Archive>
+void serialize(Archive& archive, FlightResiduals& r) {
+  archive(r.samples, r.mask, r.values, r.flaps_out, r.reference_defects, r.model_defects, r.static_pressure,
+          r.corrected_pressure, r.total_pressure, r.reference_total_pressure, r.mach, r.dynamic_ratio);
+}
+
+template <class Archive>
+void serialize(Archive& archive, WorstInterval& worst) {
+  archive(worst.flight, worst.begin, worst.end, worst.statistics, worst.regimes);
+}
+
+template <class Archive>
+void serialize(Archive& archive, PairMoments& pairs) {
+  archive(pairs.samples, pairs.mean_x, pairs.mean_y, pairs.xx, pairs.xy, pairs.yy);
+}
 
 using namespace internal;
 
@@ -62,62 +80,49 @@ std::string regimes_text(const RegimeSet& regimes) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// The statistics of one model, gathered flight by flight.
-class Gathering {
- public:
-  Gathering(std::string name, const Reference& reference) : is_static_(reference.is_static_pressure()) {
-    result_.name = std::move(name);
-    result_.reference = reference.name();
+/// Sums over the residuals of one model, of a flight or of several.
+struct ModelSums {
+  ResidualSums all{};
+  ResidualSums flaps_out{};
+  double wanted = 0.0;  // delta-p of the reference
+  double wanted_squares = 0.0;
+  std::array<ResidualSums, regime_count> regimes{};
+  std::array<std::map<long, ResidualSums>, bandings.size()> bands{};
+  std::vector<WorstInterval> worst{};  // at most `worst_count`
+
+  void add(const ModelSums& other);
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(all, flaps_out, wanted, wanted_squares, regimes, bands, worst);
   }
-
-  void add(const FlightResiduals& flight, std::size_t model, const NoiseFloor& noise);
-  ModelComparison finish();
-
- private:
-  void add_worst(const FlightResiduals& flight, const std::vector<double>& values, const NoiseFloor& noise,
-                 const std::vector<RegimeSet>& regimes);
-
-  ModelComparison result_;
-  bool is_static_;
-  ResidualSums all_;
-  ResidualSums flaps_out_;
-  double wanted_sum_ = 0.0;
-  double wanted_squares_ = 0.0;
-  std::array<ResidualSums, regime_count> regimes_{};
-  std::array<std::map<long, ResidualSums>, bandings.size()> bands_{};
 };
 
-void Gathering::add(const FlightResiduals& flight, std::size_t model, const NoiseFloor& noise) {
-  const std::vector<double>& values = flight.values[model];
-  const std::vector<double>& wanted = flight.reference_defects[model];
-  const FlightSamples& samples = *flight.samples;
-  const double memory = memory_of_flight(samples, values, noise);
-  const std::vector<RegimeSet> regimes = regimes_of_samples(samples.time, samples.intervals);
-  ResidualSums own;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (std::isnan(values[i])) continue;
-    const auto count = [&](ResidualSums& sums) { sums.add(values[i], noise.local_rms[i], memory); };
-    count(own);
-    count(all_);
-    wanted_sum_ += wanted[i];
-    wanted_squares_ += wanted[i] * wanted[i];
-    for (std::size_t r = 0; r < regime_count; ++r) {
-      if (regimes[i][r]) count(regimes_[r]);
-    }
-    for (std::size_t b = 0; b < bandings.size(); ++b) {
-      const double value = bandings[b].value(flight, i);
-      if (!std::isnan(value)) count(bands_[b][std::lround(std::floor(value / bandings[b].width))]);
-    }
-  }
-  result_.flights.push_back({samples.name, own.statistics()});
-  add_worst(flight, values, noise, regimes);
-  if (has_value(flight.flaps_out[model])) flaps_out_.add(sums_of_flight(samples, flight.flaps_out[model]));
+void keep_the_worst(std::vector<WorstInterval>& worst) {
+  std::stable_sort(worst.begin(), worst.end(), [](const WorstInterval& a, const WorstInterval& b) {
+    return fails_more(a.statistics, b.statistics);
+  });
+  if (worst.size() > worst_count) worst.resize(worst_count);
 }
 
-void Gathering::add_worst(const FlightResiduals& flight, const std::vector<double>& values,
-                          const NoiseFloor& noise, const std::vector<RegimeSet>& regimes) {
+void ModelSums::add(const ModelSums& other) {
+  all.add(other.all);
+  flaps_out.add(other.flaps_out);
+  wanted += other.wanted;
+  wanted_squares += other.wanted_squares;
+  for (std::size_t r = 0; r < regime_count; ++r) regimes[r].add(other.regimes[r]);
+  for (std::size_t b = 0; b < bandings.size(); ++b) {
+    for (const auto& [band, sums] : other.bands[b]) bands[b][band].add(sums);
+  }
+  worst.insert(worst.end(), other.worst.begin(), other.worst.end());
+  keep_the_worst(worst);
+}
+
+std::vector<WorstInterval> worst_of(const FlightResiduals& flight, const std::vector<double>& values,
+                                    const NoiseFloor& noise, const std::vector<RegimeSet>& regimes) {
   const FlightSamples& samples = *flight.samples;
   const auto enough = static_cast<std::size_t>(0.5 * worst_length / samples.step);
+  std::vector<WorstInterval> worst;
   for (std::size_t first = 0; first < values.size();) {
     ResidualSums sums;
     RegimeSet flown;
@@ -128,40 +133,70 @@ void Gathering::add_worst(const FlightResiduals& flight, const std::vector<doubl
       flown |= regimes[i];
     }
     if (sums.samples > 0 && sums.samples >= enough) {
-      result_.worst.push_back({samples.name, samples.time[first] - 0.5 * samples.step,
-                               samples.time[i - 1] + 0.5 * samples.step, sums.statistics(),
-                               regimes_text(flown)});
+      worst.push_back({samples.name, samples.time[first] - 0.5 * samples.step,
+                       samples.time[i - 1] + 0.5 * samples.step, sums.statistics(), regimes_text(flown)});
     }
     first = i;
   }
-  std::stable_sort(
-      result_.worst.begin(), result_.worst.end(),
-      [](const WorstInterval& a, const WorstInterval& b) { return fails_more(a.statistics, b.statistics); });
-  if (result_.worst.size() > worst_count) result_.worst.resize(worst_count);
+  keep_the_worst(worst);
+  return worst;
 }
 
-ModelComparison Gathering::finish() {
-  result_.all = all_.statistics();
-  result_.flaps_out = flaps_out_.statistics();
-  const auto count = static_cast<double>(all_.samples);
-  const double variation = wanted_squares_ - wanted_sum_ * wanted_sum_ / count;
-  const bool varies = is_static_ && variation > count * smallest_variance;
-  result_.r_squared = varies ? 1.0 - all_.squares / variation : nan;
-  result_.samples_per_independent = count / all_.independent;
-  for (std::size_t r = 0; r < regime_count; ++r) {
-    if (regimes_[r].samples > 0)
-      result_.regimes.push_back({std::string(regime_facts[r].name), regimes_[r].statistics()});
-  }
-  for (std::size_t b = 0; b < bandings.size(); ++b) {
-    for (const auto& [band, sums] : bands_[b]) {
-      if (sums.samples < fewest_in_band) continue;
-      const double from = static_cast<double>(band) * bandings[b].width;
-      result_.bands.push_back(
-          {fmt::format(fmt::runtime(bandings[b].format), bandings[b].name, from, from + bandings[b].width),
-           sums.statistics()});
+ModelSums sums_of(const FlightResiduals& flight, std::size_t model, const NoiseFloor& noise) {
+  const std::vector<double>& values = flight.values[model];
+  const std::vector<double>& wanted = flight.reference_defects[model];
+  const FlightSamples& samples = *flight.samples;
+  const double memory = memory_of_flight(samples, values, noise);
+  const std::vector<RegimeSet> regimes = regimes_of_samples(samples.time, samples.intervals);
+  ModelSums sums;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isnan(values[i])) continue;
+    const auto count = [&](ResidualSums& part) { part.add(values[i], noise.local_rms[i], memory); };
+    count(sums.all);
+    sums.wanted += wanted[i];
+    sums.wanted_squares += wanted[i] * wanted[i];
+    for (std::size_t r = 0; r < regime_count; ++r) {
+      if (regimes[i][r]) count(sums.regimes[r]);
+    }
+    for (std::size_t b = 0; b < bandings.size(); ++b) {
+      const double value = bandings[b].value(flight, i);
+      if (!std::isnan(value)) count(sums.bands[b][std::lround(std::floor(value / bandings[b].width))]);
     }
   }
-  return std::move(result_);
+  sums.worst = worst_of(flight, values, noise, regimes);
+  if (has_value(flight.flaps_out[model])) sums.flaps_out = sums_of_flight(samples, flight.flaps_out[model]);
+  return sums;
+}
+
+/// @param flights the residuals of each, with its name
+ModelComparison comparison_of(const std::string& name, const Reference& reference, ModelSums sums,
+                              std::vector<PartStatistics> flights) {
+  ModelComparison result;
+  result.name = name;
+  result.reference = reference.name();
+  result.all = sums.all.statistics();
+  result.flaps_out = sums.flaps_out.statistics();
+  result.flights = std::move(flights);
+  result.worst = std::move(sums.worst);
+  const auto count = static_cast<double>(sums.all.samples);
+  const double variation = sums.wanted_squares - sums.wanted * sums.wanted / count;
+  const bool varies = reference.is_static_pressure() && variation > count * smallest_variance;
+  result.r_squared = varies ? 1.0 - sums.all.squares / variation : nan;
+  result.samples_per_independent = count / sums.all.independent;
+  for (std::size_t r = 0; r < regime_count; ++r) {
+    if (sums.regimes[r].samples > 0)
+      result.regimes.push_back({std::string(regime_facts[r].name), sums.regimes[r].statistics()});
+  }
+  for (std::size_t b = 0; b < bandings.size(); ++b) {
+    for (const auto& [band, part] : sums.bands[b]) {
+      if (part.samples < fewest_in_band) continue;
+      const double from = static_cast<double>(band) * bandings[b].width;
+      result.bands.push_back(
+          {fmt::format(fmt::runtime(bandings[b].format), bandings[b].name, from, from + bandings[b].width),
+           part.statistics()});
+    }
+  }
+  return result;
 }
 
 std::vector<double> total_pressure(const ModelSamples& samples) {
@@ -169,27 +204,6 @@ std::vector<double> total_pressure(const ModelSamples& samples) {
   const std::vector<double>& q = *samples.find(Quantity::dynamic_pressure);
   for (std::size_t i = 0; i < q.size(); ++i) total[i] += q[i];
   return total;
-}
-
-/// The systems against each other, over the samples that take part.
-void fit_lines(Comparison& comparison) {
-  std::vector<double> total;
-  std::vector<double> reference_total;
-  std::vector<double> pressure;
-  std::vector<double> reference_pressure;
-  for (const FlightResiduals& flight : comparison.flights) {
-    for (std::size_t i = 0; i < flight.mask.size(); ++i) {
-      if (flight.mask[i] != Mask::none) continue;
-      pressure.push_back(flight.corrected_pressure[i]);
-      reference_pressure.push_back(flight.corrected_pressure[i] + flight.values.front()[i]);
-      if (flight.reference_total_pressure.empty()) continue;
-      total.push_back(flight.total_pressure[i]);
-      reference_total.push_back(flight.reference_total_pressure[i]);
-    }
-  }
-  if (comparison.is_static_pressure)
-    comparison.static_pressure = orthogonal_fit(pressure, reference_pressure);
-  if (!total.empty()) comparison.total_pressure = ordinary_fit(total, reference_total);
 }
 
 /// The noise of a flight is one, whatever the models: where one of them fails quickly, another shows it.
@@ -273,17 +287,51 @@ FlightResiduals residuals_on(const Flight& flight, const std::vector<Pairing>& p
 
 /// What a member of a team tells of a flight of its own.
 struct FlightPart {
-  FlightResiduals residuals{};
+  std::string name{};
+  double begin = 0.0;  // s since 1970 UTC
+  std::vector<Interval> intervals{};
+  std::vector<ModelSums> models{};
+  std::array<std::size_t, mask_count> masks{};
+  PairMoments pressures{};        // of the first model and of the reference
+  PairMoments total_pressures{};  // likewise
   std::vector<std::string> notes{};
+  std::optional<FlightResiduals> series{};
 
   template <class Archive>
   void serialize(Archive& archive) {
-    FlightResiduals& r = residuals;
-    archive(r.samples, r.mask, r.values, r.flaps_out, r.reference_defects, r.model_defects, r.static_pressure,
-            r.corrected_pressure, r.total_pressure, r.reference_total_pressure, r.mach, r.dynamic_ratio,
-            notes);
+    archive(name, begin, intervals, models, masks, pressures, total_pressures, notes, series);
   }
 };
+
+FlightPart part_of(FlightResiduals flight, bool with_series) {
+  FlightPart part;
+  part.name = flight.samples->name;
+  part.begin = flight.samples->time.front();
+  part.intervals = flight.samples->intervals;
+  const NoiseFloor noise = lowest_noise(flight);
+  for (std::size_t m = 0; m < flight.values.size(); ++m) part.models.push_back(sums_of(flight, m, noise));
+  for (std::size_t i = 0; i < flight.mask.size(); ++i) {
+    ++part.masks[static_cast<std::size_t>(flight.mask[i])];
+    if (flight.mask[i] != Mask::none) continue;
+    const double pressure = flight.corrected_pressure[i];
+    part.pressures.add(pressure, pressure + flight.values.front()[i]);
+    if (!flight.reference_total_pressure.empty())
+      part.total_pressures.add(flight.total_pressure[i], flight.reference_total_pressure[i]);
+  }
+  if (with_series) part.series = std::move(flight);
+  return part;
+}
+
+/// The flights that a report shows.
+std::vector<std::size_t> to_show(const std::vector<FlightPart>& parts, std::size_t most) {
+  std::vector<FlightToShow> flights;
+  for (const FlightPart& part : parts) {
+    FlightToShow& flight = flights.emplace_back();
+    flight.begin = part.begin;
+    for (const ModelSums& model : part.models) flight.failure += model.all.statistics().rms;
+  }
+  return flights_to_show(flights, most);
+}
 
 /// Holds contenders against a reference. Without samples there are no models in the result.
 Comparison compare_with(const std::vector<Pairing>& pairings,
@@ -293,28 +341,49 @@ Comparison compare_with(const std::vector<Pairing>& pairings,
   Comparison result;
   result.reference = first.description();
   result.is_static_pressure = first.is_static_pressure();
-  auto parts = share.of_each_flight<FlightPart>([&](std::size_t number) {
+  const auto read = [&](std::size_t number, bool with_series) {
     const Flight flight(flights[number], options.time_stamp);
-    FlightPart part;
-    part.residuals = residuals_on(flight, pairings, options.mask, part.notes);
+    std::vector<std::string> notes;
+    FlightPart part = part_of(residuals_on(flight, pairings, options.mask, notes), with_series);
+    part.notes = std::move(notes);
+    return part;
+  };
+  const bool keeps_all = flights.size() <= options.most_series;
+  auto parts = share.of_each_flight<FlightPart>([&](std::size_t number) {
+    FlightPart part = read(number, keeps_all);
     tell();
     return part;
   });
-  std::vector<Gathering> gatherings;
-  for (const auto& [contender, reference] : pairings) gatherings.emplace_back(contender.name, reference);
   std::vector<FlightNote> notes;
+  PairMoments pressures;
+  PairMoments total_pressures;
   for (FlightPart& part : parts) {
-    FlightResiduals& residuals = part.residuals;
-    for (const std::string& note : part.notes) notes.emplace_back(residuals.samples->name, note);
-    for (const Mask mask : residuals.mask) ++result.masks[static_cast<std::size_t>(mask)];
-    const NoiseFloor noise = lowest_noise(residuals);
-    for (std::size_t m = 0; m < pairings.size(); ++m) gatherings[m].add(residuals, m, noise);
-    result.flights.push_back(std::move(residuals));
+    for (const std::string& note : part.notes) notes.emplace_back(part.name, note);
+    for (const Interval& interval : part.intervals) result.intervals.emplace_back(part.name, interval);
+    for (std::size_t m = 0; m < mask_count; ++m) result.masks[m] += part.masks[m];
+    pressures.add(part.pressures);
+    total_pressures.add(part.total_pressures);
+    if (part.series) result.flights.push_back(std::move(*part.series));
   }
   result.notes = notes_of_flights(notes);
   if (result.masks[0] == 0) return result;
-  for (Gathering& gathering : gatherings) result.models.push_back(gathering.finish());
-  fit_lines(result);
+  for (std::size_t m = 0; m < pairings.size(); ++m) {
+    ModelSums sums;
+    std::vector<PartStatistics> of_flights;
+    for (const FlightPart& part : parts) {
+      sums.add(part.models[m]);
+      of_flights.push_back({part.name, part.models[m].all.statistics()});
+    }
+    result.models.push_back(comparison_of(pairings[m].contender.name, pairings[m].reference, std::move(sums),
+                                          std::move(of_flights)));
+  }
+  if (result.is_static_pressure) result.static_pressure = orthogonal_fit(pressures);
+  if (total_pressures.samples > 0) result.total_pressure = ordinary_fit(total_pressures);
+  if (keeps_all) return result;
+  const std::vector<std::size_t> shown = to_show(parts, options.most_series);
+  for (FlightPart& part : share.of_entries(shown).of_each_flight<FlightPart>(
+           [&](std::size_t k) { return read(shown[k], true); }))
+    result.flights.push_back(std::move(*part.series));
   return result;
 }
 

@@ -10,6 +10,7 @@
 #include "numerics/missing.hpp"
 #include "report/present_columns.hpp"
 #include "report/residual_pictures.hpp"
+#include "report/shown_flights.hpp"
 #include "residuals/wind.hpp"
 #include "words/phrasing.hpp"
 
@@ -274,6 +275,8 @@ void ComparisonPanels::summarise() {
       report_.summary.push_back(sentence(text));
   }
   const ModelComparison& last = comparison_.models.back();
+  if (std::string text = shown_text(comparison_.flights.size(), last.flights.size()); !text.empty())
+    report_.summary.push_back(std::move(text));
   const PartStatistics* worst = nullptr;
   for (const PartStatistics& part : last.regimes) {
     if (part.statistics.samples < fewest_in_regime || !(part.statistics.rms_over_noise() > notable_failure))

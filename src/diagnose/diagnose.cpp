@@ -22,6 +22,7 @@
 #include "diagnose/unexplained.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
+#include "report/shown_flights.hpp"
 #include "residuals/flight_statistics.hpp"
 #include "residuals/masks.hpp"
 
@@ -87,6 +88,43 @@ std::vector<FlightDiagnosis> flights_of(const Analysis& analysis) {
     flight.sideslip = columns.quantity(Quantity::sideslip);
   }
   return flights;
+}
+
+/// Keeps the records of the flights that pictures show, which then all members have.
+void keep_series(const Analysis& analysis, const std::optional<std::vector<std::size_t>>& wanted,
+                 std::vector<FlightDiagnosis>& flights) {
+  std::vector<std::size_t> entries;  // against the first reference
+  for (std::size_t f = 0; f < flights.size(); ++f) {
+    flights[f].number = analysis.flights()[f].file;
+    if (analysis.flights()[f].reference == 0) entries.push_back(f);
+  }
+  std::set<std::size_t> kept;
+  if (wanted) {
+    kept.insert(wanted->begin(), wanted->end());
+  } else {
+    const auto described =
+        analysis.share().of_entries(entries).of_each_flight<FlightToShow>([&](std::size_t k) {
+          const FlightDiagnosis& flight = flights[entries[k]];
+          SquareSum sum;
+          for (const double value : flight.before) {
+            if (!std::isnan(value)) sum.add(value);
+          }
+          return FlightToShow{flight.samples->time.front(), sum.count > 0.0 ? sum.rms() : nan};
+        });
+    for (const std::size_t k : flights_to_show(described)) kept.insert(flights[entries[k]].number);
+  }
+  entries.clear();
+  for (std::size_t f = 0; f < flights.size(); ++f) {
+    if (kept.count(flights[f].number) > 0) entries.push_back(f);
+  }
+  auto series = analysis.share().of_entries(entries).of_each_flight<FlightDiagnosis>(
+      [&](std::size_t k) { return std::move(flights[entries[k]]); });
+  for (FlightDiagnosis& flight : flights) {
+    const std::size_t number = flight.number;
+    flight = {};
+    flight.number = number;
+  }
+  for (std::size_t k = 0; k < entries.size(); ++k) flights[entries[k]] = std::move(series[k]);
 }
 
 /// The model's own coefficients, fitted again.
@@ -321,12 +359,7 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
   if (structure.overrules) overrule(diagnosis);
   if (!flaps.empty())
     diagnose_flaps(analysis, flaps, groups_of(model, flaps.candidates), options.seed, diagnosis);
-  if (options.series) {
-    diagnosis.flights = analysis.share().of_each_flight<FlightDiagnosis>(
-        [&diagnosis](std::size_t f) { return std::move(diagnosis.flights[f]); });
-  } else {
-    diagnosis.flights.clear();
-  }
+  keep_series(analysis, options.series_of, diagnosis.flights);
   double explained = 0.0;
   for (const Finding& finding : diagnosis.findings) explained += finding.chi2;
   diagnosis.verdict = verdict_of(diagnosis, explained, structure.left);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "numerics/chi_squared.hpp"
 #include "numerics/decompositions.hpp"
@@ -24,42 +23,60 @@ struct FlightSums {
   }
 };
 
-/// Means of the flights beside a model, and their covariance. Of what the model explains, be it common to all
-/// or a step between them, the means have nothing.
+/// Means of the flights beside a model, and what their covariances say. Of what the model explains, be it
+/// common to all or a step between them, the means have nothing.
 struct Means {
-  Eigen::VectorXd value;
-  Eigen::MatrixXd covariance;
+  Eigen::VectorXd value{};
+  Eigen::VectorXd variance{};     // of each
+  Eigen::VectorXd covariances{};  // of each with the sum of all
 };
 
+/// The constants of the flights and the model are the unknowns of one set of normal equations. With the model
+/// eliminated, and in units of each flight's own information, the matrix of the constants is one less a
+/// product B'B of as many rows as the model has columns: its inverse needs the eigenvalues of BB' alone,
+/// however many flights there are.
 /// @param sums of each flight: products of its whitened columns, a constant, and its residual
 Means find_means(const std::vector<Eigen::MatrixXd>& sums, double rows) {
   const Eigen::Index model = sums.front().cols() - 2;
   const Eigen::Index flights = as_index(sums.size());
-  const Eigen::Index width = model + flights;
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(width + 1, width + 1);
+  Eigen::MatrixXd of_model = Eigen::MatrixXd::Zero(model, model);
+  Eigen::VectorXd right_of_model = Eigen::VectorXd::Zero(model);
+  Eigen::MatrixXd together(model, flights);
+  Eigen::VectorXd right(flights);
+  Eigen::VectorXd unit(flights);
+  double squares = 0.0;
   for (Eigen::Index f = 0; f < flights; ++f) {
     const Eigen::MatrixXd& sum = sums[static_cast<std::size_t>(f)];
-    std::vector<Eigen::Index> places(static_cast<std::size_t>(model));
-    std::iota(places.begin(), places.end(), Eigen::Index{0});
-    places.insert(places.end(), {model + f, width});
-    information(places, places) += sum;
+    of_model += sum.topLeftCorner(model, model);
+    right_of_model += sum.col(model + 1).head(model);
+    squares += sum(model + 1, model + 1);
+    unit[f] = 1.0 / std::sqrt(sum(model, model));
+    together.col(f) = unit[f] * sum.col(model).head(model);
+    right[f] = unit[f] * sum(model, model + 1);
   }
-  const Eigen::VectorXd scale =
-      information.diagonal().head(width).cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled =
-      scale.asDiagonal() * information.topLeftCorner(width, width) * scale.asDiagonal();
-  const Eigen::VectorXd right = scale.asDiagonal() * information.col(width).head(width);
-  const Eigen::MatrixXd of_model = pseudo_inverse(scaled.topLeftCorner(model, model), least_eigenvalue);
-  const Eigen::MatrixXd by_model = of_model * scaled.topRightCorner(model, flights);
-  const Eigen::VectorXd left = right.tail(flights) - by_model.transpose() * right.head(model);
-  const Eigen::MatrixXd inverse = pseudo_inverse(
-      scaled.bottomRightCorner(flights, flights) - scaled.bottomLeftCorner(flights, model) * by_model,
-      least_eigenvalue);
-  const double squares = information(width, width) - right.head(model).dot(of_model * right.head(model)) -
-                         left.dot(inverse * left);
-  const double variance = squares / std::max(1.0, rows - static_cast<double>(width));
-  const Eigen::VectorXd unit = scale.tail(flights);
-  return {unit.cwiseProduct(inverse * left), variance * (unit.asDiagonal() * inverse * unit.asDiagonal())};
+  const Eigen::VectorXd scale = of_model.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const SymmetricEigen own = symmetric_eigen(scale.asDiagonal() * of_model * scale.asDiagonal());
+  Eigen::VectorXd root = Eigen::VectorXd::Zero(model);  // of the inverse
+  for (Eigen::Index k = 0; k < model; ++k) {
+    if (own.eigenvalues()[k] > least_eigenvalue) root[k] = 1.0 / std::sqrt(own.eigenvalues()[k]);
+  }
+  const Eigen::MatrixXd half = root.asDiagonal() * own.eigenvectors().transpose() * scale.asDiagonal();
+  const Eigen::VectorXd by_model = half * right_of_model;
+  const SymmetricEigen shared = symmetric_eigen((half * together) * (half * together).transpose());
+  const Eigen::MatrixXd rows_of_model = shared.eigenvectors().transpose() * (half * together);
+  // What the inverse has beyond one: where a constant is none of the model's, and where it is.
+  const Eigen::VectorXd beyond = shared.eigenvalues().unaryExpr(
+      [](double part) { return 1.0 - part > least_eigenvalue ? 1.0 / (1.0 - part) : -1.0 / part; });
+  const Eigen::VectorXd left = right - (half * together).transpose() * by_model;
+  const Eigen::VectorXd solution =
+      left + rows_of_model.transpose() * (beyond.asDiagonal() * (rows_of_model * left));
+  const double freedom = std::max(1.0, rows - static_cast<double>(model + flights));
+  const double variance = (squares - by_model.squaredNorm() - left.dot(solution)) / freedom;
+  const Eigen::VectorXd diagonal = 1.0 + (rows_of_model.cwiseAbs2().transpose() * beyond).array();
+  const Eigen::VectorXd with_sum =
+      unit + rows_of_model.transpose() * (beyond.asDiagonal() * (rows_of_model * unit));
+  return {unit.cwiseProduct(solution), variance * unit.cwiseAbs2().cwiseProduct(diagonal),
+          variance * unit.cwiseProduct(with_sum)};
 }
 
 /// The square of a normal variable that is exceeded as rarely as one of Student with so many degrees of
@@ -69,44 +86,31 @@ double normal_square(double student_square, double freedom) {
   return scale * scale * freedom * std::log1p(student_square / freedom);
 }
 
-/// Means of the flights, and sums over all of them.
-struct SummedMeans {
-  Means means;
-  double sum = means.value.sum();
-  Eigen::VectorXd covariances = means.covariance.rowwise().sum();  // of each with the sum
-  double variance = covariances.sum();                             // of the sum
-};
-
-MeanStep step_of(std::size_t one, const std::vector<std::size_t>& flights, const SummedMeans& all) {
-  const Eigen::VectorXd& value = all.means.value;
-  const Eigen::MatrixXd& covariance = all.means.covariance;
-  const Eigen::Index own = as_index(one);
-  const auto count = static_cast<double>(flights.size() - 1);  // of the others
-  const double mean = (all.sum - value[own]) / count;          // of them
-  const double variance =
-      (all.variance - 2.0 * all.covariances[own] + covariance(own, own)) / (count * count);
-  const double shared = (all.covariances[own] - covariance(own, own)) / count;  // with that mean
-  const double known = covariance(own, own) - 2.0 * shared + variance;
+/// The step of one flight against the others.
+MeanStep step_of(Eigen::Index one, const Means& all) {
+  const Eigen::VectorXd& value = all.value;
+  const auto count = static_cast<double>(value.size() - 1);  // of the others
+  const double mean = (value.sum() - value[one]) / count;    // of them
+  const double with_others = all.covariances[one] - all.variance[one];
+  const double variance = (all.covariances.sum() - all.covariances[one] - with_others) / (count * count);
+  const double shared = with_others / count;  // with that mean
+  const double known = all.variance[one] - 2.0 * shared + variance;
   if (!(known > 0.0)) return {};
   double scatter = 0.0;  // of the others' means, beyond what drift makes of it
-  for (const std::size_t flight : flights) {
-    if (flight == one || count < 2.0) continue;
-    const Eigen::Index other = as_index(flight);
-    const double size = value[other] - mean;
-    const double by_drift =
-        covariance(other, other) - 2.0 * (all.covariances[other] - covariance(other, own)) / count + variance;
-    scatter += (size * size - by_drift) / (count - 1.0);
+  if (count > 1.0) {
+    const double squares = (value.array() - mean).square().sum() - std::pow(value[one] - mean, 2);
+    const double by_drift = all.variance.sum() - all.variance[one] - count * variance;
+    scatter = std::max(0.0, squares - by_drift) / (count - 1.0) * (1.0 + 1.0 / count);
   }
-  scatter = std::max(0.0, scatter) * (1.0 + 1.0 / count);
   MeanStep step;
-  step.size = value[own] - mean;
+  step.size = value[one] - mean;
   step.error = std::sqrt(known + scatter);
   double square = step.size * step.size / (known + scatter);
   if (scatter > 0.0) {
     const double whole = known + scatter;
     square = normal_square(square, whole * whole * (count - 1.0) / (scatter * scatter));
   }
-  step.chance = std::min(1.0, static_cast<double>(flights.size()) * chi_squared_tail(square, 1.0));
+  step.chance = std::min(1.0, (count + 1.0) * chi_squared_tail(square, 1.0));
   return step;
 }
 
@@ -118,8 +122,12 @@ std::vector<MeanStep> find_mean_steps(const FlightShare& share, const std::vecto
                                       const NoiseModel& noise) {
   std::vector<MeanStep> steps(bins.size());
   const auto found = share.of_each_flight<FlightSums>([&](std::size_t f) {
-    Eigen::MatrixXd all(columns[f].rows(), columns[f].cols() + 2);
-    all << columns[f], Eigen::VectorXd::Ones(columns[f].rows()), residuals[f];
+    // A model without a column is one with a column of zeros.
+    const Eigen::Index model = std::max<Eigen::Index>(columns[f].cols(), 1);
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(columns[f].rows(), model + 2);
+    all.leftCols(columns[f].cols()) = columns[f];
+    all.col(model).setOnes();
+    all.col(model + 1) = residuals[f];
     const Eigen::MatrixXd white = whitened(all, bins[f], noise, f);
     return FlightSums{bins[f].size(), white.transpose() * white};
   });
@@ -127,15 +135,16 @@ std::vector<MeanStep> find_mean_steps(const FlightShare& share, const std::vecto
   std::vector<Eigen::MatrixXd> sums;
   std::size_t rows = 0;
   for (std::size_t f = 0; f < found.size(); ++f) {
+    if (found[f].rows == 0) continue;
     rows += found[f].rows;
+    flights.push_back(f);
     sums.push_back(found[f].sums);
-    if (found[f].rows > 0) flights.push_back(f);
   }
   if (flights.size() < 2) return steps;
-  const SummedMeans means{find_means(sums, static_cast<double>(rows))};
-  for (const std::size_t flight : flights) {
-    const bool told_of_the_other = flights.size() == 2 && flight == flights.front();
-    if (!told_of_the_other) steps[flight] = step_of(flight, flights, means);
+  const Means means = find_means(sums, static_cast<double>(rows));
+  for (std::size_t k = 0; k < flights.size(); ++k) {
+    const bool told_of_the_other = flights.size() == 2 && k == 0;
+    if (!told_of_the_other) steps[flights[k]] = step_of(as_index(k), means);
   }
   return steps;
 }

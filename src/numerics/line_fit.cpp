@@ -10,35 +10,14 @@ using namespace internal;
 
 namespace {
 
-/// Means and central sums of the pairs that are complete.
-struct Moments {
-  std::size_t samples = 0;
-  double mean_x = 0.0;
-  double mean_y = 0.0;
-  double xx = 0.0;
-  double xy = 0.0;
-  double yy = 0.0;
-};
-
-Moments moments_of(const std::vector<double>& x, const std::vector<double>& y) {
-  Moments m;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (std::isnan(x[i]) || std::isnan(y[i])) continue;
-    ++m.samples;
-    const auto count = static_cast<double>(m.samples);
-    const double dx = x[i] - m.mean_x;
-    const double dy = y[i] - m.mean_y;
-    m.mean_x += dx / count;
-    m.mean_y += dy / count;
-    m.xx += dx * (x[i] - m.mean_x);
-    m.yy += dy * (y[i] - m.mean_y);
-    m.xy += dx * (y[i] - m.mean_y);
-  }
-  return m;
+PairMoments moments_of(const std::vector<double>& x, const std::vector<double>& y) {
+  PairMoments moments;
+  for (std::size_t i = 0; i < x.size(); ++i) moments.add(x[i], y[i]);
+  return moments;
 }
 
 /// The line of that slope through the means. `squares` is the sum of the squared distances.
-LineFit line(const Moments& m, double slope, double squares, double slope_error) {
+LineFit line(const PairMoments& m, double slope, double squares, double slope_error) {
   LineFit fit;
   fit.samples = m.samples;
   fit.mean_difference = m.samples > 0 ? m.mean_y - m.mean_x : nan;
@@ -57,16 +36,50 @@ LineFit line(const Moments& m, double slope, double squares, double slope_error)
 
 }  // namespace
 
+void PairMoments::add(double x, double y) {
+  if (std::isnan(x) || std::isnan(y)) return;
+  ++samples;
+  const auto count = static_cast<double>(samples);
+  const double dx = x - mean_x;
+  const double dy = y - mean_y;
+  mean_x += dx / count;
+  mean_y += dy / count;
+  xx += dx * (x - mean_x);
+  yy += dy * (y - mean_y);
+  xy += dx * (y - mean_y);
+}
+
+void PairMoments::add(const PairMoments& other) {
+  if (other.samples == 0) return;
+  const auto own = static_cast<double>(samples);
+  const auto count = static_cast<double>(other.samples);
+  const double dx = other.mean_x - mean_x;
+  const double dy = other.mean_y - mean_y;
+  const double weight = own * count / (own + count);
+  xx += other.xx + weight * dx * dx;
+  yy += other.yy + weight * dy * dy;
+  xy += other.xy + weight * dx * dy;
+  mean_x += dx * (count / (own + count));
+  mean_y += dy * (count / (own + count));
+  samples += other.samples;
+}
+
 LineFit ordinary_fit(const std::vector<double>& x, const std::vector<double>& y) {
-  const Moments m = moments_of(x, y);
+  return ordinary_fit(moments_of(x, y));
+}
+
+LineFit orthogonal_fit(const std::vector<double>& x, const std::vector<double>& y) {
+  return orthogonal_fit(moments_of(x, y));
+}
+
+LineFit ordinary_fit(const PairMoments& m) {
   const double slope = m.xy / m.xx;
   const double squares = m.yy - slope * m.xy;
   const double variance = std::max(squares, 0.0) / (static_cast<double>(m.samples) - 2.0);
   return line(m, slope, squares, std::sqrt(variance / m.xx));
 }
 
-LineFit orthogonal_fit(const std::vector<double>& x, const std::vector<double>& y) {
-  const Moments m = moments_of(x, y);
+LineFit orthogonal_fit(const PairMoments& m) {
   const double difference = m.yy - m.xx;
   const double root = std::hypot(difference, 2.0 * m.xy);
   // Of the two forms of the root the one that does not cancel.

@@ -61,14 +61,18 @@ void serialize(Archive& archive, pcor::internal::ResidualSums& sums) {
   archive(sums.samples, sums.sum, sums.squares, sums.noise_squares, sums.independent);
 }
 
-/// The samples of a flight that several may hold: each that gets them holds its own.
+/// The samples of a flight that several may hold, or none: each that gets them holds its own.
 template <class Archive>
 void save(Archive& archive, const std::shared_ptr<const pcor::FlightSamples>& samples) {
-  archive(const_cast<pcor::FlightSamples&>(*samples));
+  archive(samples != nullptr);
+  if (samples) archive(const_cast<pcor::FlightSamples&>(*samples));
 }
 
 template <class Archive>
 void load(Archive& archive, std::shared_ptr<const pcor::FlightSamples>& samples) {
+  bool is_there = false;
+  archive(is_there);
+  if (!is_there) return samples.reset();
   auto own = std::make_shared<pcor::FlightSamples>();
   archive(*own);
   samples = std::move(own);

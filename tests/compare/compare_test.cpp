@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "support/temporary_directory.hpp"
+#include "support/thread_team.hpp"
 
 using pcor::CompareOptions;
 using pcor::Comparison;
@@ -176,6 +177,38 @@ TEST(Compare, OfTwoSystemsGivesTheFiguresOfTheMemo) {
   // Figure 2: slope 0.99985, rms 0.15 hPa; here the law is true, so only the sensors' noise is left.
   EXPECT_NEAR(result.static_pressure.slope, 1.0, 1e-4);
   EXPECT_LT(result.static_pressure.rms, 0.05);
+}
+
+TEST(Compare, KeepsTheRecordsOfSomeFlightsAndTheNumbersOfAll) {
+  const std::vector<fs::path> flights(5, flight_file());
+  const std::vector<Contender> contenders{laser_contender(), pair_contender()};
+  const Comparison whole = pcor::compare(flights, contenders);
+  EXPECT_EQ(whole.flights.size(), flights.size());
+  CompareOptions options;
+  options.most_series = 2;
+  const auto expect_the_same = [&](const Comparison& some) {
+    ASSERT_EQ(some.flights.size(), 2U);
+    ASSERT_EQ(some.further.size(), 1U);
+    EXPECT_EQ(some.further.front().flights.size(), 2U);
+    EXPECT_EQ(some.flights.front().samples->time, whole.flights.front().samples->time);
+    EXPECT_THAT(some.flights.front().values.front(),
+                testing::Pointwise(testing::NanSensitiveDoubleEq(), whole.flights.front().values.front()));
+    EXPECT_EQ(some.models.front().all.rms, whole.models.front().all.rms);
+    EXPECT_EQ(some.models.front().flights.size(), flights.size());
+    EXPECT_EQ(some.static_pressure.slope, whole.static_pressure.slope);
+    EXPECT_EQ(some.intervals.size(), whole.intervals.size());
+    EXPECT_EQ(some.masks, whole.masks);
+    EXPECT_THAT(pcor::comparison_report(some).summary, testing::Contains(HasSubstr("2 of the 5 flights")));
+  };
+  expect_the_same(pcor::compare(flights, contenders, options));
+  pcor::test::run_as_team(
+      3,
+      [&](pcor::Team& team) {
+        CompareOptions own = options;
+        own.team = &team;
+        expect_the_same(pcor::compare(flights, contenders, own));
+      },
+      true);
 }
 
 TEST(Compare, RefusesWhatCannotBeCompared) {

@@ -270,11 +270,19 @@ TEST(DiagnosisOfATeam, FindsTheSameVariablesOfTheFiles) {
   EXPECT_THAT(diagnosis.held_out, Not(IsEmpty()));
 }
 
-TEST(DiagnosisOfATeam, WithoutSeriesHoldsNoRecord) {
+TEST(DiagnosisOfATeam, HoldsTheRecordsThatAreAskedFor) {
   DiagnoseOptions options;
-  options.series = false;
   options.whole_file = false;
-  EXPECT_THAT(expect_that_of_one(flights("", 30), {lams_reference()}, options).flights, IsEmpty());
+  for (const std::vector<std::size_t>& wanted : {std::vector<std::size_t>{}, {1, 4}}) {
+    options.series_of = wanted;
+    std::vector<std::size_t> held;
+    for (const FlightDiagnosis& flight :
+         expect_that_of_one(flights("", 30), {lams_reference()}, options).flights) {
+      EXPECT_EQ(flight.samples == nullptr, flight.before.empty());
+      if (flight.samples) held.push_back(flight.number);
+    }
+    EXPECT_EQ(held, wanted);
+  }
 }
 
 TEST(DiagnosisOfATeam, FailsOnAllMembersAsOneAlone) {

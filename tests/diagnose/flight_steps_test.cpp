@@ -73,6 +73,37 @@ TEST(MeanSteps, AreNoneWhereTheModelHasTheStep) {
   }
 }
 
+// Least squares of the model's columns and a constant of each flight together, by another way.
+TEST(MeanSteps, AreThoseOfLeastSquaresWithAConstantOfEachFlight) {
+  Flights flights({0.0, 0.2, -0.1, 0.05, 0.0}, 9);
+  std::mt19937_64 engine(10);
+  std::normal_distribution<double> normal;
+  const auto count = static_cast<Eigen::Index>(flights.bins.size());
+  constexpr Eigen::Index columns = 2;
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(count * rows, columns + count);
+  Eigen::VectorXd right(count * rows);
+  for (Eigen::Index f = 0; f < count; ++f) {
+    const auto flight = static_cast<std::size_t>(f);
+    flights.columns[flight] = Eigen::MatrixXd::NullaryExpr(
+        rows, columns, [&] { return 0.3 * static_cast<double>(f) + normal(engine); });
+    all.block(f * rows, 0, rows, columns) = flights.columns[flight];
+    all.block(f * rows, columns + f, rows, 1).setOnes();
+    right.segment(f * rows, rows) = flights.residuals[flight];
+  }
+  const Eigen::VectorXd means = all.colPivHouseholderQr().solve(right).tail(count);
+  const std::vector<MeanStep> steps = flights.steps();
+  for (Eigen::Index f = 0; f < count; ++f) {
+    const double others = (means.sum() - means[f]) / static_cast<double>(count - 1);
+    EXPECT_NEAR(steps[static_cast<std::size_t>(f)].size, means[f] - others, 1e-10);
+  }
+}
+
+TEST(MeanSteps, OfAModelWithoutACoefficientAreThoseOfTheMeans) {
+  Flights flights({0.0, 0.3}, 11);
+  for (Eigen::MatrixXd& columns : flights.columns) columns.resize(rows, 0);
+  EXPECT_NEAR(flights.steps()[1].size, flights.residuals[1].mean() - flights.residuals[0].mean(), 1e-12);
+}
+
 TEST(MeanSteps, OfOneFlightAreNone) { EXPECT_EQ(Flights({0.3}, 3).steps().front().chance, 1.0); }
 
 // A drift of that size makes means differ as much.

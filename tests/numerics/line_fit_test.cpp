@@ -84,3 +84,21 @@ TEST(LineFit, LeavesOutWhatIsMissing) {
   EXPECT_TRUE(std::isnan(pcor::ordinary_fit({1.0, 2.0}, {1.0, 2.0}).slope));
   EXPECT_TRUE(std::isnan(pcor::ordinary_fit({1.0, 1.0, 1.0}, {1.0, 2.0, 3.0}).slope));
 }
+
+TEST(LineFit, OfPartsIsThatOfTheWhole) {
+  const Pairs pairs = noisy(1000, 0.1, 0.1, 5);
+  pcor::PairMoments parts[3];
+  for (std::size_t i = 0; i < pairs.x.size(); ++i)
+    parts[i < 10 ? 0 : i < 400 ? 1 : 2].add(pairs.x[i], pairs.y[i]);
+  pcor::PairMoments sum;
+  sum.add(pcor::PairMoments());
+  for (const pcor::PairMoments& part : parts) sum.add(part);
+  const LineFit whole = pcor::orthogonal_fit(pairs.x, pairs.y);
+  const LineFit of_parts = pcor::orthogonal_fit(sum);
+  EXPECT_EQ(of_parts.samples, whole.samples);
+  EXPECT_NEAR(of_parts.slope, whole.slope, 1e-13);
+  EXPECT_NEAR(of_parts.offset, whole.offset, 1e-10);
+  // The squares of 0.1 are 1e-6 of those of x, which lose 1e-16 each.
+  EXPECT_NEAR(of_parts.rms, whole.rms, 1e-9);
+  EXPECT_NEAR(of_parts.mean_difference, whole.mean_difference, 1e-10);  // rounding of values near 900
+}

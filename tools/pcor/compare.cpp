@@ -83,15 +83,13 @@ nlohmann::ordered_json as_json(const Comparison& comparison) {
   if (comparison.is_static_pressure) result["static_pressure"] = line(comparison.static_pressure);
   result["masks"] = masks_as_json(comparison.masks);
   nlohmann::ordered_json intervals = nlohmann::ordered_json::array();
-  for (const FlightResiduals& flight : comparison.flights) {
-    for (const Interval& interval : flight.samples->intervals) {
-      intervals.push_back({{"flight", flight.samples->name},
-                           {"regime", std::string(facts_of(interval.regime).name)},
-                           {"begin", utc_text(interval.begin, iso_time)},
-                           {"end", utc_text(interval.end, iso_time)},
-                           {"pair", interval.pair},
-                           {"note", interval.note}});
-    }
+  for (const auto& [flight, interval] : comparison.intervals) {
+    intervals.push_back({{"flight", flight},
+                         {"regime", std::string(facts_of(interval.regime).name)},
+                         {"begin", utc_text(interval.begin, iso_time)},
+                         {"end", utc_text(interval.end, iso_time)},
+                         {"pair", interval.pair},
+                         {"note", interval.note}});
   }
   result["intervals"] = std::move(intervals);
   result["notes"] = comparison.notes;
@@ -223,19 +221,11 @@ void name_by_file(std::vector<Contender>& contenders, const std::vector<std::str
 /// The residuals of each model on each flight.
 void write_flight_table(const Comparison& comparison, const std::string& path) {
   FlightTable table({"flight", "model", "samples", "bias_hpa", "rms_hpa"});
-  for (const FlightResiduals& flight : comparison.flights) {
-    for (std::size_t m = 0; m < comparison.models.size(); ++m) {
-      double samples = 0.0;
-      double sum = 0.0;
-      double squares = 0.0;
-      for (const double value : flight.values[m]) {
-        if (std::isnan(value)) continue;
-        samples += 1.0;
-        sum += value;
-        squares += value * value;
-      }
-      table.add({flight.samples->name, comparison.models[m].name, fmt::format("{:.0f}", samples),
-                 cell(sum / samples), cell(std::sqrt(squares / samples))});
+  for (std::size_t f = 0; f < comparison.models.front().flights.size(); ++f) {
+    for (const ModelComparison& model : comparison.models) {
+      const auto& [flight, statistics] = model.flights[f];
+      table.add({flight, model.name, std::to_string(statistics.samples), cell(statistics.bias),
+                 cell(statistics.rms)});
     }
   }
   table.write(path);
@@ -276,6 +266,7 @@ void run(const Options& options) {
   compare_options.mask = mask_options(options.comparison);
   compare_options.time_stamp = time_stamp(options.comparison);
   compare_options.team = &team();
+  if (!options.residuals.empty()) compare_options.most_series = options.comparison.flights.size();
   Comparison comparison;
   {
     Progress bar("comparing", !options.common.quiet);

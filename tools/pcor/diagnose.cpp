@@ -197,7 +197,7 @@ void run(const Options& options) {
   diagnose_with.mask = mask_options(options.comparison);
   diagnose_with.time_stamp = time_stamp(options.comparison);
   diagnose_with.team = &team();
-  diagnose_with.series = wants_report(options.common);
+  if (!wants_report(options.common)) diagnose_with.series_of.emplace();
   diagnose_with.formulas = candidate_formulas(options.candidates, model, options.comparison.flights);
   diagnose_with.whole_file = !options.no_file_variables;
   diagnose_with.not_variables = options.not_variables;

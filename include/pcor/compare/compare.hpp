@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pcor {
@@ -68,7 +69,10 @@ struct Comparison {
   std::string reference;           ///< in words
   bool is_static_pressure = true;  ///< the reference; else the residual is of something else, in hPa
   std::vector<ModelComparison> models;
+  /// Those whose records are kept, in their order: all, or of many those in which the models fail most and
+  /// others spread over the time in which they were flown.
   std::vector<FlightResiduals> flights;
+  std::vector<std::pair<std::string, Interval>> intervals;  ///< of all flights, with the flight's name
   /// The total pressures of two systems, of the reference against that of the model: static defects cancel in
   /// it (memo, figure 1). Where the reference is a static system.
   std::optional<LineFit> total_pressure{};
@@ -84,6 +88,9 @@ struct CompareOptions {
   MaskOptions mask;
   TimeStamp time_stamp = TimeStamp::begin;
   Team* team = &alone();  ///< which shares the flights; all of its members get the comparison
+  /// Of how many flights the records are kept; the numbers are of all. Where there are more, those that are
+  /// kept are read once more.
+  std::size_t most_series = 16;
   /// Told after every flight of this member with every reference.
   std::function<void(std::size_t done, std::size_t total)> progress{};
 };
@@ -107,6 +114,7 @@ Comparison compare(const std::vector<std::filesystem::path>& flights,
 
 /// Writes the residuals of a flight to a netCDF file: for each model RESIDUAL_1, RESIDUAL_2 ..., delta-p of
 /// the model PCOR_1 ... and of the reference PCOR_REFERENCE_1 ..., and the mask and the regimes as flags.
+/// @param flight its number among those whose records are kept
 /// @throws Error if the file cannot be written.
 void write_residuals(const Comparison& comparison, std::size_t flight, const std::filesystem::path& input,
                      const std::filesystem::path& output, const std::string& history);

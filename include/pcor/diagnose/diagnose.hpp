@@ -35,8 +35,10 @@ struct DiagnoseOptions {
   MaskOptions mask;
   TimeStamp time_stamp = TimeStamp::begin;
   Team* team = &alone();  ///< which shares the flights; all of its members get the diagnosis
-  /// Whether `Diagnosis::flights` is filled, which holds every record of every flight.
-  bool series = true;
+  /// The flights, by number, of which `Diagnosis::flights` holds the records. If not said, all of up to
+  /// sixteen; of more those with the largest residual, and others spread over the time in which they were
+  /// flown.
+  std::optional<std::vector<std::size_t>> series_of{};
   /// Formula effects that are tried beside the catalogue. Those that the model has are part of the model.
   std::vector<ModelEffect> formulas{};
   bool whole_file = true;                    ///< look for structure in every variable of the files
@@ -215,7 +217,8 @@ struct Unexplained {
 
 /// A flight as the diagnosis saw it, for pictures. All arrays have one value for each record.
 struct FlightDiagnosis {
-  std::shared_ptr<const FlightSamples> samples;
+  std::size_t number = 0;                        ///< of the flight
+  std::shared_ptr<const FlightSamples> samples;  ///< none of a flight whose records are not held
   std::vector<Mask> mask;
   std::vector<double> before;  ///< residual, the model's own coefficients refitted, hPa; NaN where not used
   std::vector<double> after;   ///< residual with all findings, everything refitted, hPa
@@ -255,7 +258,7 @@ struct Diagnosis {
   Statistics flaps_out;                 ///< of samples left out because flaps are out, as the model is given
   std::vector<HeldOutPart> held_out{};  ///< the later parts of flights, or flights that `improve` held out
   std::array<std::size_t, mask_count> masks{};
-  std::vector<FlightDiagnosis> flights{};  ///< empty where `DiagnoseOptions::series` is false
+  std::vector<FlightDiagnosis> flights{};  ///< against each reference, those against the first one first
   std::vector<std::string> notes{};
 };
 

@@ -17,12 +17,29 @@ struct LineFit {
   std::size_t samples = 0;
 };
 
+/// Number, means and central sums of pairs: all that a line through them asks for.
+struct PairMoments {
+  std::size_t samples = 0;
+  double mean_x = 0.0;
+  double mean_y = 0.0;
+  double xx = 0.0;
+  double xy = 0.0;
+  double yy = 0.0;
+
+  /// Adds a pair; one with a NaN is left out.
+  void add(double x, double y);
+  /// Adds the pairs of another part (Chan, Golub and LeVeque 1983, The American Statistician 37, 242).
+  void add(const PairMoments& other);
+};
+
 /// The line with the least squares of the distances in y: all noise is in y. Pairs with a NaN are left out.
+LineFit ordinary_fit(const PairMoments& pairs);
 LineFit ordinary_fit(const std::vector<double>& x, const std::vector<double>& y);
 
 /// The line with the least squares of the distances perpendicular to it: x and y have equal noise (Deming's
 /// fit with a ratio of one, with which the memo draws its figure 2). The error of the slope is that of
 /// Deming's estimator for normal noise, slope sqrt((1 - r^2)/(n - 2))/r with the correlation r.
+LineFit orthogonal_fit(const PairMoments& pairs);
 LineFit orthogonal_fit(const std::vector<double>& x, const std::vector<double>& y);
 
 }  // namespace pcor

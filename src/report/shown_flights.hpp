@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace pcor::internal {
+
+/// Of how many flights a report holds the records: each sample is some 50 bytes of its page.
+constexpr std::size_t most_flights_shown = 16;
+
+/// A flight, as it may be chosen for the pictures of a report.
+struct FlightToShow {
+  double begin = 0.0;    ///< s since 1970 UTC
+  double failure = 0.0;  ///< rms of its residual, hPa; NaN where it has none
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(begin, failure);
+  }
+};
+
+/// The numbers, in their order, of the flights that a report shows: all of up to `most`. Of more, half are
+/// those with the largest residual, and half are spread over the time in which the others were flown.
+std::vector<std::size_t> flights_to_show(const std::vector<FlightToShow>& flights,
+                                         std::size_t most = most_flights_shown);
+
+/// What a reader has to know of pictures that do not show all flights, a sentence; empty where they do.
+std::string shown_text(std::size_t shown, std::size_t flights);
+
+}  // namespace pcor::internal

@@ -1,0 +1,59 @@
+#include "report/shown_flights.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <vector>
+
+namespace pcor::internal {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::IsSupersetOf;
+
+/// A flight a day, each with the same residual.
+std::vector<FlightToShow> flights(std::size_t count) {
+  std::vector<FlightToShow> all;
+  for (std::size_t f = 0; f < count; ++f) all.push_back({86400.0 * static_cast<double>(f), 0.2});
+  return all;
+}
+
+TEST(ShownFlights, AreAllOfFew) {
+  EXPECT_THAT(flights_to_show(flights(3)), ElementsAre(0, 1, 2));
+  EXPECT_EQ(flights_to_show(flights(most_flights_shown)).size(), most_flights_shown);
+}
+
+TEST(ShownFlights, OfManyAreTheWorstAndOthersOverAllOfTheTime) {
+  std::vector<FlightToShow> all = flights(200);
+  all[40].failure = 3.0;
+  all[41].failure = 2.0;
+  all[60].failure = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<std::size_t> shown = flights_to_show(all);
+  EXPECT_EQ(shown.size(), most_flights_shown);
+  EXPECT_TRUE(std::is_sorted(shown.begin(), shown.end()));
+  EXPECT_EQ(std::set<std::size_t>(shown.begin(), shown.end()).size(), shown.size());
+  EXPECT_THAT(shown, IsSupersetOf({40, 41}));
+  EXPECT_THAT(shown, testing::Not(testing::Contains(60)));
+  // Half of them in eight parts of the time, one each.
+  std::set<std::size_t> parts;
+  for (const std::size_t f : shown) parts.insert(f / 25);
+  EXPECT_EQ(parts.size(), 8U);
+}
+
+TEST(ShownFlights, AreThoseWithAResidual) {
+  std::vector<FlightToShow> all = flights(40);
+  for (std::size_t f = 3; f < all.size(); ++f) all[f].failure = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(flights_to_show(all), ElementsAre(0, 1, 2));
+}
+
+TEST(ShownFlights, AreToldOfWhereTheyAreNotAll) {
+  EXPECT_THAT(shown_text(16, 16), IsEmpty());
+  EXPECT_THAT(shown_text(16, 200), HasSubstr("16 of the 200 flights"));
+}
+
+}  // namespace
+}  // namespace pcor::internal
