@@ -42,23 +42,26 @@ void name_usual_variables(ModelFile& file, const FlightFiles& flights) {
     if (role == Quantity::sideslip && file.model.sideslip_radome.is_calibrated()) continue;
     open.emplace_back(role, usual_variables(family, role));
   }
-  for (std::size_t place = 0; !open.empty(); ++place) {  // the most usual first
-    open.erase(std::remove_if(open.begin(), open.end(),
-                              [&](const auto& each) { return place >= each.second.size(); }),
-               open.end());
-    const auto recorded = flights.share().of_each_flight<std::vector<bool>>([&](std::size_t number) {
-      std::vector<bool> has;
-      for (const auto& [role, variables] : open)
-        has.push_back(has_values(flights[number], variables[place], std::string(facts_of(role).unit)));
-      return has;
-    });
-    for (std::size_t k = open.size(); k-- > 0;) {
-      if (!std::all_of(recorded.begin(), recorded.end(), [k](const auto& has) { return has[k]; })) continue;
-      const std::string& variable = open[k].second[place];
-      file.variables[open[k].first] = variable;
-      if (std::string unit = family.unit_of(variable); !unit.empty())
-        file.units[open[k].first] = std::move(unit);
-      open.erase(open.begin() + static_cast<std::ptrdiff_t>(k));
+  const auto recorded =
+      flights.share().of_each_flight<std::vector<std::vector<bool>>>([&](std::size_t number) {
+        std::vector<std::vector<bool>> has;
+        for (const auto& [role, variables] : open) {
+          std::vector<bool>& own = has.emplace_back();
+          for (const std::string& variable : variables)
+            own.push_back(has_values(flights[number], variable, std::string(facts_of(role).unit)));
+        }
+        return has;
+      });
+  for (std::size_t k = 0; k < open.size(); ++k) {
+    const auto& [role, variables] = open[k];
+    for (std::size_t place = 0; place < variables.size(); ++place) {  // the most usual first
+      if (!std::all_of(recorded.begin(), recorded.end(),
+                       [&, k = k](const auto& has) { return has[k][place]; }))
+        continue;
+      file.variables[role] = variables[place];
+      if (std::string unit = family.unit_of(variables[place]); !unit.empty())
+        file.units[role] = std::move(unit);
+      break;
     }
   }
 }
@@ -80,34 +83,24 @@ Candidate candidate_of(const EffectFacts& facts) {
   return candidate;
 }
 
-/// The begins of the flights after the first, in the unit of the role date.
-std::vector<double> later_begins(const FlightFiles& flights) {
-  const UnitConversion to_date =
-      UnitConversion::between("seconds since 1970-01-01", std::string(facts_of(Quantity::date).unit), {});
-  std::set<double> begins;
-  for (const FileOutline& file : flights.outlines()) begins.insert(to_date(file.begin));
-  if (!begins.empty()) begins.erase(begins.begin());
-  return {begins.begin(), begins.end()};
-}
-
 bool reads_date(const EffectFacts& facts) { return facts.needs[0] == Quantity::date; }
 
-/// What a shape parameter is tried at: what its facts say, a date at the begins of flights.
+/// What a shape parameter is tried at: what its facts say, or dates.
 std::vector<double> tried_values(const EffectFacts& facts, const ParameterFacts& shape,
-                                 const FlightFiles& flights) {
-  if (reads_date(facts)) return later_begins(flights);
+                                 const std::vector<double>& dates) {
+  if (reads_date(facts)) return dates;
   return {shape.tried.begin(), std::find(shape.tried.begin(), shape.tried.end(), 0.0)};
 }
 
 /// The candidate in other shapes.
-std::vector<Candidate> variants_of(const Candidate& candidate, const FlightFiles& flights) {
+std::vector<Candidate> variants_of(const Candidate& candidate, const std::vector<double>& dates) {
   std::vector<Candidate> variants;
   if (candidate.effect.is_formula()) return variants;
   const EffectFacts& facts = effect_facts[effect_named(candidate.effect.id)];
   for (std::size_t i = 0; i < facts.parameter_count(); ++i) {
     const bool remembers = facts.memory.of != Quantity::count && facts.memory.parameter == i;
     if (!facts.parameters[i].shape || remembers) continue;
-    for (const double value : tried_values(facts, facts.parameters[i], flights)) {
+    for (const double value : tried_values(facts, facts.parameters[i], dates)) {
       if (value == candidate.effect.parameters[i]) continue;
       Candidate& variant = variants.emplace_back(candidate);
       variant.effect.parameters[i] = value;
@@ -234,8 +227,8 @@ std::vector<BaseCoefficient> base_of(const ModelFile& model) {
 
 /// Everything that the own system may have, a system that it is held against may have too. One residual of
 /// both knows their difference alone.
-void add_those_of_the_references(CandidateSet& set, const References& references,
-                                 const FlightFiles& flights) {
+void add_those_of_the_references(CandidateSet& set, const References& references, const FlightFiles& flights,
+                                 const std::vector<double>& dates) {
   for (std::size_t r = 0; r < references.size(); ++r) {
     const ModelFile* const model = references[r]->model();
     std::optional<ModelFile>& other = set.others.emplace_back();
@@ -264,9 +257,8 @@ void add_those_of_the_references(CandidateSet& set, const References& references
       if (!has_a_twin(facts.where) || has_effect(*model, facts.id)) continue;
       Candidate twin = candidate_of(facts);
       if (reads_date(facts)) {
-        const std::vector<double> begins = later_begins(flights);
-        if (begins.empty()) continue;
-        twin.effect.parameters[1] = begins.front();
+        if (dates.empty()) continue;
+        twin.effect.parameters[1] = dates.front();
       }
       twin.system = system;
       twin.id = id_on_other_system(system, twin.effect.id);
@@ -306,7 +298,8 @@ std::vector<std::size_t> free_parameters(const ModelFile& model) {
 }
 
 CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffect>& formulas,
-                             const FlightFiles& flights, const References& references) {
+                             const FlightFiles& flights, const References& references,
+                             const std::vector<double>& dates) {
   CandidateSet set;
   set.extended = model;
   name_usual_variables(set.extended, flights);
@@ -325,7 +318,7 @@ CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffe
   };
   const auto consider = [&](const Candidate& candidate) {
     if (add(candidate)) {
-      for (Candidate& variant : variants_of(candidate, flights)) add(std::move(variant));
+      for (Candidate& variant : variants_of(candidate, dates)) add(std::move(variant));
     } else {
       set.not_testable.push_back({candidate.effect.id, candidate.title, error.what});
     }
@@ -363,12 +356,11 @@ CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffe
     }
     Candidate candidate = candidate_of(facts);
     if (reads_date(facts)) {
-      const std::vector<double> begins = later_begins(flights);
-      if (begins.empty()) {
+      if (dates.empty()) {
         set.not_testable.push_back({candidate.effect.id, candidate.title, "it needs flights at two times"});
         continue;
       }
-      candidate.effect.parameters[1] = begins.front();
+      candidate.effect.parameters[1] = dates.front();
     }
     consider(candidate);
   }
@@ -376,7 +368,7 @@ CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffe
   const bool two_systems = std::any_of(references.begin(), references.end(),
                                        [](const auto& each) { return each->model() != nullptr; });
   add_derived_ones(set, two_systems);
-  add_those_of_the_references(set, references, flights);
+  add_those_of_the_references(set, references, flights, dates);
   return set;
 }
 

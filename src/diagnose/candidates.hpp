@@ -72,8 +72,10 @@ struct CandidateSet {
 
 /// The effects of the catalogue that are not in the model, and the formulas. An effect whose inputs some
 /// flight lacks is not testable, and told so. @throws Error if the model cannot be used.
+/// @param dates on which a step is tried, as the role date has them
 CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffect>& formulas,
-                             const FlightFiles& flights, const References& references);
+                             const FlightFiles& flights, const References& references,
+                             const std::vector<double>& dates = {});
 
 /// The places among all parameters of a model of those that are fitted.
 std::vector<std::size_t> free_parameters(const ModelFile& model);

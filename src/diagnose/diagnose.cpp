@@ -19,6 +19,7 @@
 #include "diagnose/flight_columns.hpp"
 #include "diagnose/packed_diagnosis.hpp"
 #include "diagnose/rms.hpp"
+#include "diagnose/step_dates.hpp"
 #include "diagnose/unexplained.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
@@ -255,6 +256,67 @@ void overrule(Diagnosis& diagnosis) {
   }
 }
 
+/// @param dates on which a step is tried
+Diagnosis diagnosis_with(const FlightFiles& files, const ModelFile& model, const References& all_references,
+                         const DiagnoseOptions& options, const std::vector<double>& dates) {
+  Diagnosis diagnosis;
+  const References references = usable_references(all_references, diagnosis.notes);
+  diagnosis.reference = description_of(references);
+  CandidateSet set = find_candidates(model, options.formulas, files, references, dates);
+  TeamColumns columns = columns_of_flights(files, files.count(), model, set, options, diagnosis.notes);
+  diagnosis.masks = count_masks(columns);
+  leave_out_empty(columns);
+  add_statistics(columns, options.training_share, diagnosis);
+  if (diagnosis.samples < diagnosis.masks[0]) {
+    diagnosis.notes.push_back(fmt::format("{} samples of the later parts of the flights took no part",
+                                          diagnosis.masks[0] - diagnosis.samples));
+  }
+  if (diagnosis.samples < fewest_samples) {
+    throw Error(fmt::format("{} samples are left to diagnose, and {} are the fewest that tell anything: {}",
+                            diagnosis.samples, fewest_samples, mask_text(diagnosis.masks)));
+  }
+  const FlapsCandidates flaps = find_flaps_candidates(set, columns);
+  drop_untestable(set, columns);
+  diagnosis.candidates = static_cast<std::size_t>(
+      std::count_if(set.candidates.begin(), set.candidates.end(),
+                    [](const Candidate& candidate) { return !candidate.is_variant; }));
+
+  const Analysis analysis(std::move(columns), groups_of(model, set.candidates), options.seed,
+                          options.explained);
+  diagnosis.threshold = analysis.result().threshold;
+  diagnosis.findings = findings_of(analysis, set.candidates);
+  advise(analysis, set, model, options.mask, diagnosis.findings);
+  diagnosis.absorbed = absorbed_of(analysis, set.candidates, set.base);
+  diagnosis.limits = limits_of(analysis, set.candidates, diagnosis.findings);
+  diagnosis.not_testable = std::move(set.not_testable);
+  diagnosis.own = own_of(analysis, set.base);
+  diagnosis.flights = flights_of(analysis);
+  using Series = const std::vector<double>&;
+  diagnosis.residual_rms =
+      rms_of(analysis.share(), [&](std::size_t f) -> Series { return diagnosis.flights[f].before; });
+  diagnosis.residual_rms_held_out = analysis.held_out({}).rms;
+  diagnosis.noise_rms_with_findings = noise_with_findings(analysis.share(), diagnosis.flights);
+  const double rms_after =
+      rms_of(analysis.share(), [&](std::size_t f) -> Series { return diagnosis.flights[f].after; });
+  UnexplainedStructure structure =
+      find_unexplained(analysis, files, model, references, inputs_of(diagnosis.findings, set.extended),
+                       options, rms_after, diagnosis.noise_rms_with_findings);
+  diagnosis.unexplained = std::move(structure.found);
+  for (std::size_t f = 0; f < structure.traced.size(); ++f)
+    diagnosis.flights[f].traced = std::move(structure.traced[f]);
+  if (structure.overrules) overrule(diagnosis);
+  if (!flaps.empty())
+    diagnose_flaps(analysis, flaps, groups_of(model, flaps.candidates), options.seed, diagnosis);
+  keep_series(analysis, options.series_of, diagnosis.flights);
+  double explained = 0.0;
+  for (const Finding& finding : diagnosis.findings) explained += finding.chi2;
+  diagnosis.verdict = verdict_of(diagnosis, explained, structure.left);
+  judge_held_out(diagnosis);
+  std::sort(diagnosis.notes.begin(), diagnosis.notes.end());
+  diagnosis.notes.erase(std::unique(diagnosis.notes.begin(), diagnosis.notes.end()), diagnosis.notes.end());
+  return diagnosis;
+}
+
 }  // namespace
 
 std::string_view name_of(Verdict verdict) {
@@ -310,63 +372,11 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
   for (std::size_t f = 0; f < paths.size(); ++f)
     aircraft.emplace_back(paths[f].filename().string(), files.outlines()[f].aircraft);
   require_one_aircraft(aircraft);
-
-  Diagnosis diagnosis;
-  const References references = usable_references(all_references, diagnosis.notes);
-  diagnosis.reference = description_of(references);
-  CandidateSet set = find_candidates(model, options.formulas, files, references);
-  TeamColumns columns = columns_of_flights(files, paths.size(), model, set, options, diagnosis.notes);
-  diagnosis.masks = count_masks(columns);
-  leave_out_empty(columns);
-  add_statistics(columns, options.training_share, diagnosis);
-  if (diagnosis.samples < diagnosis.masks[0]) {
-    diagnosis.notes.push_back(fmt::format("{} samples of the later parts of the flights took no part",
-                                          diagnosis.masks[0] - diagnosis.samples));
+  StepDates dates(files);
+  for (;;) {
+    Diagnosis diagnosis = diagnosis_with(files, model, all_references, options, dates.tried());
+    if (!dates.refine(diagnosis.findings)) return diagnosis;
   }
-  if (diagnosis.samples < fewest_samples) {
-    throw Error(fmt::format("{} samples are left to diagnose, and {} are the fewest that tell anything: {}",
-                            diagnosis.samples, fewest_samples, mask_text(diagnosis.masks)));
-  }
-  const FlapsCandidates flaps = find_flaps_candidates(set, columns);
-  drop_untestable(set, columns);
-  diagnosis.candidates = static_cast<std::size_t>(
-      std::count_if(set.candidates.begin(), set.candidates.end(),
-                    [](const Candidate& candidate) { return !candidate.is_variant; }));
-
-  const Analysis analysis(std::move(columns), groups_of(model, set.candidates), options.seed,
-                          options.explained);
-  diagnosis.threshold = analysis.result().threshold;
-  diagnosis.findings = findings_of(analysis, set.candidates);
-  advise(analysis, set, model, options.mask, diagnosis.findings);
-  diagnosis.absorbed = absorbed_of(analysis, set.candidates, set.base);
-  diagnosis.limits = limits_of(analysis, set.candidates, diagnosis.findings);
-  diagnosis.not_testable = std::move(set.not_testable);
-  diagnosis.own = own_of(analysis, set.base);
-  diagnosis.flights = flights_of(analysis);
-  using Series = const std::vector<double>&;
-  diagnosis.residual_rms =
-      rms_of(analysis.share(), [&](std::size_t f) -> Series { return diagnosis.flights[f].before; });
-  diagnosis.residual_rms_held_out = analysis.held_out({}).rms;
-  diagnosis.noise_rms_with_findings = noise_with_findings(analysis.share(), diagnosis.flights);
-  const double rms_after =
-      rms_of(analysis.share(), [&](std::size_t f) -> Series { return diagnosis.flights[f].after; });
-  UnexplainedStructure structure =
-      find_unexplained(analysis, files, model, references, inputs_of(diagnosis.findings, set.extended),
-                       options, rms_after, diagnosis.noise_rms_with_findings);
-  diagnosis.unexplained = std::move(structure.found);
-  for (std::size_t f = 0; f < structure.traced.size(); ++f)
-    diagnosis.flights[f].traced = std::move(structure.traced[f]);
-  if (structure.overrules) overrule(diagnosis);
-  if (!flaps.empty())
-    diagnose_flaps(analysis, flaps, groups_of(model, flaps.candidates), options.seed, diagnosis);
-  keep_series(analysis, options.series_of, diagnosis.flights);
-  double explained = 0.0;
-  for (const Finding& finding : diagnosis.findings) explained += finding.chi2;
-  diagnosis.verdict = verdict_of(diagnosis, explained, structure.left);
-  judge_held_out(diagnosis);
-  std::sort(diagnosis.notes.begin(), diagnosis.notes.end());
-  diagnosis.notes.erase(std::unique(diagnosis.notes.begin(), diagnosis.notes.end()), diagnosis.notes.end());
-  return diagnosis;
 }
 
 }  // namespace pcor

@@ -10,6 +10,7 @@
 #include <pcor/words/error.hpp>
 #include "diagnose/flight_columns.hpp"
 #include "diagnose/separation.hpp"
+#include "diagnose/step_dates.hpp"
 #include "diagnose/traced_effect.hpp"
 #include "diagnose/what_if_fit.hpp"
 #include "numerics/median.hpp"
@@ -57,6 +58,16 @@ std::size_t place_of(const std::vector<Candidate>& candidates, const WhatIfCandi
       best = c;
   }
   return best;
+}
+
+/// The dates of steps that are wanted; without one any date.
+std::vector<double> dates_for(const std::vector<WhatIfCandidate>& wanted, const FlightFiles& files) {
+  std::vector<ModelEffect> effects;
+  for (const WhatIfCandidate& each : wanted) {
+    if (each.effect) effects.push_back(*each.effect);
+  }
+  std::vector<double> dates = dates_of(effects);
+  return dates.empty() ? StepDates(files).tried() : dates;
 }
 
 /// Leaves the candidates that are wanted, and those that others are made of.
@@ -349,7 +360,8 @@ WhatIf what_if(const std::vector<std::filesystem::path>& paths, const ModelFile&
     if (each.effect && each.effect->is_formula() && std::none_of(formulas.begin(), formulas.end(), same))
       formulas.push_back(*each.effect);
   }
-  CandidateSet set = find_candidates(model, formulas, files, usable_references(all_references, notes));
+  CandidateSet set = find_candidates(model, formulas, files, usable_references(all_references, notes),
+                                     dates_for(wanted, files));
   keep(set, wanted);
   const MaskOptions& mask = options.diagnose.mask;
   TeamColumns columns = columns_of_flights(files, paths.size(), model, set, options.diagnose, notes);
