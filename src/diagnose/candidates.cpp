@@ -34,35 +34,32 @@ const AircraftFamily& family_of(const ModelFile& file, const FlightFiles& flight
 /// unit that fits. The flow angles stay as they are where the model computes them from the radome.
 void name_usual_variables(ModelFile& file, const FlightFiles& flights) {
   const AircraftFamily& family = family_of(file, flights);
-  std::vector<std::pair<Quantity, std::vector<std::string>>> open;
+  struct Usual {
+    Quantity role;
+    std::string variable;
+  };
+  std::vector<Usual> usual;  // of a role the most usual first
   for (std::size_t i = 0; i < role_count; ++i) {
     const auto role = static_cast<Quantity>(i);
     if (file.variables.count(role) != 0) continue;
     if (role == Quantity::attack && file.model.attack_radome.is_calibrated()) continue;
     if (role == Quantity::sideslip && file.model.sideslip_radome.is_calibrated()) continue;
-    open.emplace_back(role, usual_variables(family, role));
+    for (std::string& variable : usual_variables(family, role)) usual.push_back({role, std::move(variable)});
   }
-  const auto recorded =
-      flights.share().of_each_flight<std::vector<std::vector<bool>>>([&](std::size_t number) {
-        std::vector<std::vector<bool>> has;
-        for (const auto& [role, variables] : open) {
-          std::vector<bool>& own = has.emplace_back();
-          for (const std::string& variable : variables)
-            own.push_back(has_values(flights[number], variable, std::string(facts_of(role).unit)));
-        }
-        return has;
-      });
-  for (std::size_t k = 0; k < open.size(); ++k) {
-    const auto& [role, variables] = open[k];
-    for (std::size_t place = 0; place < variables.size(); ++place) {  // the most usual first
-      if (!std::all_of(recorded.begin(), recorded.end(),
-                       [&, k = k](const auto& has) { return has[k][place]; }))
-        continue;
-      file.variables[role] = variables[place];
-      if (std::string unit = family.unit_of(variables[place]); !unit.empty())
-        file.units[role] = std::move(unit);
-      break;
-    }
+  const auto recorded = flights.share().of_each_flight<std::vector<bool>>([&](std::size_t number) {
+    std::vector<bool> has;
+    for (const auto& [role, variable] : usual)
+      has.push_back(has_values(flights[number], variable, std::string(facts_of(role).unit)));
+    return has;
+  });
+  std::size_t place = 0;
+  for (const auto& [role, variable] : usual) {
+    const std::size_t k = place++;
+    if (file.variables.count(role) != 0) continue;
+    if (!std::all_of(recorded.begin(), recorded.end(), [k](const std::vector<bool>& has) { return has[k]; }))
+      continue;
+    file.variables[role] = variable;
+    if (std::string unit = family.unit_of(variable); !unit.empty()) file.units[role] = std::move(unit);
   }
 }
 
