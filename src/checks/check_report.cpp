@@ -12,6 +12,7 @@
 #include <pcor/checks/check.hpp>
 #include <pcor/words/utc.hpp>
 #include "report/columns.hpp"
+#include "report/shown_flights.hpp"
 #include "words/phrasing.hpp"
 
 namespace pcor {
@@ -165,6 +166,17 @@ std::vector<std::string> summary_of(const Checks& checks) {
   return summary;
 }
 
+/// Of many flights the pictures show some.
+void show_some(Report& report) {
+  std::vector<double> begins;
+  for (const std::size_t first : report.flight_starts) begins.push_back(report.time[first]);
+  const std::vector<std::size_t> shown = flights_over_time(begins);
+  if (shown.size() == begins.size()) return;
+  report.summary.push_back(
+      shown_text(shown.size(), begins.size(), "some that are spread over the time in which they were flown"));
+  show_only(report, shown);
+}
+
 }  // namespace
 
 Report check_report(const Checks& checks) {
@@ -172,6 +184,9 @@ Report check_report(const Checks& checks) {
   report.title = "Independent checks of the pressures";
   report.subtitle = checks.model;
   report.summary = summary_of(checks);
+  for (const CheckResult& result : checks.results)
+    report.columns.insert(report.columns.end(), result.columns.begin(), result.columns.end());
+  show_some(report);
   for (std::size_t i = 0; i < report.flight_names.size(); ++i) {
     const std::size_t first = report.flight_starts[i];
     const std::size_t end =
@@ -184,6 +199,7 @@ Report check_report(const Checks& checks) {
   for (const std::string& note : checks.notes) report.facts.emplace_back("Note", note);
   if (DotPanel picture = forest(checks); !picture.rows.empty()) report.items.emplace_back(std::move(picture));
   report.items.emplace_back(verdicts(checks));
+  const Shows shows(report.columns);
   for (const CheckResult& result : checks.results) {
     if (!result.ran) continue;
     ReportText text;
@@ -192,7 +208,6 @@ Report check_report(const Checks& checks) {
                        typeset(sentence(result.finding)), "What it cannot see: " + result.cannot_see};
     for (const std::string& note : result.notes) text.paragraphs.push_back(typeset(sentence(note)));
     report.items.emplace_back(std::move(text));
-    const Shows shows(result.columns);
     for (const ReportItem& picture : result.pictures) {
       if (std::visit(shows, picture)) report.items.push_back(picture);
     }
@@ -201,7 +216,6 @@ Report check_report(const Checks& checks) {
     }
     if (ReportTable numbers = numbers_of(result); !numbers.rows.empty())
       report.items.emplace_back(std::move(numbers));
-    report.columns.insert(report.columns.end(), result.columns.begin(), result.columns.end());
   }
   return report;
 }

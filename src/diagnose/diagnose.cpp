@@ -97,6 +97,7 @@ void keep_series(const Analysis& analysis, const std::optional<std::vector<std::
   std::vector<std::size_t> entries;  // against the first reference
   for (std::size_t f = 0; f < flights.size(); ++f) {
     flights[f].number = analysis.flights()[f].file;
+    flights[f].name = analysis.flights()[f].samples->name;
     if (analysis.flights()[f].reference == 0) entries.push_back(f);
   }
   std::set<std::size_t> kept;
@@ -121,9 +122,10 @@ void keep_series(const Analysis& analysis, const std::optional<std::vector<std::
   auto series = analysis.share().of_entries(entries).of_each_flight<FlightDiagnosis>(
       [&](std::size_t k) { return std::move(flights[entries[k]]); });
   for (FlightDiagnosis& flight : flights) {
-    const std::size_t number = flight.number;
-    flight = {};
-    flight.number = number;
+    FlightDiagnosis outline;
+    outline.number = flight.number;
+    outline.name = std::move(flight.name);
+    flight = std::move(outline);
   }
   for (std::size_t k = 0; k < entries.size(); ++k) flights[entries[k]] = std::move(series[k]);
 }

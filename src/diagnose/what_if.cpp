@@ -322,7 +322,7 @@ std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
   }
   for (const ModelEffect& formula : formulas) add({formula.id, "your formula"});
   std::vector<std::string> flights;
-  for (const FlightDiagnosis& flight : diagnosis.flights) flights.push_back(flight.samples->name);
+  for (const FlightDiagnosis& flight : diagnosis.flights) flights.push_back(flight.name);
   // A variable that no effect explains is as good as found.
   std::size_t traced = 0;
   for (const TracedVariable& variable : diagnosis.unexplained.variables) {

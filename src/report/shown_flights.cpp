@@ -4,37 +4,92 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
+#include <utility>
 
 namespace pcor::internal {
 
-std::vector<std::size_t> flights_to_show(const std::vector<FlightToShow>& flights, std::size_t most) {
-  std::vector<std::size_t> all(flights.size());
+namespace {
+
+/// Some of the flights, at even distances in the order in which they were flown.
+template <class Begin>
+std::vector<std::size_t> spread(std::vector<std::size_t> flights, std::size_t most, const Begin& begin) {
+  std::stable_sort(flights.begin(), flights.end(),
+                   [&](std::size_t a, std::size_t b) { return begin(a) < begin(b); });
+  const std::size_t count = std::min(flights.size(), most);
+  std::vector<std::size_t> some;
+  for (std::size_t k = 0; k < count; ++k) some.push_back(flights[(2 * k + 1) * flights.size() / (2 * count)]);
+  return some;
+}
+
+std::vector<std::size_t> numbers_to(std::size_t count) {
+  std::vector<std::size_t> all(count);
   std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::size_t> flights_to_show(const std::vector<FlightToShow>& flights, std::size_t most) {
+  std::vector<std::size_t> all = numbers_to(flights.size());
   if (flights.size() <= most) return all;
   all.erase(
       std::remove_if(all.begin(), all.end(), [&](std::size_t f) { return std::isnan(flights[f].failure); }),
       all.end());
   std::stable_sort(all.begin(), all.end(),
                    [&](std::size_t a, std::size_t b) { return flights[a].failure > flights[b].failure; });
-  std::vector<std::size_t> chosen(all.begin(),
-                                  all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), most / 2)));
-  all.erase(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(chosen.size()));
-  std::stable_sort(all.begin(), all.end(),
-                   [&](std::size_t a, std::size_t b) { return flights[a].begin < flights[b].begin; });
-  const std::size_t spread = std::min(all.size(), most - chosen.size());
-  for (std::size_t k = 0; k < spread; ++k) chosen.push_back(all[(2 * k + 1) * all.size() / (2 * spread)]);
+  const auto worst = all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), most / 2));
+  std::vector<std::size_t> chosen(all.begin(), worst);
+  for (const std::size_t f : spread({worst, all.end()}, most - chosen.size(),
+                                    [&](std::size_t each) { return flights[each].begin; }))
+    chosen.push_back(f);
   std::sort(chosen.begin(), chosen.end());
   return chosen;
 }
 
-std::string shown_text(std::size_t shown, std::size_t flights) {
+std::vector<std::size_t> flights_over_time(const std::vector<double>& begins, std::size_t most) {
+  std::vector<std::size_t> chosen =
+      spread(numbers_to(begins.size()), most, [&](std::size_t f) { return begins[f]; });
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
+}
+
+void show_only(Report& report, const std::vector<std::size_t>& flights) {
+  std::vector<std::size_t> samples;
+  std::vector<std::size_t> starts;
+  std::vector<std::string> names;
+  std::vector<ReportInterval> intervals;
+  for (const std::size_t flight : flights) {
+    const std::size_t first = report.flight_starts[flight];
+    const std::size_t end =
+        flight + 1 < report.flight_starts.size() ? report.flight_starts[flight + 1] : report.time.size();
+    if (first == end) continue;
+    starts.push_back(samples.size());
+    names.push_back(report.flight_names[flight]);
+    for (std::size_t i = first; i < end; ++i) samples.push_back(i);
+    const double begins = report.time[first];
+    const double ends = report.time[end - 1];
+    std::copy_if(report.intervals.begin(), report.intervals.end(), std::back_inserter(intervals),
+                 [&](const ReportInterval& each) { return each.end >= begins && each.begin <= ends; });
+  }
+  const auto cut = [&samples](std::vector<double>& values) {
+    for (std::size_t k = 0; k < samples.size(); ++k) values[k] = values[samples[k]];
+    values.resize(samples.size());
+  };
+  cut(report.time);
+  for (ReportColumn& column : report.columns) cut(column.values);
+  report.flight_starts = std::move(starts);
+  report.flight_names = std::move(names);
+  report.intervals = std::move(intervals);
+}
+
+std::string shown_text(std::size_t shown, std::size_t flights, const std::string& which) {
   if (shown >= flights) return "";
   return fmt::format(
-      "The pictures, and what is selected in them, are of {} of the {} flights: those with the largest "
-      "residuals, and others spread over the time in which they were flown. All other numbers are of all "
-      "flights.",
-      shown, flights);
+      "The pictures, and what is selected in them, are of {} of the {} flights: {}. All other numbers are of "
+      "all flights.",
+      shown, flights, which);
 }
 
 }  // namespace pcor::internal

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <pcor/report/report.hpp>
+
 namespace pcor::internal {
 
 /// Of how many flights a report holds the records: each sample is some 50 bytes of its page.
@@ -25,7 +27,19 @@ struct FlightToShow {
 std::vector<std::size_t> flights_to_show(const std::vector<FlightToShow>& flights,
                                          std::size_t most = most_flights_shown);
 
+/// As `flights_to_show` where nothing says which are the worst: of many those that are spread over time.
+/// @param begins of the flights, s since 1970 UTC
+std::vector<std::size_t> flights_over_time(const std::vector<double>& begins,
+                                           std::size_t most = most_flights_shown);
+
+/// Leaves the records and intervals of some flights of a report.
+void show_only(Report& report, const std::vector<std::size_t>& flights);
+
 /// What a reader has to know of pictures that do not show all flights, a sentence; empty where they do.
-std::string shown_text(std::size_t shown, std::size_t flights);
+/// @param which the flights that are shown are
+std::string shown_text(std::size_t shown, std::size_t flights,
+                       const std::string& which =
+                           "those with the largest residuals, and others spread over "
+                           "the time in which they were flown");
 
 }  // namespace pcor::internal

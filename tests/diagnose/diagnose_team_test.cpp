@@ -1,6 +1,7 @@
 // A diagnosis by a team is that of one process alone, bit by bit.
 #include <gmock/gmock.h>
 #include <pcor/diagnose/diagnose.hpp>
+#include <pcor/diagnose/diagnosis_report.hpp>
 #include <pcor/diagnose/what_if.hpp>
 #include <pcor/simulate/simulate.hpp>
 #include <pcor/words/error.hpp>
@@ -275,11 +276,17 @@ TEST(DiagnosisOfATeam, HoldsTheRecordsThatAreAskedFor) {
   options.whole_file = false;
   for (const std::vector<std::size_t>& wanted : {std::vector<std::size_t>{}, {1, 4}}) {
     options.series_of = wanted;
+    const Diagnosis diagnosis = expect_that_of_one(flights("", 30), {lams_reference()}, options);
     std::vector<std::size_t> held;
-    for (const FlightDiagnosis& flight :
-         expect_that_of_one(flights("", 30), {lams_reference()}, options).flights) {
+    for (const FlightDiagnosis& flight : diagnosis.flights) {
       EXPECT_EQ(flight.samples == nullptr, flight.before.empty());
+      EXPECT_THAT(flight.name, HasSubstr("30-"));
       if (flight.samples) held.push_back(flight.number);
+    }
+    EXPECT_THAT(what_if_candidates(diagnosis, {}), Not(IsEmpty()));
+    if (!wanted.empty()) {
+      EXPECT_THAT(diagnosis_report(diagnosis, model()).summary,
+                  testing::Contains(HasSubstr("2 of the 5 flights")));
     }
     EXPECT_EQ(held, wanted);
   }

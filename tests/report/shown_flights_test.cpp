@@ -50,6 +50,34 @@ TEST(ShownFlights, AreThoseWithAResidual) {
   EXPECT_THAT(flights_to_show(all), ElementsAre(0, 1, 2));
 }
 
+TEST(ShownFlights, OverTimeAreSpread) {
+  std::vector<double> begins;
+  for (int f = 0; f < 90; ++f) begins.push_back(static_cast<double>((f * 37) % 90));
+  std::vector<double> shown;
+  for (const std::size_t f : flights_over_time(begins, 9)) shown.push_back(begins[f]);
+  std::sort(shown.begin(), shown.end());
+  EXPECT_THAT(shown, ElementsAre(5, 15, 25, 35, 45, 55, 65, 75, 85));
+  EXPECT_THAT(flights_over_time({3.0, 1.0, 2.0}), ElementsAre(0, 1, 2));
+}
+
+TEST(ShownFlights, OfAReportKeepTheirRecordsAndIntervals) {
+  Report report;
+  report.time = {0, 1, 100, 101, 102, 200, 201};
+  report.flight_starts = {0, 2, 5};
+  report.flight_names = {"one", "two", "three"};
+  report.columns = {{"a", "a", "", {1, 2, 3, 4, 5, 6, 7}}, {"b", "b", "", {7, 6, 5, 4, 3, 2, 1}}};
+  report.intervals = {{"climb", 0, 1}, {"climb", 100, 101}, {"turn", 150, 160}, {"turn", 200, 230}};
+  show_only(report, {0, 2});
+  EXPECT_THAT(report.time, ElementsAre(0, 1, 200, 201));
+  EXPECT_THAT(report.flight_starts, ElementsAre(0, 2));
+  EXPECT_THAT(report.flight_names, ElementsAre("one", "three"));
+  EXPECT_THAT(report.columns[0].values, ElementsAre(1, 2, 6, 7));
+  EXPECT_THAT(report.columns[1].values, ElementsAre(7, 6, 2, 1));
+  ASSERT_EQ(report.intervals.size(), 2U);
+  EXPECT_EQ(report.intervals[0].end, 1);
+  EXPECT_EQ(report.intervals[1].end, 230);
+}
+
 TEST(ShownFlights, AreToldOfWhereTheyAreNotAll) {
   EXPECT_THAT(shown_text(16, 16), IsEmpty());
   EXPECT_THAT(shown_text(16, 200), HasSubstr("16 of the 200 flights"));

@@ -218,6 +218,7 @@ struct Unexplained {
 /// A flight as the diagnosis saw it, for pictures. All arrays have one value for each record.
 struct FlightDiagnosis {
   std::size_t number = 0;                        ///< of the flight
+  std::string name;                              ///< that of its file
   std::shared_ptr<const FlightSamples> samples;  ///< none of a flight whose records are not held
   std::vector<Mask> mask;
   std::vector<double> before;  ///< residual, the model's own coefficients refitted, hPa; NaN where not used
