@@ -166,17 +166,6 @@ std::vector<std::string> summary_of(const Checks& checks) {
   return summary;
 }
 
-/// Of many flights the pictures show some.
-void show_some(Report& report) {
-  std::vector<double> begins;
-  for (const std::size_t first : report.flight_starts) begins.push_back(report.time[first]);
-  const std::vector<std::size_t> shown = flights_over_time(begins);
-  if (shown.size() == begins.size()) return;
-  report.summary.push_back(
-      shown_text(shown.size(), begins.size(), "some that are spread over the time in which they were flown"));
-  show_only(report, shown);
-}
-
 }  // namespace
 
 Report check_report(const Checks& checks) {
@@ -186,7 +175,7 @@ Report check_report(const Checks& checks) {
   report.summary = summary_of(checks);
   for (const CheckResult& result : checks.results)
     report.columns.insert(report.columns.end(), result.columns.begin(), result.columns.end());
-  show_some(report);
+  show_flights_over_time(report);
   for (std::size_t i = 0; i < report.flight_names.size(); ++i) {
     const std::size_t first = report.flight_starts[i];
     const std::size_t end =

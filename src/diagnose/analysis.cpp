@@ -6,7 +6,6 @@
 #include <string>
 
 #include "diagnose/rms.hpp"
-#include "numerics/binned_rows.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/spikes.hpp"
@@ -49,17 +48,14 @@ Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::ui
       groups_(std::move(groups)),
       seed_(seed) {
   base_ = columns.flights.front().base.cols();
-  for (FlightColumns& flight : columns.flights) {
-    const Binning& bins = bins_.emplace_back(flight.given, flight.samples->time, flight.samples->step,
-                                             std::max(flight.window, Binning::usual_width));
-    columns_.push_back(binned_columns(flight, bins));
-    residuals_.push_back(bins.means(flight.given));
+  binned_ = in_bins(share_, columns.flights, [&](std::size_t f) { return columns.flights[f].given; });
+  for (std::size_t f = 0; f < columns.flights.size(); ++f) {
+    FlightColumns& flight = columns.flights[f];
+    columns_.push_back(binned_columns(flight, binned_.bins[f]));
+    residuals_.push_back(binned_.bins[f].means(flight.given));
     (flight.reference == 0 ? flights_ : further_).push_back(std::move(flight));
   }
-  first_bins_ = part(bins_, 0, flights_.size());
-  binned_ = share_.of_each_flight<NoiseFlight>([this](std::size_t f) {
-    return NoiseFlight{bins_[f].size() > 0 ? bins_[f].time().front() : 0.0, bins_[f].size()};
-  });
+  first_bins_ = part(binned_.bins, 0, flights_.size());
   const auto normal = share_.sum_of_each_flight<Eigen::MatrixXd>([this](std::size_t f) {
     Eigen::MatrixXd part(base_, base_ + 1);
     part.leftCols(base_) = columns_[f].leftCols(base_).transpose() * columns_[f].leftCols(base_);
@@ -139,7 +135,7 @@ std::vector<double> Analysis::added(std::size_t flight, const std::vector<std::s
                                     const Eigen::VectorXd& estimate) const {
   const FlightColumns& columns = this->flight(flight);
   std::vector<double> result(columns.given.size(), nan);
-  for (const std::size_t record : bins_[flight].records()) {
+  for (const std::size_t record : binned_.bins[flight].records()) {
     const Eigen::Index row = as_index(record);
     double sum = columns.base.row(row).cast<double>().dot(estimate.head(base_));
     Eigen::Index place = base_;
@@ -159,7 +155,7 @@ std::vector<double> Analysis::added_by(std::size_t flight, const std::vector<std
   for (std::size_t i = 0; i < which; ++i) place += groups_[groups[i]].count;
   const ColumnGroup& group = groups_[groups[which]];
   std::vector<double> result(columns.given.size(), nan);
-  for (const std::size_t record : bins_[flight].records()) {
+  for (const std::size_t record : binned_.bins[flight].records()) {
     result[record] = columns.candidates.row(as_index(record))
                          .segment(group.first, group.count)
                          .cast<double>()
@@ -169,7 +165,7 @@ std::vector<double> Analysis::added_by(std::size_t flight, const std::vector<std
 }
 
 void Analysis::replace_outliers(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate) {
-  for (std::size_t f = 0; f < bins_.size(); ++f) {
+  for (std::size_t f = 0; f < binned_.bins.size(); ++f) {
     if (!share_.owns(f)) continue;
     FlightColumns& flight = this->flight(f);
     std::size_t count = 0;
@@ -177,48 +173,19 @@ void Analysis::replace_outliers(const std::vector<std::size_t>& groups, const Ei
     flight.residual =
         without_outliers(flight.given, predicted, flight.samples->time, flight.samples->step, count);
     // A record that is in no bin has no prediction; it does not count anyway.
-    residuals_[f] = bins_[f].means(flight.residual);
+    residuals_[f] = binned_.bins[f].means(flight.residual);
   }
   first_residuals_ = part(residuals_, 0, flights_.size());
 }
 
-template <class Find>
 void Analysis::for_each_reference(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate,
-                                  const Find& find) {
-  noise_.resize(bins_.size());
+                                  const FindNoise& find) {
   const std::vector<Eigen::Index> places = places_of(groups);
-  for (std::size_t first = 0; first < bins_.size();) {
-    std::size_t last = first;
-    while (last < bins_.size() && flight(last).reference == flight(first).reference) ++last;
-    std::vector<std::size_t> few = flights_for_noise(part(binned_, first, last));
-    for (std::size_t& f : few) f += first;
-    const auto rows_of = share_.of_entries(few).of_each_flight<BinnedRows>(
-        [&](std::size_t k) {
-          const std::size_t f = few[k];
-          BinnedRows some{bins_[f], {columns_[f].rows(), as_index(places.size()) + 1}};
-          some.rows << columns_[f](Eigen::all, places), left_of(f, groups, estimate);
-          return some;
-        },
-        digest_of(packed(estimate)));
-    std::vector<Binning> bins;
-    std::vector<Eigen::MatrixXd> columns;
-    std::vector<Eigen::VectorXd> residuals;
-    for (const BinnedRows& some : rows_of) {
-      bins.push_back(some.bins);
-      columns.emplace_back(some.rows.leftCols(as_index(places.size())));
-      residuals.emplace_back(some.rows.rightCols(1));
-    }
-    NoiseModel shared = find(bins, columns, residuals);
-    shared.level.clear();
-    for (std::size_t f = first; f < last; ++f) {
-      noise_[f] = shared;
-      noise_[f].level.resize(1);
-      if (!share_.owns(f)) continue;
-      noise_[f].level[0] =
-          level_of_bins(noise_levels(bins_[f], left_of(f, groups, estimate), shared), bins_[f]);
-    }
-    first = last;
-  }
+  noise_ = noise_of_flights(
+      share_, binned_,
+      {[&](std::size_t f) -> Eigen::MatrixXd { return columns_[f](Eigen::all, places); },
+       [&](std::size_t f) { return left_of(f, groups, estimate); }, digest_of(packed(estimate))},
+      find);
   first_noise_ = noise_.front();
   first_noise_.level.clear();
   for (std::size_t f = 0; f < flights_.size(); ++f) first_noise_.level.push_back(noise_[f].level[0]);
@@ -257,9 +224,9 @@ void Analysis::keep_coefficients(const std::vector<std::size_t>& groups, const E
 }
 
 void Analysis::find_search() {
-  scores_ = std::make_unique<Scores>(find_scores(share_, bins_, columns_, residuals_, noise_));
-  white_noise_.assign(bins_.size(), {});
-  for (std::size_t f = 0; f < bins_.size(); ++f) {
+  scores_ = std::make_unique<Scores>(find_scores(share_, binned_.bins, columns_, residuals_, noise_));
+  white_noise_.assign(binned_.bins.size(), {});
+  for (std::size_t f = 0; f < binned_.bins.size(); ++f) {
     if (share_.owns(f)) white_noise_[f] = scores_->left(f, coefficients_);
   }
   take_out_common_noise(*scores_);
@@ -269,11 +236,11 @@ void Analysis::find_search() {
 void Analysis::take_out_common_noise(Scores& scores) const {
   if (further_.empty()) return;
   std::vector<Eigen::VectorXd> left = white_noise_;
-  for (std::size_t later = flights_.size(); later < bins_.size(); ++later) {
+  for (std::size_t later = flights_.size(); later < binned_.bins.size(); ++later) {
     if (!share_.owns(later)) continue;
     for (std::size_t earlier = 0; earlier < later; ++earlier) {
       if (flight(earlier).file == flight(later).file && flight(earlier).window == flight(later).window)
-        internal::take_out_common_noise(bins_, earlier, later, left, scores);
+        internal::take_out_common_noise(binned_.bins, earlier, later, left, scores);
     }
   }
   sum_up(scores);
@@ -285,7 +252,7 @@ Scores Analysis::scores_with(const std::vector<Eigen::MatrixXd>& more) const {
     Eigen::MatrixXd& both = columns.emplace_back(more[f].rows(), base_ + more[f].cols());
     both << columns_[f].leftCols(base_), more[f];
   }
-  Scores scores = find_scores(share_, bins_, columns, residuals_, noise_);
+  Scores scores = find_scores(share_, binned_.bins, columns, residuals_, noise_);
   take_out_common_noise(scores);
   return scores;
 }
@@ -294,15 +261,15 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
   const std::vector<Eigen::Index> places = places_of(groups);
   const Eigen::Index width = as_index(places.size()) + 1;
   const auto part_of = [this](std::size_t f, double time) { return held_out_part(*flight(f).samples, time); };
-  std::vector<Eigen::MatrixXd> white(bins_.size());
+  std::vector<Eigen::MatrixXd> white(binned_.bins.size());
   // The sums of the parts side by side.
   const auto information = share_.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
     Eigen::MatrixXd all(columns_[f].rows(), width);
     all << columns_[f](Eigen::all, places), residuals_[f];
-    white[f] = whitened(all, bins_[f], noise_[f], 0);
+    white[f] = whitened(all, binned_.bins[f], noise_[f], 0);
     Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(width, width * as_index(held_out_parts));
     for (Eigen::Index i = 0; i < white[f].rows(); ++i) {
-      const std::size_t part = part_of(f, bins_[f].time()[static_cast<std::size_t>(i)]);
+      const std::size_t part = part_of(f, binned_.bins[f].time()[static_cast<std::size_t>(i)]);
       sums.middleCols(width * as_index(part), width)
           .selfadjointView<Eigen::Lower>()
           .rankUpdate(white[f].row(i).transpose());
@@ -325,7 +292,8 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
   result.chi2 = scores_->by_minutes([&](std::size_t f) {
     Eigen::VectorXd squares(white[f].rows());
     for (Eigen::Index i = 0; i < white[f].rows(); ++i) {
-      const Eigen::VectorXd& estimate = estimates[part_of(f, bins_[f].time()[static_cast<std::size_t>(i)])];
+      const Eigen::VectorXd& estimate =
+          estimates[part_of(f, binned_.bins[f].time()[static_cast<std::size_t>(i)])];
       const double left = white[f](i, width - 1) - white[f].row(i).head(width - 1) * estimate;
       squares[i] = left * left;
     }
@@ -337,7 +305,7 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
                      std::vector<std::vector<double>> predicted;
                      for (const Eigen::VectorXd& estimate : estimates)
                        predicted.push_back(added(f, groups, estimate));
-                     for (const std::size_t record : bins_[f].records()) {
+                     for (const std::size_t record : binned_.bins[f].records()) {
                        if (flights_[f].residual[record] != flights_[f].given[record]) continue;  // an outlier
                        const std::size_t part = part_of(f, flights_[f].samples->time[record]);
                        sum.add(flights_[f].given[record] - predicted[part][record]);
@@ -350,7 +318,7 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
 
 std::vector<double> Analysis::drift(std::size_t flight, const std::vector<std::size_t>& groups) const {
   std::vector<double> result(flights_[flight].given.size(), nan);
-  const Binning& bins = bins_[flight];
+  const Binning& bins = binned_.bins[flight];
   Eigen::VectorXd estimate;
   Eigen::MatrixXd covariance;
   search_->fit(groups, estimate, covariance);

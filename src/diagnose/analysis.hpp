@@ -5,11 +5,11 @@
 #include <memory>
 #include <vector>
 
+#include "diagnose/binned_flights.hpp"
 #include "diagnose/columns.hpp"
 #include "diagnose/flight_columns.hpp"
 #include "diagnose/scores.hpp"
 #include "diagnose/search.hpp"
-#include "numerics/noise_flights.hpp"
 #include "numerics/noise_model.hpp"
 
 namespace pcor::internal {
@@ -45,17 +45,14 @@ class Analysis {
   const FlightShare& whole_share() const { return share_; }
   const std::vector<FlightColumns>& flights() const { return flights_; }
   /// How many flights there are, each counted for each reference.
-  std::size_t flight_count() const { return bins_.size(); }
+  std::size_t flight_count() const { return binned_.bins.size(); }
   const FlightColumns& flight(std::size_t number) const {
     return number < flights_.size() ? flights_[number] : further_[number - flights_.size()];
   }
   /// Of the flights against the first reference the few from which what flights have in common is learnt.
-  std::vector<std::size_t> few() const {
-    return flights_for_noise(
-        {binned_.begin(), binned_.begin() + static_cast<std::ptrdiff_t>(flights_.size())});
-  }
+  std::vector<std::size_t> few() const { return binned_.few(); }
   const std::vector<Binning>& bins() const { return first_bins_; }
-  const Binning& bins(std::size_t flight) const { return bins_[flight]; }
+  const Binning& bins(std::size_t flight) const { return binned_.bins[flight]; }
   /// Of the flights against the first reference, with the levels of the own.
   const NoiseModel& noise() const { return first_noise_; }
   /// Twice the gain in log-likelihood by slow drift against the first reference.
@@ -98,9 +95,8 @@ class Analysis {
   void find_first_noise(const Eigen::VectorXd& estimate);
   /// The noise of the flights against each reference. What flights share of it is found from a few of them,
   /// by `find(bins, columns, residuals)`; the levels of a flight follow from that and its own residual.
-  template <class Find>
   void for_each_reference(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate,
-                          const Find& find);
+                          const FindNoise& find);
   void keep_coefficients(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate);
   void find_search();
   /// Out of the rows against further references.
@@ -123,9 +119,8 @@ class Analysis {
   std::vector<ColumnGroup> groups_;
   std::uint64_t seed_;
   Eigen::Index base_ = 0;
-  std::vector<Binning> bins_{};
+  BinnedFlights binned_{};
   std::vector<Binning> first_bins_{};
-  std::vector<NoiseFlight> binned_{};
   std::vector<Eigen::MatrixXd> columns_{};  // base and candidates, in bins
   std::vector<Eigen::VectorXd> residuals_{};
   std::vector<Eigen::VectorXd> first_residuals_{};

@@ -355,6 +355,14 @@ std::string places_text(const TracedVariable& variable) {
 
 std::string Finding::id() const { return of_reference ? id_on_other_system(system, effect.id) : effect.id; }
 
+std::vector<std::size_t> Diagnosis::flights_with_records() const {
+  std::set<std::size_t> numbers;
+  for (const FlightDiagnosis& flight : flights) {
+    if (flight.samples) numbers.insert(flight.number);
+  }
+  return {numbers.begin(), numbers.end()};
+}
+
 void judge_held_out(Diagnosis& diagnosis) {
   for (const HeldOutPart& part : diagnosis.held_out) {
     if (!part.is_off()) continue;

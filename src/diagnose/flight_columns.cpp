@@ -121,6 +121,19 @@ References usable_references(const References& references, std::vector<std::stri
   return result;
 }
 
+TeamColumns columns_of_entries(const FlightShare& share,
+                               const std::function<FlightColumns(std::size_t)>& make) {
+  std::vector<FlightColumns> own(share.flights());
+  TeamColumns columns{share, share.of_each_flight<FlightColumns>([&](std::size_t entry) {
+                        own[entry] = make(entry);
+                        return outline_of(own[entry]);
+                      })};
+  for (std::size_t entry = 0; entry < own.size(); ++entry) {
+    if (share.owns(entry)) columns.flights[entry] = std::move(own[entry]);
+  }
+  return columns;
+}
+
 TeamColumns columns_of_flights(const FlightFiles& files, std::size_t count, const ModelFile& model,
                                const CandidateSet& set, const DiagnoseOptions& options,
                                std::vector<std::string>& notes) {
@@ -128,30 +141,28 @@ TeamColumns columns_of_flights(const FlightFiles& files, std::size_t count, cons
   for (std::size_t r = 0; r < set.references.size(); ++r) {
     for (std::size_t file = 0; file < count; ++file) file_of_each.push_back(file);
   }
-  std::vector<FlightColumns> own(file_of_each.size());
+  std::vector<std::shared_ptr<const FlightSamples>> first(count);  // with values of the first reference
   std::size_t done = 0;
-  TeamColumns columns{files.share().of_entries(file_of_each)};
-  columns.flights = columns.share.of_each_flight<FlightColumns>([&](std::size_t number) {
-    const std::size_t file = file_of_each[number];
-    const std::size_t r = number / count;
+  TeamColumns columns = columns_of_entries(files.share().of_entries(file_of_each), [&](std::size_t entry) {
+    const std::size_t file = file_of_each[entry];
+    const std::size_t r = entry / count;
     auto samples = std::make_shared<FlightSamples>(
-        r == 0 ? read_samples(files[file], set.extended, *set.references[0], options.mask)
-               : *own[file].samples);
-    if (r > 0) {
+        r == 0 ? read_samples(files[file], set.extended, *set.references[0], options.mask) : *first[file]);
+    if (r == 0) {
+      first[file] = samples;
+    } else {
       samples->notes.clear();
       samples->reference = set.references[r]->read(files[file], samples->time, samples->notes);
       mark_frozen(*samples, &FlightSamples::reference, options.mask.least_airspeed);
     }
-    own[number] = find_columns(std::move(samples), model, set, r, options.mask, options.training_share);
-    own[number].file = file;
+    FlightColumns found =
+        find_columns(std::move(samples), model, set, r, options.mask, options.training_share);
+    found.file = file;
     if (r == 0 && options.progress) options.progress(++done, files.share().own());
-    return outline_of(own[number]);
+    return found;
   });
-  for (std::size_t number = 0; number < own.size(); ++number) {
-    const std::vector<std::string>& more = columns.flights[number].samples->notes;
-    notes.insert(notes.end(), more.begin(), more.end());
-    if (columns.share.owns(number)) columns.flights[number] = std::move(own[number]);
-  }
+  for (const FlightColumns& flight : columns.flights)
+    notes.insert(notes.end(), flight.samples->notes.begin(), flight.samples->notes.end());
   return columns;
 }
 

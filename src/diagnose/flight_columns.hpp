@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,10 @@ struct TeamColumns {
   FlightShare share;
   std::vector<FlightColumns> flights{};
 };
+
+/// The columns of entries of a share. @param make gives them of an own entry
+TeamColumns columns_of_entries(const FlightShare& share,
+                               const std::function<FlightColumns(std::size_t entry)>& make);
 
 /// The columns of the first `count` flights against each of the set's references.
 /// @param notes get what a user should know of the flights

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include <pcor/words/error.hpp>
@@ -13,11 +14,11 @@
 #include "diagnose/step_dates.hpp"
 #include "diagnose/traced_effect.hpp"
 #include "diagnose/what_if_fit.hpp"
-#include "numerics/median.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "residuals/masks.hpp"
 #include "residuals/moving_columns.hpp"
+#include "team/median_of_all.hpp"
 
 namespace pcor {
 
@@ -88,7 +89,7 @@ void keep(CandidateSet& set, const std::vector<WhatIfCandidate>& wanted) {
 
 /// Brings candidates and columns into the order in which they are wanted; gives what is wanted of those that
 /// could be tested.
-std::vector<WhatIfCandidate> put_in_order(CandidateSet& set, std::vector<FlightColumns>& flights,
+std::vector<WhatIfCandidate> put_in_order(CandidateSet& set, TeamColumns& flights,
                                           const std::vector<WhatIfCandidate>& wanted) {
   std::vector<Eigen::Index> begins;
   Eigen::Index width = 0;
@@ -108,7 +109,7 @@ std::vector<WhatIfCandidate> put_in_order(CandidateSet& set, std::vector<FlightC
       columns.push_back(begins[place] + as_index(k));
   }
   set.candidates = std::move(candidates);
-  for (FlightColumns& flight : flights)
+  for (FlightColumns& flight : flights.flights)
     flight.candidates = Eigen::MatrixXf(flight.candidates(Eigen::all, columns));
   return found;
 }
@@ -120,31 +121,32 @@ FlightColumns held_out(FlightColumns all, double used_share) {
   return all;
 }
 
-/// The columns of samples that took no part, of all flights on every member of the team: those of the files
-/// behind the first, which are fitted, and the later parts of fitted flights.
-std::vector<FlightColumns> held_out_columns(const FlightFiles& files, std::size_t fitted,
-                                            const TeamColumns& columns, const ModelFile& model,
-                                            const CandidateSet& set, const WhatIfOptions& options) {
+/// The columns of samples that took no part: of the files behind the first, which are fitted, and of the
+/// later parts of fitted flights.
+TeamColumns held_out_columns(const FlightFiles& files, std::size_t fitted, const TeamColumns& columns,
+                             const ModelFile& model, const CandidateSet& set, const WhatIfOptions& options) {
   const MaskOptions& mask = options.diagnose.mask;
   const double share = options.diagnose.training_share;
-  std::vector<std::size_t> files_held_out;
-  for (std::size_t file = fitted; file < files.count(); ++file) files_held_out.push_back(file);
-  std::vector<FlightColumns> others =
-      files.share().of_entries(files_held_out).of_each_flight<FlightColumns>([&](std::size_t number) {
-        auto samples = std::make_shared<FlightSamples>(
-            read_samples(files[files_held_out[number]], set.extended, *set.references[0], mask));
-        return held_out(find_columns(std::move(samples), model, set, 0, mask, 1.0), 0.0);
-      });
-  if (share >= 1.0) return others;
-  std::vector<std::size_t> first;  // against the first reference
-  for (std::size_t f = 0; f < columns.flights.size() && columns.flights[f].reference == 0; ++f)
-    first.push_back(f);
-  for (FlightColumns& later :
-       columns.share.of_entries(first).of_each_flight<FlightColumns>([&](std::size_t f) {
-         return held_out(find_columns(columns.flights[f].samples, model, set, 0, mask, 1.0), share);
-       }))
-    others.push_back(std::move(later));
-  return others;
+  std::vector<std::size_t> file_of_each;
+  for (std::size_t file = fitted; file < files.count(); ++file) file_of_each.push_back(file);
+  const std::size_t whole = file_of_each.size();
+  if (share < 1.0) {
+    for (const FlightColumns& flight : columns.flights) {
+      if (flight.reference == 0) file_of_each.push_back(flight.file);
+    }
+  }
+  return columns_of_entries(files.share().of_entries(file_of_each), [&](std::size_t entry) {
+    const std::size_t file = file_of_each[entry];
+    // The fitted flights against the first reference come first.
+    std::shared_ptr<const FlightSamples> samples =
+        entry < whole ? std::make_shared<FlightSamples>(
+                            read_samples(files[file], set.extended, *set.references[0], mask))
+                      : columns.flights[entry - whole].samples;
+    FlightColumns later =
+        held_out(find_columns(samples, model, set, 0, mask, 1.0), entry < whole ? 0.0 : share);
+    later.file = file;
+    return later;
+  });
 }
 
 /// The residual with effects at coefficients that are not small: as a refit with them has it.
@@ -242,6 +244,17 @@ std::vector<std::vector<double>> by_records(const FlightColumns& flight) {
   return columns;
 }
 
+/// The flights of a team of which the panel has the columns, whole on every member.
+std::vector<FlightColumns> shown(const TeamColumns& columns,
+                                 const std::function<bool(std::size_t)>& is_shown) {
+  std::vector<std::size_t> entries;
+  for (std::size_t f = 0; f < columns.flights.size(); ++f) {
+    if (columns.flights[f].reference == 0 && is_shown(columns.flights[f].file)) entries.push_back(f);
+  }
+  return columns.share.of_entries(entries).of_each_flight<FlightColumns>(
+      [&](std::size_t k) { return columns.flights[entries[k]]; });
+}
+
 /// Puts what took no part behind, or beside, what did.
 void add_held_out(std::vector<WhatIfFlight>& flights, const FlightColumns& held_out) {
   std::vector<std::vector<double>> columns = by_records(held_out);
@@ -273,17 +286,16 @@ std::string note_of(const Candidate& candidate, const std::string& flaps_variabl
 }
 
 /// What would tell each effect from each other, at the sizes that each has alone.
-std::vector<WhatIfSeparation> separations_of(const std::vector<FlightColumns>& flights, const WhatIfFit& fit,
-                                             const CandidateSet& set, const ModelFile& model,
-                                             const MaskOptions& mask) {
+std::vector<WhatIfSeparation> separations_of(const WhatIfFit& fit, const CandidateSet& set,
+                                             const ModelFile& model, const MaskOptions& mask) {
   std::vector<WhatIfSeparation> separations;
   if (set.candidates.size() < 2) return separations;
-  std::vector<std::shared_ptr<const FlightSamples>> samples;
-  for (const FlightColumns& flight : flights) {
-    if (flight.reference == 0) samples.push_back(flight.samples);
-  }
-  const std::vector<Prospect> prospects =
-      prospects_of(samples, fit.noise(), median(levels_of(fit.noise())), set, model, mask);
+  const TeamColumns& columns = fit.flights();
+  const std::vector<std::size_t> few = fit.few();
+  const auto samples = columns.share.of_entries(few).of_each_flight<std::shared_ptr<const FlightSamples>>(
+      [&](std::size_t k) { return columns.flights[few[k]].samples; });
+  const double usual_level = median_of_absolute_values(columns.share.team(), levels_of(fit.noise()));
+  const std::vector<Prospect> prospects = prospects_of(samples, fit.noise(), usual_level, set, model, mask);
   const auto columns_of = [&fit](std::size_t effect) { return places_of(fit.groups()[effect], fit.base()); };
   for (std::size_t effect = 0; effect < set.candidates.size(); ++effect) {
     if (set.candidates[effect].is_shared) continue;  // its columns are those of another
@@ -368,9 +380,9 @@ WhatIf what_if(const std::vector<std::filesystem::path>& paths, const ModelFile&
   leave_out_empty(columns);
   if (columns.flights.empty()) throw Error("no sample is left to try effects on");
   drop_untestable(set, columns);
-  std::vector<FlightColumns> others = held_out_columns(files, paths.size(), columns, model, set, options);
+  TeamColumns others = held_out_columns(files, paths.size(), columns, model, set, options);
   CandidateSet ordered = set;
-  const std::vector<WhatIfCandidate> found = put_in_order(ordered, columns.flights, wanted);
+  const std::vector<WhatIfCandidate> found = put_in_order(ordered, columns, wanted);
   put_in_order(set, others, wanted);
 
   WhatIf result;
@@ -386,6 +398,7 @@ WhatIf what_if(const std::vector<std::filesystem::path>& paths, const ModelFile&
                                   coefficient.of_reference});
   }
   std::vector<std::size_t> are_found;
+  const std::string flaps_variable = columns.flights.front().samples->flaps_variable;
   for (std::size_t e = 0; e < found.size(); ++e) {
     const Candidate& candidate = ordered.candidates[e];
     result.effects.push_back(candidate.effect);
@@ -400,7 +413,7 @@ WhatIf what_if(const std::vector<std::filesystem::path>& paths, const ModelFile&
                              candidate.tested.size(),
                              "",
                              candidate.effect.is_formula(),
-                             note_of(candidate, columns.flights.front().samples->flaps_variable)});
+                             note_of(candidate, flaps_variable)});
     if (stands_for != found.end())
       panel.effects.back().stands_for = static_cast<std::size_t>(stands_for - found.begin());
     for (const CandidateParameter& tested : candidate.tested) {
@@ -410,10 +423,7 @@ WhatIf what_if(const std::vector<std::filesystem::path>& paths, const ModelFile&
     }
     if (found[e].stands_for == found[e].id) are_found.push_back(e);
   }
-  // The panel holds every record of every flight.
-  auto of_all = columns.share.of_each_flight<FlightColumns>(
-      [&columns](std::size_t f) { return std::move(columns.flights[f]); });
-  const WhatIfFit fit(std::move(of_all), std::move(others), panel.coefficients,
+  const WhatIfFit fit(std::move(columns), std::move(others), panel.coefficients,
                       groups_of(model, ordered.candidates), are_found, options.is_robust,
                       WithEffects(model, ordered, mask));
   fit.describe(panel.coefficients);
@@ -422,11 +432,15 @@ WhatIf what_if(const std::vector<std::filesystem::path>& paths, const ModelFile&
   panel.alike = as_sums(fit.alike());
   panel.outliers = as_sums(fit.outliers());
   if (fit.held_out().count > 0.0) panel.held_out = as_sums(fit.held_out());
-  for (const FlightColumns& flight : fit.flights()) {
-    if (flight.reference == 0) result.flights.push_back({flight.samples, by_records(flight)});
-  }
-  for (const FlightColumns& flight : fit.others()) add_held_out(result.flights, flight);
-  panel.separations = separations_of(fit.flights(), fit, ordered, model, mask);
+  const auto is_shown = [&](std::size_t file) {
+    const auto& wanted_flights = options.diagnose.series_of;
+    return !wanted_flights || file >= paths.size() ||
+           std::find(wanted_flights->begin(), wanted_flights->end(), file) != wanted_flights->end();
+  };
+  for (const FlightColumns& flight : shown(fit.flights(), is_shown))
+    result.flights.push_back({flight.samples, by_records(flight)});
+  for (const FlightColumns& flight : shown(fit.others(), is_shown)) add_held_out(result.flights, flight);
+  panel.separations = separations_of(fit, ordered, model, mask);
   return result;
 }
 

@@ -10,10 +10,13 @@
 #include "diagnose/scores.hpp"
 #include "diagnose/separation.hpp"
 #include "numerics/decompositions.hpp"
+#include "numerics/median.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/robust_weights.hpp"
 #include "numerics/spikes.hpp"
 #include "numerics/triangular_factor.hpp"
+#include "team/median_of_all.hpp"
+#include "team/workers.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -59,16 +62,19 @@ Eigen::VectorXd solved(const Eigen::MatrixXd& sum, const Places& free, Eigen::Ve
   return values;
 }
 
-/// What is left of whitened residuals, in units of its robust deviation.
-std::vector<Eigen::VectorXd> in_deviations(const std::vector<Eigen::MatrixXd>& rows,
+/// What is left of the whitened residuals of own flights, in units of the robust deviation of those of all.
+std::vector<Eigen::VectorXd> in_deviations(const FlightShare& share, const std::vector<Eigen::MatrixXd>& rows,
                                            const Eigen::VectorXd& values) {
   std::vector<Eigen::VectorXd> left;
   std::vector<double> all;
   for (const Eigen::MatrixXd& part : rows) {
-    left.emplace_back(part.rightCols(1) - part.leftCols(values.size()) * values);
+    left.emplace_back();
+    if (part.size() == 0) continue;
+    left.back() = part.rightCols(1) - part.leftCols(values.size()) * values;
     all.insert(all.end(), left.back().begin(), left.back().end());
   }
-  const double deviation = std::max(robust_deviation(std::move(all)), 1e-300);
+  const double deviation =
+      std::max(deviation_of_median * median_of_absolute_values(share.team(), std::move(all)), 1e-300);
   for (Eigen::VectorXd& part : left) part /= deviation;
   return left;
 }
@@ -79,7 +85,7 @@ void weigh(Scores& scores, const Places& free, Eigen::VectorXd& values, double (
   constexpr double enough = 1e-3;  // of what the flights leave open
   const std::vector<Eigen::MatrixXd> rows = scores.rows;
   for (int step = 0; step < most_steps; ++step) {
-    const std::vector<Eigen::VectorXd> ratios = in_deviations(rows, values);
+    const std::vector<Eigen::VectorXd> ratios = in_deviations(scores.share, rows, values);
     for (std::size_t f = 0; f < rows.size(); ++f)
       scores.rows[f] = ratios[f].unaryExpr(weight).cwiseSqrt().asDiagonal() * rows[f];
     sum_up(scores);
@@ -92,23 +98,23 @@ void weigh(Scores& scores, const Places& free, Eigen::VectorXd& values, double (
 
 /// By how much the variances of a fit with Tukey's loss are larger than those of least squares of the rows
 /// with its weights (Huber and Ronchetti 2009, Robust Statistics, section 7.6). @param rows without weights
-double inflation_by_weights(const std::vector<Eigen::MatrixXd>& rows, const Eigen::VectorXd& values) {
-  double count = 0.0;
-  double weights = 0.0;
-  double slopes = 0.0;
-  double squares = 0.0;
-  double weighted_squares = 0.0;
-  for (const Eigen::VectorXd& ratios : in_deviations(rows, values)) {
-    for (const double ratio : ratios) {
+double inflation_by_weights(const FlightShare& share, const std::vector<Eigen::MatrixXd>& rows,
+                            const Eigen::VectorXd& values) {
+  enum { count, weights, slopes, squares, weighted_squares, sums };
+  const std::vector<Eigen::VectorXd> all_ratios = in_deviations(share, rows, values);
+  const auto sum = share.sum_of_each_flight<Eigen::VectorXd>([&](std::size_t flight) {
+    Eigen::VectorXd part = Eigen::VectorXd::Zero(sums);
+    for (const double ratio : all_ratios[flight]) {
       const double weight = tukey_weight(ratio);
-      count += 1.0;
-      weights += weight;
-      slopes += tukey_slope(ratio);
-      squares += weight * weight * ratio * ratio;
-      weighted_squares += weight * ratio * ratio;
+      part[count] += 1.0;
+      part[weights] += weight;
+      part[slopes] += tukey_slope(ratio);
+      part[squares] += weight * weight * ratio * ratio;
+      part[weighted_squares] += weight * ratio * ratio;
     }
-  }
-  return count * weights * squares / (slopes * slopes) / weighted_squares;
+    return part;
+  });
+  return sum[count] * sum[weights] * sum[squares] / (sum[slopes] * sum[slopes]) / sum[weighted_squares];
 }
 
 /// Which of some groups a reader may have switched on: all subsets of a few; of many what comes first, as
@@ -131,18 +137,50 @@ std::vector<std::vector<std::size_t>> subsets_of(const std::vector<std::size_t>&
 }
 
 void add(SumOfProducts& sum, const Eigen::VectorXd& row) {
-  if (sum.products.size() == 0) sum.products = Eigen::MatrixXd::Zero(row.size(), row.size());
   sum.products.selfadjointView<Eigen::Lower>().rankUpdate(row);
   sum.count += 1.0;
 }
 
+/// Sums of several kinds of samples; those of flights add up.
+struct SumsOfProducts {
+  std::vector<SumOfProducts> kinds{};
+
+  SumsOfProducts() = default;
+  SumsOfProducts(std::size_t count, Eigen::Index width)
+      : kinds(count, SumOfProducts{Eigen::MatrixXd::Zero(width, width), 0.0}) {}
+
+  SumsOfProducts& operator+=(const SumsOfProducts& other) {
+    for (std::size_t k = 0; k < kinds.size(); ++k) kinds[k] += other.kinds[k];
+    return *this;
+  }
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(kinds);
+  }
+};
+
+/// Base, candidates and residual of a record.
+Eigen::VectorXd row_of(const FlightColumns& flight, std::size_t record) {
+  Eigen::VectorXd row(flight.base.cols() + flight.candidates.cols() + 1);
+  row << flight.base.row(as_index(record)).cast<double>().transpose(),
+      flight.candidates.row(as_index(record)).cast<double>().transpose(), flight.given[record];
+  return row;
+}
+
 }  // namespace
 
-WhatIfFit::WhatIfFit(std::vector<FlightColumns> flights, std::vector<FlightColumns> others,
+SumOfProducts& SumOfProducts::operator+=(const SumOfProducts& other) {
+  products += other.products;
+  count += other.count;
+  return *this;
+}
+
+WhatIfFit::WhatIfFit(TeamColumns flights, TeamColumns others,
                      const std::vector<WhatIfCoefficient>& coefficients, std::vector<ColumnGroup> groups,
                      const std::vector<std::size_t>& found, bool is_robust, const ResidualAt& residual_at)
     : flights_(std::move(flights)), others_(std::move(others)), groups_(std::move(groups)) {
-  base_ = flights_.front().base.cols();
+  base_ = flights_.flights.front().base.cols();
   given_.resize(as_index(coefficients.size()));
   start_.resize(given_.size());
   for (Eigen::Index c = 0; c < given_.size(); ++c) {
@@ -151,8 +189,8 @@ WhatIfFit::WhatIfFit(std::vector<FlightColumns> flights, std::vector<FlightColum
     given_[c] = coefficient.given - coefficient.start;
     if (c < base_ && !coefficient.fixed) own_.push_back(c);
   }
-  for (std::vector<FlightColumns>* all : {&flights_, &others_}) {
-    for (FlightColumns& flight : *all) {
+  for (TeamColumns* all : {&flights_, &others_}) {
+    for (FlightColumns& flight : all->flights) {
       for (std::size_t i = 0; i < flight.given.size(); ++i)
         flight.given[i] += flight.base.row(as_index(i)).cast<double>().dot(given_.head(base_));
     }
@@ -197,52 +235,35 @@ std::vector<double> WhatIfFit::residual_for(const FlightColumns& flight,
 
 Eigen::VectorXd WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool is_robust, bool drifts,
                                      const ResidualAt& residual_at) {
+  const FlightShare& share = flights_.share;
+  const std::vector<FlightColumns>& flights = flights_.flights;
   Eigen::VectorXd values = given_;
   Scores scores;
-  std::vector<NoiseModel> noise;
   for (int round = 0; round <= rounds; ++round) {
-    bins_.clear();
+    std::vector<std::vector<double>> series(flights.size());
+    binned_ = in_bins(share, flights, [&](std::size_t f) {
+      series[f] = round > 0 ? residual_for(flights[f], found, values, residual_at) : flights[f].given;
+      if (is_robust && round > 0) series[f] = calm(flights[f], series[f], values);
+      return series[f];
+    });
     std::vector<Eigen::MatrixXd> columns;
     std::vector<Eigen::VectorXd> residuals;
-    for (const FlightColumns& flight : flights_) {
-      std::vector<double> series =
-          round > 0 ? residual_for(flight, found, values, residual_at) : flight.given;
-      if (is_robust && round > 0) series = calm(flight, series, values);
-      bins_.emplace_back(series, flight.samples->time, flight.samples->step,
-                         std::max(flight.window, Binning::usual_width));
-      columns.push_back(binned_columns(flight, bins_.back()));
-      residuals.push_back(bins_.back().means(series));
+    for (std::size_t f = 0; f < flights.size(); ++f) {
+      columns.push_back(binned_columns(flights[f], binned_.bins[f]));
+      residuals.push_back(binned_.bins[f].means(series[f]));
     }
     if (round == 0) {
-      scores.share = FlightShare(flights_.size());
+      scores.share = share;
       scores.rows.clear();
-      for (std::size_t f = 0; f < flights_.size(); ++f)
+      for (std::size_t f = 0; f < flights.size(); ++f)
         scores.rows.emplace_back(columns[f].rows(), columns[f].cols() + 1) << columns[f], residuals[f];
       sum_up(scores);
       values = solved(scores.information, free_columns(found), values);
       continue;
     }
-    const Places free = free_columns(found);
-    noise.resize(flights_.size());
-    for (std::size_t first = 0; first < flights_.size();) {
-      std::vector<Binning> bins;
-      std::vector<Eigen::MatrixXd> fitted;
-      std::vector<Eigen::VectorXd> left;
-      std::size_t last = first;
-      for (; last < flights_.size() && flights_[last].reference == flights_[first].reference; ++last) {
-        bins.push_back(bins_[last]);
-        fitted.emplace_back(columns[last](Eigen::all, free));
-        left.emplace_back(residuals[last] - columns[last] * values);
-      }
-      const NoiseModel model =
-          drifts && round == rounds ? find_noise(bins, fitted, left).model : estimate_noise(bins, left);
-      if (first == 0) noise_ = model;
-      for (; first < last; ++first) {
-        noise[first] = model;
-        noise[first].level = {model.level[first - (last - bins.size())]};
-      }
-    }
-    scores = find_scores(FlightShare(bins_.size()), bins_, columns, residuals, noise);
+    const std::vector<NoiseModel> noise =
+        noise_after(values, columns, residuals, free_columns(found), drifts && round == rounds);
+    scores = find_scores(share, binned_.bins, columns, residuals, noise);
     const Search search(scores, base_, groups_);
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       told_[g].clear();
@@ -252,23 +273,42 @@ Eigen::VectorXd WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool
     if (!is_robust) continue;
     const std::vector<Eigen::MatrixXd> rows = scores.rows;
     weigh(scores, free_columns(found), values, round < rounds ? huber_weight : tukey_weight);
-    inflation_ = inflation_by_weights(rows, values);
+    inflation_ = inflation_by_weights(share, rows, values);
   }
   std::vector<SumOfProducts>& parts = weights_.back().parts;
-  parts.assign(held_out_parts, {});
-  for (std::size_t f = 0; f < flights_.size(); ++f) {
-    for (std::size_t i = 0; i < bins_[f].size(); ++i) {
-      const std::size_t part = held_out_part(*flights_[f].samples, bins_[f].time()[i]);
-      add(parts[part], scores.rows[f].row(as_index(i)).transpose());
-    }
-  }
-  for (SumOfProducts& part : parts) {
-    if (part.count == 0.0) part.products = Eigen::MatrixXd::Zero(given_.size() + 1, given_.size() + 1);
-    part.products = part.products.selfadjointView<Eigen::Lower>();
-  }
+  parts = share
+              .sum_of_each_flight<SumsOfProducts>([&](std::size_t f) {
+                SumsOfProducts sums(held_out_parts, given_.size() + 1);
+                for (std::size_t i = 0; i < binned_.bins[f].size(); ++i) {
+                  const std::size_t part = held_out_part(*flights[f].samples, binned_.bins[f].time()[i]);
+                  add(sums.kinds[part], scores.rows[f].row(as_index(i)).transpose());
+                }
+                return sums;
+              })
+              .kinds;
+  for (SumOfProducts& part : parts) part.products = part.products.selfadjointView<Eigen::Lower>();
   whole_.products = scores.information;
   whole_.count = static_cast<double>(scores.row_count);
   return values;
+}
+
+std::vector<NoiseModel> WhatIfFit::noise_after(const Eigen::VectorXd& values,
+                                               const std::vector<Eigen::MatrixXd>& columns,
+                                               const std::vector<Eigen::VectorXd>& residuals,
+                                               const Places& free, bool drifts) {
+  const std::size_t threads = Workers(flights_.share.team(), 0).threads;
+  std::vector<NoiseModel> noise = noise_of_flights(
+      flights_.share, binned_,
+      {[&](std::size_t f) -> Eigen::MatrixXd { return columns[f](Eigen::all, free); },
+       [&](std::size_t f) -> Eigen::VectorXd { return residuals[f] - columns[f] * values; },
+       digest_of(packed(values))},
+      [&](const auto& bins, const auto& fitted, const auto& left) {
+        return drifts ? find_noise(bins, fitted, left, threads).model : estimate_noise(bins, left);
+      });
+  noise_ = noise.front();
+  noise_.level.clear();
+  for (std::size_t f = 0; f < binned_.first_count(); ++f) noise_.level.push_back(noise[f].level[0]);
+  return noise;
 }
 
 /// Over all samples that take part.
@@ -288,32 +328,33 @@ double WhatIfFit::rms_of(const Eigen::VectorXd& values) const {
 
 void WhatIfFit::sum_records() {
   const Eigen::Index width = given_.size() + 1;
-  const SumOfProducts nothing{Eigen::MatrixXd::Zero(width, width), 0.0};
-  alike_.assign(held_out_parts, nothing);
-  outliers_ = held_out_ = nothing;
-  const auto row_of = [width](const FlightColumns& flight, std::size_t record) {
-    Eigen::VectorXd row(width);
-    row << flight.base.row(as_index(record)).cast<double>().transpose(),
-        flight.candidates.row(as_index(record)).cast<double>().transpose(), flight.given[record];
-    return row;
-  };
-  for (std::size_t f = 0; f < flights_.size(); ++f) {
-    const FlightColumns& flight = flights_[f];
-    if (flight.reference != 0) continue;
-    std::vector<bool> counts(flight.given.size(), false);
-    for (const std::size_t record : bins_[f].records()) counts[record] = true;
-    for (std::size_t i = 0; i < flight.given.size(); ++i) {
-      if (std::isnan(flight.given[i])) continue;
-      SumOfProducts& part = alike_[held_out_part(*flight.samples, flight.samples->time[i])];
-      add(counts[i] ? part : outliers_, row_of(flight, i));
-    }
-  }
-  for (const FlightColumns& flight : others_) {
+  // Behind the parts the outliers.
+  alike_ = flights_.share
+               .sum_of_each_flight<SumsOfProducts>([&](std::size_t f) {
+                 const FlightColumns& flight = flights_.flights[f];
+                 SumsOfProducts sums(held_out_parts + 1, width);
+                 if (flight.reference != 0) return sums;
+                 std::vector<bool> counts(flight.given.size(), false);
+                 for (const std::size_t record : binned_.bins[f].records()) counts[record] = true;
+                 for (std::size_t i = 0; i < flight.given.size(); ++i) {
+                   if (std::isnan(flight.given[i])) continue;
+                   const std::size_t part = held_out_part(*flight.samples, flight.samples->time[i]);
+                   add(sums.kinds[counts[i] ? part : held_out_parts], row_of(flight, i));
+                 }
+                 return sums;
+               })
+               .kinds;
+  outliers_ = std::move(alike_.back());
+  alike_.pop_back();
+  held_out_ = others_.share.sum_of_each_flight<SumOfProducts>([&](std::size_t f) {
+    const FlightColumns& flight = others_.flights[f];
+    SumOfProducts sum{Eigen::MatrixXd::Zero(width, width), 0.0};
     for (std::size_t i = 0; i < flight.given.size(); ++i) {
       const Eigen::VectorXd row = row_of(flight, i);
-      if (row.allFinite()) add(held_out_, row);
+      if (row.allFinite()) add(sum, row);
     }
-  }
+    return sum;
+  });
 }
 
 Eigen::MatrixXd WhatIfFit::information() const {

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include <pcor/report/report.hpp>
-#include "diagnose/columns.hpp"
+#include "diagnose/binned_flights.hpp"
+#include "diagnose/flight_columns.hpp"
 #include "diagnose/search.hpp"
 #include "numerics/noise_model.hpp"
 
@@ -21,28 +22,38 @@ using ResidualAt = std::function<std::vector<double>(
 struct SumOfProducts {
   Eigen::MatrixXd products{};
   double count = 0.0;
+
+  SumOfProducts& operator+=(const SumOfProducts& other);
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(products, count);
+  }
 };
 
 /// What a what-if fits: columns and residual of some flights in units of the noise, weighted as a refit with
-/// the effects that were found weights them; unless said otherwise with all of these.
+/// the effects that were found weights them; unless said otherwise with all of these. A member of a team has
+/// the columns of its own flights, and all have the sums.
 class WhatIfFit {
  public:
   /// @param others samples that take no part
   /// @param coefficients of all columns: the residual is taken at their start, those that are fixed have the
   /// value that is given
   /// @param found the groups with which the noise is found, and with some of them
-  WhatIfFit(std::vector<FlightColumns> flights, std::vector<FlightColumns> others,
-            const std::vector<WhatIfCoefficient>& coefficients, std::vector<ColumnGroup> groups,
-            const std::vector<std::size_t>& found, bool is_robust, const ResidualAt& residual_at);
+  WhatIfFit(TeamColumns flights, TeamColumns others, const std::vector<WhatIfCoefficient>& coefficients,
+            std::vector<ColumnGroup> groups, const std::vector<std::size_t>& found, bool is_robust,
+            const ResidualAt& residual_at);
 
-  const std::vector<FlightColumns>& flights() const { return flights_; }
-  const std::vector<FlightColumns>& others() const { return others_; }
+  const TeamColumns& flights() const { return flights_; }
+  const TeamColumns& others() const { return others_; }
   const std::vector<ColumnGroup>& groups() const { return groups_; }
   Eigen::Index base() const { return base_; }
   /// The model's own columns that are fitted.
   const std::vector<Eigen::Index>& own() const { return own_; }
-  /// Of the flights against the first reference.
+  /// Of the flights against the first reference, with the levels of the own.
   const NoiseModel& noise() const { return noise_; }
+  /// Of the flights against the first reference the few from which the noise was learnt.
+  std::vector<std::size_t> few() const { return binned_.few(); }
 
   /// Sums of the parts of the flights, as a refit with some of the effects that were found weights them.
   struct Weights {
@@ -83,18 +94,22 @@ class WhatIfFit {
                             const ResidualAt& residual_at);
   std::vector<double> residual_for(const FlightColumns& flight, const std::vector<std::size_t>& groups,
                                    const Eigen::VectorXd& values, const ResidualAt& residual_at) const;
+  std::vector<NoiseModel> noise_after(const Eigen::VectorXd& values,
+                                      const std::vector<Eigen::MatrixXd>& columns,
+                                      const std::vector<Eigen::VectorXd>& residuals,
+                                      const std::vector<Eigen::Index>& free, bool drifts);
   double rms_of(const Eigen::VectorXd& values) const;
   void sum_records();
 
-  std::vector<FlightColumns> flights_;
-  std::vector<FlightColumns> others_;
+  TeamColumns flights_;
+  TeamColumns others_;
   std::vector<ColumnGroup> groups_;
   std::vector<std::vector<Eigen::Index>> told_{};  // columns of each group
   Eigen::Index base_ = 0;
   std::vector<Eigen::Index> own_{};
   Eigen::VectorXd start_{};
   Eigen::VectorXd given_{};  // changes from the start to what is given
-  std::vector<Binning> bins_{};
+  BinnedFlights binned_{};
   NoiseModel noise_{};
   std::vector<Weights> weights_{};
   SumOfProducts whole_{};

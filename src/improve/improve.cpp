@@ -576,12 +576,8 @@ Improvement improve(const std::vector<std::filesystem::path>& flights, const Mod
       if (before != found.end()) diagnose_with.explained += before->second;
     }
     Diagnosis diagnosis = diagnose(flights, trial.file, with_alike(ordered, trial, variables), diagnose_with);
-    if (!diagnose_with.series_of) {  // pictures of all rungs show the same flights
-      diagnose_with.series_of.emplace();
-      for (const FlightDiagnosis& flight : diagnosis.flights) {
-        if (flight.samples) diagnose_with.series_of->push_back(flight.number);
-      }
-    }
+    if (!diagnose_with.series_of)  // pictures of all rungs show the same flights
+      diagnose_with.series_of = diagnosis.flights_with_records();
     for (const Finding& finding : diagnosis.findings) {
       if (!finding.of_reference) found.insert_or_assign(finding.effect.id, finding.chi2);
     }

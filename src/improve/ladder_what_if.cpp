@@ -34,6 +34,7 @@ WhatIf what_if(const std::vector<std::filesystem::path>& flights, const Improvem
   with.diagnose.mask = options.refit.mask;
   with.diagnose.time_stamp = options.refit.time_stamp;
   with.diagnose.team = options.refit.team;
+  with.diagnose.series_of = improvement.steps.front().diagnosis.flights_with_records();
   with.diagnose.training_share = options.refit.training_share;
   with.diagnose.formulas = options.formulas;
   with.holdout = options.refit.holdout;

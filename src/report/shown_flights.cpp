@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -27,6 +28,36 @@ std::vector<std::size_t> numbers_to(std::size_t count) {
   std::vector<std::size_t> all(count);
   std::iota(all.begin(), all.end(), std::size_t{0});
   return all;
+}
+
+/// Leaves the records and intervals of some flights of a report.
+void show_only(Report& report, const std::vector<std::size_t>& flights) {
+  std::vector<std::size_t> samples;
+  std::vector<std::size_t> starts;
+  std::vector<std::string> names;
+  std::vector<ReportInterval> intervals;
+  for (const std::size_t flight : flights) {
+    const std::size_t first = report.flight_starts[flight];
+    const std::size_t end =
+        flight + 1 < report.flight_starts.size() ? report.flight_starts[flight + 1] : report.time.size();
+    if (first == end) continue;
+    starts.push_back(samples.size());
+    names.push_back(report.flight_names[flight]);
+    for (std::size_t i = first; i < end; ++i) samples.push_back(i);
+    const double begins = report.time[first];
+    const double ends = report.time[end - 1];
+    std::copy_if(report.intervals.begin(), report.intervals.end(), std::back_inserter(intervals),
+                 [&](const ReportInterval& each) { return each.end >= begins && each.begin <= ends; });
+  }
+  const auto cut = [&samples](std::vector<double>& values) {
+    for (std::size_t k = 0; k < samples.size(); ++k) values[k] = values[samples[k]];
+    values.resize(samples.size());
+  };
+  cut(report.time);
+  for (ReportColumn& column : report.columns) cut(column.values);
+  report.flight_starts = std::move(starts);
+  report.flight_names = std::move(names);
+  report.intervals = std::move(intervals);
 }
 
 }  // namespace
@@ -55,33 +86,16 @@ std::vector<std::size_t> flights_over_time(const std::vector<double>& begins, st
   return chosen;
 }
 
-void show_only(Report& report, const std::vector<std::size_t>& flights) {
-  std::vector<std::size_t> samples;
-  std::vector<std::size_t> starts;
-  std::vector<std::string> names;
-  std::vector<ReportInterval> intervals;
-  for (const std::size_t flight : flights) {
-    const std::size_t first = report.flight_starts[flight];
-    const std::size_t end =
-        flight + 1 < report.flight_starts.size() ? report.flight_starts[flight + 1] : report.time.size();
-    if (first == end) continue;
-    starts.push_back(samples.size());
-    names.push_back(report.flight_names[flight]);
-    for (std::size_t i = first; i < end; ++i) samples.push_back(i);
-    const double begins = report.time[first];
-    const double ends = report.time[end - 1];
-    std::copy_if(report.intervals.begin(), report.intervals.end(), std::back_inserter(intervals),
-                 [&](const ReportInterval& each) { return each.end >= begins && each.begin <= ends; });
-  }
-  const auto cut = [&samples](std::vector<double>& values) {
-    for (std::size_t k = 0; k < samples.size(); ++k) values[k] = values[samples[k]];
-    values.resize(samples.size());
-  };
-  cut(report.time);
-  for (ReportColumn& column : report.columns) cut(column.values);
-  report.flight_starts = std::move(starts);
-  report.flight_names = std::move(names);
-  report.intervals = std::move(intervals);
+void show_flights_over_time(Report& report, std::size_t most) {
+  std::vector<double> begins;
+  for (const std::size_t first : report.flight_starts)
+    begins.push_back(first < report.time.size() ? report.time[first]
+                                                : std::numeric_limits<double>::infinity());
+  const std::vector<std::size_t> shown = flights_over_time(begins, most);
+  if (shown.size() == begins.size()) return;
+  report.summary.push_back(
+      shown_text(shown.size(), begins.size(), "some that are spread over the time in which they were flown"));
+  show_only(report, shown);
 }
 
 std::string shown_text(std::size_t shown, std::size_t flights, const std::string& which) {

@@ -32,8 +32,8 @@ std::vector<std::size_t> flights_to_show(const std::vector<FlightToShow>& flight
 std::vector<std::size_t> flights_over_time(const std::vector<double>& begins,
                                            std::size_t most = most_flights_shown);
 
-/// Leaves the records and intervals of some flights of a report.
-void show_only(Report& report, const std::vector<std::size_t>& flights);
+/// Leaves the records and intervals of `flights_over_time`, and says so in the summary.
+void show_flights_over_time(Report& report, std::size_t most = most_flights_shown);
 
 /// What a reader has to know of pictures that do not show all flights, a sentence; empty where they do.
 /// @param which the flights that are shown are

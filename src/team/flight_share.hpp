@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <string>
 #include <typeinfo>
@@ -66,7 +67,10 @@ class FlightShare {
   std::vector<Part> on_each_flight(const Visit& visit, std::uint64_t state = 0) const {
     std::vector<Part> parts(flights());
     attempt([&] { visit(parts); });
-    if (team_->size() > 1) gather(parts, state);
+    if (team_->size() > 1) {
+      gather(own_of(parts), state,
+             [&parts](std::size_t flight, Part part) { parts[flight] = std::move(part); });
+    }
     return parts;
   }
 
@@ -76,38 +80,40 @@ class FlightShare {
     return on_each_flight<Part>(
         [&](std::vector<Part>& parts) {
           for (std::size_t flight = 0; flight < parts.size(); ++flight) {
-            if (!owns(flight)) continue;
-            try {
-              parts[flight] = make(flight);
-            } catch (const Error& error) {
-              throw FlightError(error, flight);
-            }
+            if (owns(flight)) parts[flight] = part_of(make, flight);
           }
         },
         state);
   }
 
-  /// The sum of the parts of all flights, added in their order, on every member: a few at a time are made and
+  /// The sum of the parts of all flights, added in their order, on every member: some at a time are made and
   /// gathered, so that many need no more memory. @param make gives the part of a flight, which has a +=
   template <class Part, class Make>
   Part sum_of_each_flight(const Make& make) const {
-    constexpr std::size_t at_a_time = 4;  // of each member
     Part sum{};
-    for (std::size_t first = 0; first < flights(); first += at_a_time * team_->size()) {
-      const FlightShare some = those_from(first, at_a_time * team_->size());
-      const auto add = [&](std::size_t flight, Part part) {
-        if (flight == 0)
-          sum = std::move(part);
-        else
-          sum += part;
-      };
-      if (team_->size() == 1) {
-        for (std::size_t k = 0; k < some.flights(); ++k) add(first + k, make(first + k));
-        continue;
-      }
-      std::vector<Part> parts =
-          some.template of_each_flight<Part>([&](std::size_t k) { return make(first + k); });
-      for (std::size_t k = 0; k < parts.size(); ++k) add(first + k, std::move(parts[k]));
+    const auto add = [&sum](std::size_t flight, Part part) {
+      if (flight == 0)
+        sum = std::move(part);
+      else
+        sum += part;
+    };
+    if (team_->size() == 1) {
+      for (std::size_t flight = 0; flight < flights(); ++flight) add(flight, make(flight));
+      return sum;
+    }
+    // Few enough to be held, enough that members of which one has more to do than another seldom wait.
+    constexpr std::size_t of_each = 4, enough = 128;
+    const std::size_t members = team_->size();
+    const std::size_t at_a_time = std::min(of_each * members, std::max(enough, members));
+    for (std::size_t first = 0; first < flights(); first += at_a_time) {
+      const FlightShare some = those_from(first, at_a_time);
+      std::vector<Part> own;
+      some.attempt([&] {
+        for (std::size_t k = 0; k < some.flights(); ++k) {
+          if (some.owns(k)) own.push_back(part_of(make, first + k));
+        }
+      });
+      some.gather(std::move(own), 0, [&](std::size_t k, Part part) { add(first + k, std::move(part)); });
     }
     return sum;
   }
@@ -115,21 +121,36 @@ class FlightShare {
  private:
   FlightShare those_from(std::size_t first, std::size_t count) const;
 
+  template <class Make>
+  static auto part_of(const Make& make, std::size_t flight) {
+    try {
+      return make(flight);
+    } catch (const Error& error) {
+      throw FlightError(error, flight);
+    }
+  }
+
   template <class Part>
-  void gather(std::vector<Part>& parts, std::uint64_t state) const {
+  std::vector<Part> own_of(std::vector<Part>& parts) const {
     std::vector<Part> own;
     for (std::size_t flight = 0; flight < parts.size(); ++flight) {
       if (owns(flight)) own.push_back(std::move(parts[flight]));
     }
+    return own;
+  }
+
+  /// @param own parts in the order of their flights
+  /// @param take gets those of all flights in their order, one after another, so that not all need be held
+  template <class Part, class Take>
+  void gather(std::vector<Part> own, std::uint64_t state, const Take& take) const {
+    const std::string bytes = packed(own);
+    own = {};
     const std::vector<std::string> all =
-        team_->gather(packed(own), digest_of(typeid(Part).name(), state + parts.size()));
-    std::vector<std::vector<Part>> of_members;
-    for (const std::string& bytes : all) of_members.push_back(unpacked<std::vector<Part>>(bytes));
-    std::vector<std::size_t> next(of_members.size(), 0);
-    for (std::size_t flight = 0; flight < parts.size(); ++flight) {
-      const std::size_t owner = owner_[flight];
-      parts[flight] = std::move(of_members[owner].at(next[owner]++));
-    }
+        team_->gather(bytes, digest_of(typeid(Part).name(), state + flights()));
+    std::deque<Unpacking> members(all.begin(), all.end());
+    for (Unpacking& member : members) member.next<cereal::size_type>();  // how many it owns
+    for (std::size_t flight = 0; flight < flights(); ++flight)
+      take(flight, members[owner_[flight]].template next<Part>());
   }
 
   Team* team_;

@@ -7,7 +7,9 @@
 #include <cereal/types/string.hpp>
 #include <cereal/types/utility.hpp>
 #include <cereal/types/vector.hpp>
+#include <istream>
 #include <sstream>
+#include <streambuf>
 #include <string>
 
 namespace cereal {
@@ -41,13 +43,34 @@ std::string packed(const Value& value) {
   return stream.str();
 }
 
+/// Reads packed values one after another, out of bytes that stay where they are.
+class Unpacking {
+ public:
+  explicit Unpacking(const std::string& bytes) : buffer_(bytes) {}
+
+  template <class Value>
+  Value next() {
+    Value value{};
+    archive_(value);
+    return value;
+  }
+
+ private:
+  struct Buffer : std::streambuf {
+    explicit Buffer(const std::string& bytes) {
+      char* const begin = const_cast<char*>(bytes.data());  // which nothing writes to
+      setg(begin, begin, begin + bytes.size());
+    }
+  };
+
+  Buffer buffer_;
+  std::istream stream_{&buffer_};
+  cereal::BinaryInputArchive archive_{stream_};
+};
+
 template <class Value>
 Value unpacked(const std::string& bytes) {
-  std::istringstream stream(bytes);
-  Value value;
-  cereal::BinaryInputArchive archive(stream);
-  archive(value);
-  return value;
+  return Unpacking(bytes).next<Value>();
 }
 
 }  // namespace pcor::internal

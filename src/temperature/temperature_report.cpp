@@ -5,6 +5,7 @@
 
 #include <pcor/temperature/temperature.hpp>
 #include <pcor/words/utc.hpp>
+#include "report/shown_flights.hpp"
 #include "words/phrasing.hpp"
 
 namespace pcor {
@@ -200,6 +201,7 @@ Report temperature_report(const TemperatureResult& result) {
       {"height", "geopotential height by GPS", "m", joined(result, &FlightHeights::height)},
       {"temperature", "temperature", "°C", joined(result, &FlightHeights::temperature)},
       {"innovation", "innovation", "std. deviations", joined(result, &FlightHeights::innovation)}};
+  show_flights_over_time(report);
 
   report.items.emplace_back(correction_bars(result));
   report.items.emplace_back(coefficient_table(result));

@@ -257,6 +257,17 @@ TEST(WhatIfOfATeam, IsThatOfOne) {
       EXPECT_EQ(packed(found.flights), packed(alone.flights));
     });
   }
+  options.diagnose.series_of = {1};
+  run(2, [&](Team& team) {
+    WhatIfOptions own = options;
+    own.diagnose.team = &team;
+    const WhatIf shown = what_if(fitted, model(), {lams_reference()}, candidates, own);
+    ASSERT_EQ(shown.flights.size(), 2U);
+    EXPECT_EQ(shown.flights[0].samples->name, alone.flights[1].samples->name);
+    EXPECT_EQ(packed(shown.flights[0]), packed(alone.flights[1]));
+    EXPECT_EQ(packed(shown.flights[1]), packed(alone.flights.back()));
+    EXPECT_EQ(packed(shown.panel.held_out), packed(alone.panel.held_out));
+  });
 }
 
 TEST(DiagnosisOfATeam, FindsTheSameVariablesOfTheFiles) {

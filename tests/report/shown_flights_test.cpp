@@ -67,7 +67,11 @@ TEST(ShownFlights, OfAReportKeepTheirRecordsAndIntervals) {
   report.flight_names = {"one", "two", "three"};
   report.columns = {{"a", "a", "", {1, 2, 3, 4, 5, 6, 7}}, {"b", "b", "", {7, 6, 5, 4, 3, 2, 1}}};
   report.intervals = {{"climb", 0, 1}, {"climb", 100, 101}, {"turn", 150, 160}, {"turn", 200, 230}};
-  show_only(report, {0, 2});
+  show_flights_over_time(report, 3);
+  EXPECT_EQ(report.time.size(), 7U);
+  EXPECT_THAT(report.summary, IsEmpty());
+  show_flights_over_time(report, 2);
+  EXPECT_THAT(report.summary, ElementsAre(HasSubstr("2 of the 3 flights")));
   EXPECT_THAT(report.time, ElementsAre(0, 1, 200, 201));
   EXPECT_THAT(report.flight_starts, ElementsAre(0, 2));
   EXPECT_THAT(report.flight_names, ElementsAre("one", "three"));

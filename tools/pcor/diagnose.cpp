@@ -209,6 +209,7 @@ void run(const Options& options) {
     diagnose_with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
     diagnosis = diagnose(flight_paths(options.comparison), model, references.used, diagnose_with);
     if (!options.common.report.empty()) {
+      diagnose_with.series_of = diagnosis.flights_with_records();
       tried = what_if(flight_paths(options.comparison), model, references.used,
                       what_if_candidates(diagnosis, diagnose_with.formulas),
                       {diagnose_with, {}, true, diagnosis.own});

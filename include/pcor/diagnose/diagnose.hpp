@@ -261,6 +261,9 @@ struct Diagnosis {
   std::array<std::size_t, mask_count> masks{};
   std::vector<FlightDiagnosis> flights{};  ///< against each reference, those against the first one first
   std::vector<std::string> notes{};
+
+  /// The numbers of the flights whose records are held, each once.
+  std::vector<std::size_t> flights_with_records() const;
 };
 
 /// What is held out is part of the verdict: where it is off, nothing is not an answer.

@@ -21,7 +21,8 @@ struct WhatIfCandidate {
 };
 
 struct WhatIfOptions {
-  /// Masks, time stamps, formulas and training share of the diagnosis.
+  /// Team, masks, time stamps, formulas and training share of the diagnosis. If its `series_of` is said,
+  /// `WhatIf::flights` are those flights alone, and all that are held out; else all.
   DiagnoseOptions diagnose;
   std::vector<std::filesystem::path> holdout{};  ///< flights that take no part in any fit
   bool is_robust = true;                         ///< outliers count less, as by the loss of a refit

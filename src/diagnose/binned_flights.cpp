@@ -1,0 +1,81 @@
+#include "diagnose/binned_flights.hpp"
+
+#include <algorithm>
+
+#include "numerics/binned_rows.hpp"
+#include "numerics/triangular_factor.hpp"
+
+namespace pcor::internal {
+namespace {
+
+/// The few of the flights from `first` until `last`.
+std::vector<std::size_t> few_of(const std::vector<NoiseFlight>& flights, std::size_t first,
+                                std::size_t last) {
+  const auto begin = flights.begin();
+  std::vector<std::size_t> few = flights_for_noise(
+      {begin + static_cast<std::ptrdiff_t>(first), begin + static_cast<std::ptrdiff_t>(last)});
+  for (std::size_t& flight : few) flight += first;
+  return few;
+}
+
+}  // namespace
+
+std::vector<std::size_t> BinnedFlights::few() const { return few_of(outlines, 0, first_count()); }
+
+std::size_t BinnedFlights::first_count() const {
+  return static_cast<std::size_t>(
+      std::find_if(reference.begin(), reference.end(), [](std::size_t r) { return r != 0; }) -
+      reference.begin());
+}
+
+BinnedFlights in_bins(const FlightShare& share, const std::vector<FlightColumns>& flights,
+                      const std::function<std::vector<double>(std::size_t flight)>& series_of) {
+  BinnedFlights binned;
+  binned.bins.resize(flights.size());
+  for (const FlightColumns& flight : flights) binned.reference.push_back(flight.reference);
+  binned.outlines = share.of_each_flight<NoiseFlight>([&](std::size_t f) {
+    const FlightColumns& flight = flights[f];
+    const Binning& bins = binned.bins[f] = Binning(series_of(f), flight.samples->time, flight.samples->step,
+                                                   std::max(flight.window, Binning::usual_width));
+    return NoiseFlight{bins.size() > 0 ? bins.time().front() : 0.0, bins.size()};
+  });
+  return binned;
+}
+
+std::vector<NoiseModel> noise_of_flights(const FlightShare& share, const BinnedFlights& flights,
+                                         const BinnedFit& fit, const FindNoise& find) {
+  std::vector<NoiseModel> noise(flights.bins.size());
+  for (std::size_t first = 0; first < noise.size();) {
+    std::size_t last = first;
+    while (last < noise.size() && flights.reference[last] == flights.reference[first]) ++last;
+    const std::vector<std::size_t> few = few_of(flights.outlines, first, last);
+    const auto rows_of = share.of_entries(few).of_each_flight<BinnedRows>(
+        [&](std::size_t k) {
+          const Eigen::MatrixXd columns = fit.columns(few[k]);
+          BinnedRows some{flights.bins[few[k]], {columns.rows(), columns.cols() + 1}};
+          some.rows << columns, fit.left(few[k]);
+          return some;
+        },
+        fit.state);
+    std::vector<Binning> bins;
+    std::vector<Eigen::MatrixXd> columns;
+    std::vector<Eigen::VectorXd> left;
+    for (const BinnedRows& some : rows_of) {
+      bins.push_back(some.bins);
+      columns.emplace_back(some.rows.leftCols(some.rows.cols() - 1));
+      left.emplace_back(some.rows.rightCols(1));
+    }
+    NoiseModel shared = find(bins, columns, left);
+    shared.level.clear();
+    for (; first < last; ++first) {
+      noise[first] = shared;
+      noise[first].level.resize(1);
+      if (!share.owns(first)) continue;
+      const Binning& own = flights.bins[first];
+      noise[first].level[0] = level_of_bins(noise_levels(own, fit.left(first), shared), own);
+    }
+  }
+  return noise;
+}
+
+}  // namespace pcor::internal
