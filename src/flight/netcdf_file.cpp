@@ -24,6 +24,7 @@ namespace {
 
 constexpr int closed = -1;
 constexpr std::size_t chunk_cache_bytes = 1 << 18, chunk_cache_slots = 1009;
+constexpr std::size_t page = std::size_t{4} << 10, large_record = std::size_t{32} << 10;
 
 enum class Content { classic, hdf5, other };
 
@@ -130,12 +131,11 @@ bool is_netcdf(const std::filesystem::path& path) { return content_of(path) != C
 NetcdfFile NetcdfFile::open(const std::filesystem::path& path) {
   const std::string name = path.string();
   const FileState state(path);
-  std::size_t record_bytes = 0;
-  if (content_of(path) == Content::classic) record_bytes = checked_layout_of_classic(path).record_bytes;
+  ClassicLayout layout;
+  if (content_of(path) == Content::classic) layout = checked_layout_of_classic(path);
   int id = closed;
-  // Of large records only the pages are read that hold what is wanted.
-  constexpr std::size_t large = std::size_t{32} << 10;
-  std::size_t buffer = record_bytes > large ? large : classic_buffer_bytes;
+  // Of large records only the pages are moved that hold what is wanted.
+  std::size_t buffer = layout.record_bytes > large_record ? page : classic_buffer_bytes;
   const int opened = nc__open(name.c_str(), NC_NOWRITE, &buffer, &id);
   if (opened == NC_ENOMEM || opened == ENOMEM) throw std::bad_alloc();
   if (opened > 0)
@@ -145,7 +145,8 @@ NetcdfFile NetcdfFile::open(const std::filesystem::path& path) {
     throw Error(Error::Code::file, name + " is truncated or damaged (" + netcdf_reason(opened) +
                                        "); fetch it again from its source");
   NetcdfFile file(id, path, Use::reading, state);
-  file.record_bytes_ = record_bytes;
+  file.record_bytes_ = layout.record_bytes;
+  file.records_begin_ = layout.records_begin;
   return file;
 }
 
@@ -165,6 +166,8 @@ NetcdfFile::NetcdfFile(NetcdfFile&& other) noexcept
       use_(other.use_),
       state_(other.state_),
       record_bytes_(other.record_bytes_),
+      records_begin_(other.records_begin_),
+      brought_(other.brought_),
       fitted_(std::move(other.fitted_)) {}
 
 NetcdfFile::~NetcdfFile() {
@@ -404,8 +407,24 @@ std::array<double, 2> NetcdfFile::valid_range(int variable) const {
   return range;
 }
 
+void NetcdfFile::bring_into_memory(RecordBlock records) const {
+  const std::size_t end = records.first + records.count;
+  if (record_bytes_ <= large_record || end <= brought_) return;
+  const std::size_t first = std::max(records.first, brought_);
+  brought_ = end;
+  std::ifstream file(path_, std::ios::binary);
+  file.seekg(static_cast<std::streamoff>(records_begin_ + first * record_bytes_));
+  std::vector<char> bytes(classic_buffer_bytes);
+  for (std::size_t left = (end - first) * record_bytes_; left > 0 && file;) {  // the library tells of trouble
+    const std::size_t some = std::min(left, bytes.size());
+    file.read(bytes.data(), static_cast<std::streamsize>(some));
+    left -= some;
+  }
+}
+
 void NetcdfFile::read(int variable, RecordBlock records, double* out) const {
   fit_chunk_cache(variable);
+  bring_into_memory(records);
   std::vector<std::size_t> start, count;
   for (const int dimension : dimensions_of(variable)) {
     start.push_back(start.empty() ? records.first : 0);

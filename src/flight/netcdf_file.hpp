@@ -72,6 +72,10 @@ class NetcdfFile final : public FlightFile {
   /// Whether the values are unsigned integers: by their type, or because the attribute _Unsigned says so.
   bool is_unsigned(int variable) const;
 
+  /// Reads large records of a classic file once from the first byte to the last, so that the system has them
+  /// in its memory: the library reads a piece of each, for every variable again.
+  void bring_into_memory(RecordBlock records) const;
+
   /// Turns stored numbers into those that the attribute says that they are.
   void make_unsigned(int variable, double* numbers, std::size_t count) const;
 
@@ -88,9 +92,12 @@ class NetcdfFile final : public FlightFile {
   int id_;
   std::filesystem::path path_;
   Use use_;
-  FileState state_;               // as it was opened for reading
-  std::size_t record_bytes_ = 0;  // of a classic file with records
-  mutable std::set<int> fitted_;  // variables whose chunk cache is fit
+  FileState state_;  // as it was opened for reading
+  // Of a classic file with records.
+  std::size_t record_bytes_ = 0;
+  std::size_t records_begin_ = 0;    // in bytes from that of the file
+  mutable std::size_t brought_ = 0;  // records that were brought into memory
+  mutable std::set<int> fitted_;     // variables whose chunk cache is fit
 };
 
 /// The product of some lengths.
