@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "numerics/triangular_factor.hpp"
+#include "team/symmetric_part.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -19,10 +20,10 @@ Eigen::MatrixXd joined(const Eigen::MatrixXd& columns, const Eigen::VectorXd& re
 }
 
 /// Rows' products with each other.
-Eigen::MatrixXd squares_of(const Eigen::MatrixXd& rows) {
+SymmetricPart squares_of(const Eigen::MatrixXd& rows) {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows.cols(), rows.cols());
   result.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
-  return result.selfadjointView<Eigen::Lower>();
+  return SymmetricPart(result.selfadjointView<Eigen::Lower>());
 }
 
 /// What a flight has of the counts of all.
@@ -76,8 +77,10 @@ Eigen::VectorXd Scores::by_minutes(const std::function<Eigen::VectorXd(std::size
 }
 
 void sum_up(Scores& scores) {
-  scores.information = scores.share.sum_of_each_flight<Eigen::MatrixXd>(
-      [&](std::size_t f) { return squares_of(scores.rows[f]); });
+  scores.information =
+      scores.share
+          .sum_of_each_flight<SymmetricPart>([&](std::size_t f) { return squares_of(scores.rows[f]); })
+          .matrix;
 }
 
 void take_out_common_noise(const std::vector<Binning>& bins, std::size_t earlier, std::size_t later,
@@ -135,12 +138,15 @@ Scores find_scores(const FlightShare& share, const std::vector<Binning>& bins,
   sum_up(scores);
   scores.plain = scores.information;
   if (std::any_of(noise.begin(), noise.end(), [](const NoiseModel& each) { return each.drifts(); })) {
-    scores.plain = share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
-      NoiseModel still = noise[f];
-      still.slow = {};
-      return squares_of(noise[f].drifts() ? whitened(joined(columns[f], residuals[f]), bins[f], still, 0)
-                                          : scores.rows[f]);
-    });
+    scores.plain = share
+                       .sum_of_each_flight<SymmetricPart>([&](std::size_t f) {
+                         NoiseModel still = noise[f];
+                         still.slow = {};
+                         return squares_of(noise[f].drifts()
+                                               ? whitened(joined(columns[f], residuals[f]), bins[f], still, 0)
+                                               : scores.rows[f]);
+                       })
+                       .matrix;
   }
   return scores;
 }
@@ -148,7 +154,9 @@ Scores find_scores(const FlightShare& share, const std::vector<Binning>& bins,
 Scores find_scores(const FlightShare& share, const std::vector<Binning>& bins,
                    const std::vector<Eigen::MatrixXd>& columns, const std::vector<Eigen::VectorXd>& residuals,
                    const NoiseModel& noise) {
-  std::vector<NoiseModel> each(bins.size(), noise);
+  NoiseModel shared = noise;
+  shared.level.clear();  // one copy of all levels for each flight would grow with the square of their number
+  std::vector<NoiseModel> each(bins.size(), shared);
   for (std::size_t f = 0; f < bins.size(); ++f) each[f].level = {noise.level[f]};
   return find_scores(share, bins, columns, residuals, each);
 }

@@ -102,7 +102,7 @@ class FlightShare {
       return sum;
     }
     // Few enough to be held, enough that members of which one has more to do than another seldom wait.
-    constexpr std::size_t of_each = 4, enough = 128;
+    constexpr std::size_t of_each = 4, enough = 64;
     const std::size_t members = team_->size();
     const std::size_t at_a_time = std::min(of_each * members, std::max(enough, members));
     for (std::size_t first = 0; first < flights(); first += at_a_time) {

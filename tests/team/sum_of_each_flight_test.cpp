@@ -6,6 +6,7 @@
 #include <pcor/words/error.hpp>
 #include "support/thread_team.hpp"
 #include "team/flight_share.hpp"
+#include "team/symmetric_part.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -50,6 +51,26 @@ TEST(SumOfEachFlight, FailsOnAllMembers) {
     }
   });
   EXPECT_THAT(failed, Each(1));
+}
+
+TEST(SumOfEachFlight, OfSymmetricMatricesIsThatOfOneMember) {
+  constexpr Eigen::Index width = 31;
+  const auto part = [](std::size_t flight) {
+    const Eigen::MatrixXd rows =
+        Eigen::MatrixXd::NullaryExpr(3, width, [flight](Eigen::Index r, Eigen::Index c) {
+          return std::sin(static_cast<double>(flight) + static_cast<double>(7 * r + c));
+        });
+    return SymmetricPart(rows.transpose() * rows);
+  };
+  const Eigen::MatrixXd expected = FlightShare(count).sum_of_each_flight<SymmetricPart>(part).matrix;
+  EXPECT_EQ(expected, expected.transpose());
+  for (const std::size_t size : {2U, 40U}) {
+    run_as_team(size, [&](Team& team) {
+      EXPECT_EQ(share_of_many(team).sum_of_each_flight<SymmetricPart>(part).matrix, expected);
+    });
+  }
+  // Half of it is sent.
+  EXPECT_LT(packed(part(0)).size(), 0.55 * sizeof(double) * width * width);
 }
 
 TEST(SharesOfEntries, AreOfTheOwnersOfTheirFlights) {
