@@ -8,6 +8,13 @@
 
 namespace pcor::internal {
 
+/// A column of a square matrix from the diagonal on, to be packed.
+template <class Matrix>
+auto from_diagonal(Matrix& matrix, Eigen::Index column) {
+  return cereal::binary_data(matrix.col(column).data() + column,
+                             static_cast<std::size_t>(matrix.rows() - column) * sizeof(double));
+}
+
 /// A symmetric matrix that a flight has in a sum over all flights. As bytes it is its lower triangle.
 struct SymmetricPart {
   Eigen::MatrixXd matrix{};
@@ -23,7 +30,7 @@ struct SymmetricPart {
   template <class Archive>
   void save(Archive& archive) const {
     archive(matrix.cols());
-    for (Eigen::Index c = 0; c < matrix.cols(); ++c) archive(below_diagonal(matrix, c));
+    for (Eigen::Index c = 0; c < matrix.cols(); ++c) archive(from_diagonal(matrix, c));
   }
 
   template <class Archive>
@@ -31,16 +38,8 @@ struct SymmetricPart {
     Eigen::Index width = 0;
     archive(width);
     matrix.resize(width, width);
-    for (Eigen::Index c = 0; c < width; ++c) archive(below_diagonal(matrix, c));
+    for (Eigen::Index c = 0; c < width; ++c) archive(from_diagonal(matrix, c));
     matrix = Eigen::MatrixXd(matrix.selfadjointView<Eigen::Lower>());
-  }
-
- private:
-  /// The rest of a column from the diagonal on.
-  template <class Matrix>
-  static auto below_diagonal(Matrix& matrix, Eigen::Index column) {
-    return cereal::binary_data(matrix.col(column).data() + column,
-                               static_cast<std::size_t>(matrix.rows() - column) * sizeof(double));
   }
 };
 
