@@ -15,6 +15,7 @@
 #include "residuals/packed_residuals.hpp"
 #include "roles/recorded_model.hpp"
 #include "team/flight_share.hpp"
+#include "words/phrasing.hpp"
 
 namespace pcor {
 
@@ -129,10 +130,9 @@ FlightPart part_of(const std::filesystem::path& path, const std::optional<ModelF
   part.notes = part.flight->air.notes;
   if (!model && its_model->variables.count(Quantity::recovery_temperature) > 0) {
     part.notes.push_back(fmt::format(
-        "{}: without a model the recovery factor of {} is taken as {:g}, by what is published of such "
+        "without a model the recovery factor of {} is taken as {:g}, by what is published of such "
         "thermometers; a model (-m) gives its own",
-        part.flight->air.samples->name, its_model->variables.at(Quantity::recovery_temperature),
-        its_model->model.recovery.coefficients[0]));
+        its_model->variables.at(Quantity::recovery_temperature), its_model->model.recovery.coefficients[0]));
   }
   return part;
 }
@@ -196,6 +196,7 @@ Checks check(const std::vector<std::filesystem::path>& flights, const std::optio
   Checks checks;
   CheckedFlights read;
   std::vector<std::string> unusable;
+  std::vector<FlightNote> notes;
   for (FlightPart& part : parts) {
     if (!part.unusable.empty()) {
       unusable.push_back(part.unusable);
@@ -204,8 +205,9 @@ Checks check(const std::vector<std::filesystem::path>& flights, const std::optio
     read.push_back(std::move(*part.flight));
     checks.flights.push_back(read.back().air.samples->name);
     if (checks.model.empty()) checks.model = part.model;
-    checks.notes.insert(checks.notes.end(), part.notes.begin(), part.notes.end());
+    for (std::string& note : part.notes) notes.emplace_back(checks.flights.back(), std::move(note));
   }
+  checks.notes = notes_of_flights(notes);
   for (const std::string& why : unusable) checks.notes.push_back("Not used: " + why);
   for (const NamedCheck& each : all_checks) {
     checks.results.push_back(read.empty() ? not_run(each.name, fmt::format("{}", fmt::join(unusable, "; ")))

@@ -342,6 +342,12 @@ TEST_F(CheckTest, SaysWhatIsMissing) {
   EXPECT_THAT(named(checks, "reverse-heading").reason, HasSubstr("no reverse heading was found"));
 }
 
+TEST_F(CheckTest, TellsANoteOfSeveralFlightsOnce) {
+  const Checks checks = check({fly(head + aloft, 1), fly(head + aloft, 2)}, std::nullopt);
+  EXPECT_THAT(checks.notes, testing::Contains(HasSubstr("recovery factor")).Times(1));
+  EXPECT_THAT(checks.notes, testing::Contains(HasSubstr("flight1.nc, flight2.nc: without a model")));
+}
+
 TEST_F(CheckTest, TakesNoSingleLeg) {
   CheckOptions options;
   options.mask.intervals = read_intervals_text(
