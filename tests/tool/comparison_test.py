@@ -190,6 +190,15 @@ class Compare(ComparisonTest):
         text = self.done("compare", "flight 1.nc", "-m", "my model.toml", cwd=self.path).stdout
         self.assertIn("process", self.run_as_printed(text))
 
+    def test_the_advised_command_names_few_of_many_flights(self):
+        for many, shown in ((16, 16), (17, 2)):
+            flights = [self.link(ONE if i % 2 else TWO, f"flight {many}-{i}.nc").name for i in range(many)]
+            text = self.done("compare", *flights, "-m", self.model(with_a0(0.007)), cwd=self.path).stdout
+            advice = text.rstrip().splitlines()[-1]
+            self.assertEqual([flight for flight in flights if flight in advice],
+                             flights if shown == many else [flights[0], flights[-1]])
+            self.assertEqual(" ... " in advice, shown != many)
+
     def test_command_to_copy_for_a_model_that_fails(self):
         self.model(with_a0(0.007), name="it's mine.toml")
         flights = [self.link(flight, name).name for flight, name in ((ONE, "flight 1.nc"), (TWO, "flight 2.nc"))]

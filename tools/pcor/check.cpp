@@ -117,7 +117,7 @@ void print(const ReportTable& table) {
 
 /// As the options stand on a command line, for the commands that are advised.
 std::string command_line(const Options& options) {
-  std::string line = tool::command_line(options.flights);
+  std::string line = advised_command_line(options.flights);
   if (!options.model.empty()) line += " -m " + quoted(options.model);
   return line;
 }

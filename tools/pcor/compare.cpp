@@ -183,7 +183,7 @@ void print(const Comparison& comparison, const ChosenReferences& references, con
       [](const ModelComparison& a, const ModelComparison& b) { return a.all.rms < b.all.rms; });
   const std::string& model = options.models[static_cast<std::size_t>(best - comparison.models.begin())];
   if (comparison.models.size() > 1) say("The least rms has {}. ", best->name);
-  const std::string flights = command_line(options.comparison);
+  const std::string flights = advised_command_line(options.comparison);
   if (best->all.rms_over_noise() < 1.15) {
     say("The residual of {} is little more than noise. To apply it: {} process {} -m {} -o corrected.nc\n",
         best->name, program(), quoted(options.comparison.flights.front()), quoted(model));

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <system_error>
+#include <utility>
 
 #include <pcor/flight/readable_flights.hpp>
 #include <pcor/words/error.hpp>
@@ -110,6 +111,22 @@ std::vector<std::filesystem::path> flight_paths(const ComparisonOptions& options
   return {options.flights.begin(), options.flights.end()};
 }
 
+namespace {
+
+std::string with_options(std::string line, const ComparisonOptions& options) {
+  for (const std::string& reference : options.references) line += "--reference " + quoted(reference) + " ";
+  for (const std::string& regime : options.exclude) line += "--exclude " + quoted(regime) + " ";
+  if (!options.intervals.empty()) line += "--intervals " + quoted(options.intervals) + " ";
+  if (options.least_airspeed != MaskOptions{}.least_airspeed)
+    line += fmt::format("--min-airspeed {} ", options.least_airspeed);
+  if (options.most_flaps) line += fmt::format("--max-flaps {} ", *options.most_flaps);
+  if (options.time_stamp != "begin") line += "--time-stamp " + options.time_stamp + " ";
+  line.pop_back();
+  return line;
+}
+
+}  // namespace
+
 std::vector<std::filesystem::path> input_files(const ComparisonOptions& options) {
   std::vector<std::filesystem::path> files = flight_paths(options);
   for (const std::string& reference : options.references) {
@@ -123,17 +140,16 @@ std::vector<std::filesystem::path> input_files(const ComparisonOptions& options)
 }
 
 std::string command_line(const ComparisonOptions& options) {
-  std::string line;
-  for (const std::string& flight : options.flights) line += quoted(flight) + " ";
-  for (const std::string& reference : options.references) line += "--reference " + quoted(reference) + " ";
-  for (const std::string& regime : options.exclude) line += "--exclude " + quoted(regime) + " ";
-  if (!options.intervals.empty()) line += "--intervals " + quoted(options.intervals) + " ";
-  if (options.least_airspeed != MaskOptions{}.least_airspeed)
-    line += fmt::format("--min-airspeed {} ", options.least_airspeed);
-  if (options.most_flaps) line += fmt::format("--max-flaps {} ", *options.most_flaps);
-  if (options.time_stamp != "begin") line += "--time-stamp " + options.time_stamp + " ";
-  line.pop_back();
-  return line;
+  std::string flights;
+  for (const std::string& flight : options.flights) flights += quoted(flight) + " ";
+  return with_options(std::move(flights), options);
+}
+
+std::string advised_command_line(const ComparisonOptions& options) {
+  constexpr std::size_t most_to_read = 16;
+  if (options.flights.size() <= most_to_read) return command_line(options);
+  return with_options(quoted(options.flights.front()) + " ... " + quoted(options.flights.back()) + " ",
+                      options);
 }
 
 ChosenReferences references_to_fit(const ComparisonOptions& options, const ModelFile& model,

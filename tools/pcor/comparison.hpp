@@ -44,6 +44,9 @@ std::vector<std::filesystem::path> input_files(const ComparisonOptions& options)
 /// The options as they stand on a command line, for the commands that a user is advised to run next.
 std::string command_line(const ComparisonOptions& options);
 
+/// The same for the commands that are advised: of more flights than anyone reads the first and the last.
+std::string advised_command_line(const ComparisonOptions& options);
+
 std::vector<std::filesystem::path> flight_paths(const ComparisonOptions& options);
 
 /// What a model is fitted to: the references that the options name, else LAMS and the total pressure of a

@@ -105,7 +105,7 @@ void print_others(const Diagnosis& diagnosis, bool all) {
 /// The command that adds the findings, or the traced variable, and fits; else the loop that does what one
 /// command cannot.
 std::string next_command(const Diagnosis& diagnosis, const Options& options) {
-  const std::string flights = command_line(options.comparison);
+  const std::string flights = advised_command_line(options.comparison);
   const std::string model = quoted(options.model);
   if (diagnosis.verdict == Verdict::silent) {
     return fmt::format("To apply the model: {} process {} -m {} -o corrected.nc", program(),

@@ -232,7 +232,7 @@ void print_next_step(const Options& options) {
   say_written({options.output, options.reference_output});
   if (options.reference_output.empty()) {
     say("To see where it still fails: {} compare {} -m {} -m {}\n", program(),
-        command_line(options.comparison), quoted(options.model), quoted(options.output));
+        advised_command_line(options.comparison), quoted(options.model), quoted(options.output));
     return;
   }
   ComparisonOptions fitted = options.comparison;
@@ -243,7 +243,7 @@ void print_next_step(const Options& options) {
     if (colon != std::string::npos && reference.substr(colon) == before)
       reference = reference.substr(0, colon) + ":" + options.reference_output;
   }
-  say("To see where they still fail: {} compare {} -m {}\n", program(), command_line(fitted),
+  say("To see where they still fail: {} compare {} -m {}\n", program(), advised_command_line(fitted),
       quoted(options.output));
 }
 
