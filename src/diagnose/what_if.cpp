@@ -26,7 +26,6 @@ using namespace internal;
 
 namespace {
 
-constexpr std::size_t most_effects = 12;
 constexpr std::size_t most_traced = 2;
 
 /// Whether a candidate is the wanted effect, in its shape.
@@ -324,7 +323,7 @@ std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
   const auto add = [&candidates](WhatIfCandidate candidate) {
     const bool is_new = std::none_of(candidates.begin(), candidates.end(),
                                      [&](const WhatIfCandidate& each) { return each.id == candidate.id; });
-    if (is_new && candidates.size() < most_effects) candidates.push_back(std::move(candidate));
+    if (is_new && candidates.size() < most_what_if_effects) candidates.push_back(std::move(candidate));
   };
   for (const Finding& finding : diagnosis.findings)
     add({finding.id(), "found", finding.effect, finding.is_alike, finding.id()});

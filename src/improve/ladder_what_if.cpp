@@ -56,11 +56,10 @@ WhatIf what_if(const std::vector<std::filesystem::path>& flights, const Improvem
     left.stands_for.clear();
     rivals.push_back(std::move(left));
   }
-  constexpr std::size_t most = 12;
   for (WhatIfCandidate& rival : rivals) {
     const bool is_new = std::none_of(candidates.begin(), candidates.end(),
                                      [&rival](const WhatIfCandidate& each) { return each.id == rival.id; });
-    if (is_new && candidates.size() < most) candidates.push_back(std::move(rival));
+    if (is_new && candidates.size() < most_what_if_effects) candidates.push_back(std::move(rival));
   }
   WhatIf tried = what_if(flights, improvement.refitted, references, candidates, with);
   tried.panel.start = "refitted";

@@ -4,6 +4,7 @@
 #include <pcor/report/figures.hpp>
 #include <pcor/words/error.hpp>
 #include <pcor/words/replacement_file.hpp>
+#include <pcor/words/shell_word.hpp>
 
 #include <algorithm>
 #include <array>
@@ -54,17 +55,6 @@ std::string browser() {
   throw Error(
       "figures: there is no Chromium to draw them; install it (on Debian: apt-get install chromium), set "
       "CHROMIUM to a browser of its kind, or save the pictures of a --report from your own browser");
-}
-
-// A word of a shell's command line that is what it is.
-std::string shell_word(const std::string& word) {
-  std::string quoted = "'";
-  for (const char letter : word)
-    if (letter == '\'')
-      quoted += "'\\''";
-    else
-      quoted += letter;
-  return quoted + "'";
 }
 
 std::string file_address(const fs::path& path) {

@@ -118,7 +118,7 @@ void print(const ReportTable& table) {
 /// As the options stand on a command line, for the commands that are advised.
 std::string command_line(const Options& options) {
   std::string line = advised_command_line(options.flights);
-  if (!options.model.empty()) line += " -m " + quoted(options.model);
+  if (!options.model.empty()) line += " -m " + shell_word(options.model);
   return line;
 }
 
@@ -135,7 +135,7 @@ std::string next_step(const Checks& checks, const Options& options, bool has_las
       return result.name == name && result.ran && result.verdict == CheckVerdict::inconsistent;
     });
   };
-  const std::string second = options.reference.empty() ? "" : " --reference " + quoted(options.reference);
+  const std::string second = options.reference.empty() ? "" : " --reference " + shell_word(options.reference);
   std::string pictures = fmt::format("To see the pictures: {} check {}{} --report check.html", program(),
                                      command_line(options), second);
   if (fails("total-pressure")) {
@@ -156,13 +156,13 @@ std::string next_step(const Checks& checks, const Options& options, bool has_las
   if (inconsistent > 0 && has_model && !options.reference.empty()) {
     return fmt::format(
         "To refit the law and learn which effect it lacks: {} improve {} --reference {} -o improved.toml",
-        program(), command_line(options), quoted(options.reference));
+        program(), command_line(options), shell_word(options.reference));
   }
   if (inconsistent == 0 && has_model && count_of(checks, CheckVerdict::consistent) > 0) {
     return fmt::format(
         "Nothing here speaks against the model{}. To apply it: {} process {} -m {} -o corrected.nc",
         open > 0 ? fmt::format("; {} check{} cannot tell", open, open == 1 ? "" : "s") : "", program(),
-        quoted(options.flights.flights.front()), quoted(options.model));
+        shell_word(options.flights.flights.front()), shell_word(options.model));
   }
   return pictures;
 }

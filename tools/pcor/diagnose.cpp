@@ -106,18 +106,18 @@ void print_others(const Diagnosis& diagnosis, bool all) {
 /// command cannot.
 std::string next_command(const Diagnosis& diagnosis, const Options& options) {
   const std::string flights = advised_command_line(options.comparison);
-  const std::string model = quoted(options.model);
+  const std::string model = shell_word(options.model);
   if (diagnosis.verdict == Verdict::silent) {
     return fmt::format("To apply the model: {} process {} -m {} -o corrected.nc", program(),
-                       quoted(options.comparison.flights.front()), model);
+                       shell_word(options.comparison.flights.front()), model);
   }
   const std::string and_fit =
       fmt::format(" -m {} --flight {} -o extended.toml && {} refit {} -m extended.toml -o fitted.toml", model,
-                  quoted(options.comparison.flights.front()), program(), flights);
+                  shell_word(options.comparison.flights.front()), program(), flights);
   const auto add_formula = [&and_fit](const std::string& id, const std::string& formula,
                                       const std::string& where) {
-    return fmt::format("{} add {} --formula {} --where {}{}", program(), quoted(id), quoted(formula), where,
-                       and_fit);
+    return fmt::format("{} add {} --formula {} --where {}{}", program(), shell_word(id), shell_word(formula),
+                       where, and_fit);
   };
   const auto of_catalogue = [](const Finding& finding) {
     return !finding.effect.is_formula() && !finding.of_reference;
@@ -136,7 +136,7 @@ std::string next_command(const Diagnosis& diagnosis, const Options& options) {
     std::string without;
     std::string add = program() + " add";
     for (const Finding& finding : findings) {
-      add += " " + quoted(argument_of(finding.effect));
+      add += " " + shell_word(argument_of(finding.effect));
       if (finding.shape_beyond_model.empty()) continue;
       without += fmt::format("{} was found {}, which no model file can hold: it is added without that.\n",
                              finding.id(), finding.shape_beyond_model);

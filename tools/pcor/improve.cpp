@@ -120,7 +120,7 @@ void print(const Improvement& improvement, const ChosenReferences& references, c
   say("\n");
   say_written({options.output, options.common.report, options.common.figures, options.common.json});
   say("To apply it: {} process {} -m {} -o corrected.nc\n", program(),
-      quoted(options.comparison.flights.front()), quoted(options.output));
+      shell_word(options.comparison.flights.front()), shell_word(options.output));
 }
 
 ImproveOptions improve_options(const Options& options, const ModelFile& model) {
@@ -160,7 +160,7 @@ void run(const Options& options) {
     if (!options.common.report.empty()) {
       tried = what_if(flight_paths(options.comparison), improvement, references.used, improve_with);
       std::string fit = command_line(options.comparison);
-      for (const std::string& flight : options.holdout) fit += " --holdout " + quoted(flight);
+      for (const std::string& flight : options.holdout) fit += " --holdout " + shell_word(flight);
       if (options.training_share < 1.0) fit += fmt::format(" --training-share {}", options.training_share);
       if (options.loss != "tukey") fit += " --loss " + options.loss;
       add_commands(tried, options.model, options.comparison.flights.front(), fit);

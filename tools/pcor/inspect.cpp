@@ -177,7 +177,7 @@ void print(const Inspection& flight) {
 
 /// What to do next, as a command to paste.
 std::string next_step(const Options& options, const Inspection& flight) {
-  const std::string path = quoted(flight.path);
+  const std::string path = shell_word(flight.path);
   if (!flight.model)
     return "To go on: name the variables of its pressures in the [variables] of a model "
            "(data/models/FORMAT.md)";
@@ -186,17 +186,17 @@ std::string next_step(const Options& options, const Inspection& flight) {
     if (flight.model->variables.count(Quantity::lams_airspeed) == 0) {
       if (flight.corrected_pressure.empty())
         return fmt::format("To see what else can be said of its pressures: {} check {}", program(), path);
-      reference = " --reference " + quoted("pressure:" + flight.corrected_pressure);
+      reference = " --reference " + shell_word("pressure:" + flight.corrected_pressure);
     }
     return fmt::format("To fit a law: {} refit {} -m {} -o fitted.toml{}", program(), path,
-                       quoted(options.model), reference);
+                       shell_word(options.model), reference);
   }
   const auto fits =
       std::find_if(flight.laws.begin(), flight.laws.end(), [](const LawOfFlight& law) { return law.fits(); });
   if (fits != flight.laws.end())
     return fmt::format("To correct it by one of these laws: {} process {} -m {} -o corrected.nc", program(),
-                       path, quoted(fits->path.stem().string()));
-  const std::string roles = options.roles.empty() ? "" : " --roles " + quoted(options.roles);
+                       path, shell_word(fits->path.stem().string()));
+  const std::string roles = options.roles.empty() ? "" : " --roles " + shell_word(options.roles);
   return fmt::format("To have a model to start from: {} inspect {}{} --write-model model.toml", program(),
                      path, roles);
 }

@@ -46,13 +46,14 @@ struct Options {
 
 /// What makes one output alone.
 std::string command_line(const ProcessTask& task, const Options& options) {
-  std::string line = fmt::format("pcor " PCOR_VERSION " process {} {} {} -o {}", quoted(task.input.string()),
-                                 options.models.empty() ? "-m" : "--models",
-                                 quoted(options.model + options.models), quoted(task.output.string()));
+  std::string line =
+      fmt::format("pcor " PCOR_VERSION " process {} {} {} -o {}", shell_word(task.input.string()),
+                  options.models.empty() ? "-m" : "--models", shell_word(options.model + options.models),
+                  shell_word(task.output.string()));
   if (options.correct_with != "model") line += " --correct-with " + options.correct_with;
   if (options.time_stamp != "begin") line += " --time-stamp " + options.time_stamp;
   if (!options.uncertainty.empty()) line += " --uncertainty " + options.uncertainty;
-  if (!options.suffix.empty()) line += " --suffix " + quoted(options.suffix);
+  if (!options.suffix.empty()) line += " --suffix " + shell_word(options.suffix);
   if (options.copy_all) line += " --all";
   if (options.hydrostatic) line += " --hydrostatic";
   return line;
@@ -122,7 +123,7 @@ void print_flags(const Flags& flagged) {
 
 void print_hint(const ProcessedFlight& flight) {
   say("To look at the result: ncdump -v {} {} | less\n", flight.summary.outputs.front(),
-      quoted(flight.output.string()));
+      shell_word(flight.output.string()));
 }
 
 /// All that is to be said of one flight.

@@ -24,7 +24,7 @@ FigureUse use_named(const std::string& name) {
 
 void remember_command(int count, const char* const* words) {
   command_of_this_run = "pcor";
-  for (int i = 1; i < count; ++i) command_of_this_run += " " + quoted(words[i]);
+  for (int i = 1; i < count; ++i) command_of_this_run += " " + shell_word(words[i]);
 }
 
 bool wants_report(const CommonOptions& options) {

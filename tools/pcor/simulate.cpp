@@ -24,8 +24,8 @@ struct Options {
 };
 
 std::string command_line(const Options& options, std::uint64_t seed) {
-  return fmt::format("pcor " PCOR_VERSION " simulate {} -o {} --seed {}", quoted(options.scenario),
-                     quoted(options.output), seed);
+  return fmt::format("pcor " PCOR_VERSION " simulate {} -o {} --seed {}", shell_word(options.scenario),
+                     shell_word(options.output), seed);
 }
 
 nlohmann::ordered_json as_json(const SimulationSummary& summary, const Options& options) {
@@ -70,7 +70,8 @@ void print(const SimulationSummary& summary, const Options& options) {
   say("\nwrote {} variables, and the true values as TRUE_..., to {}\n", summary.variables.size(),
       options.output);
   say_written({options.common.json});
-  say("To see where a model fails on it: {} compare {} -m MODEL.toml\n", program(), quoted(options.output));
+  say("To see where a model fails on it: {} compare {} -m MODEL.toml\n", program(),
+      shell_word(options.output));
 }
 
 void run(const Options& options) {

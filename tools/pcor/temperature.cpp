@@ -291,8 +291,8 @@ void run(const Options& options) {
   if (!with_text) return;
   say_written({options.output});
   if (result.worse.empty())
-    say("To apply it: {} process {} -m {} -o corrected.nc\n", program(), quoted(first_used(result, options)),
-        quoted(options.output));
+    say("To apply it: {} process {} -m {} -o corrected.nc\n", program(),
+        shell_word(first_used(result, options)), shell_word(options.output));
 }
 
 }  // namespace

@@ -83,27 +83,9 @@ std::string_view take_line(std::string_view& text, std::size_t width, bool is_ro
 
 const std::string& program() { return program_name(); }
 
-void set_program(const std::string& name_as_called) { program_name() = quoted(name_as_called); }
+void set_program(const std::string& name_as_called) { program_name() = shell_word(name_as_called); }
 
 void say_plainly() { is_plain = true; }
-
-std::string quoted(const std::string& word) {
-  const bool plain =
-      !word.empty() &&
-      word.find_first_not_of(
-          ""
-          "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+./:,=@%") == std::string::npos;
-  if (plain) return word;
-  std::string text = "'";
-  for (const char letter : word) {
-    if (letter == '\'') {
-      text += "'\\''";
-    } else {
-      text += letter;
-    }
-  }
-  return text + "'";
-}
 
 std::string folded(std::string_view line, std::size_t width) {
   if (bytes_of(line, width) == line.size()) return std::string(line);

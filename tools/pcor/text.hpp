@@ -8,15 +8,14 @@
 #include <utility>
 #include <vector>
 
+#include <pcor/words/shell_word.hpp>
+
 namespace pcor::tool {
 
 /// The program as the user called it, as a shell takes it: commands that are printed for copying begin with
 /// it. "pcor" until `set_program`.
 const std::string& program();
 void set_program(const std::string& name_as_called);
-
-/// A word of a command line as a shell takes it.
-std::string quoted(const std::string& word);
 
 /// Prints text for people on standard output, whose lines are folded at the width of the terminal, with the
 /// verdicts of checks in colour and notes bold unless NO_COLOR is set. Where standard output is no terminal

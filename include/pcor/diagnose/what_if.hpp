@@ -11,6 +11,9 @@
 
 namespace pcor {
 
+/// How many effects the reader of a report may try.
+inline constexpr std::size_t most_what_if_effects = 12;
+
 /// An effect that the reader of a report may add to the model.
 struct WhatIfCandidate {
   std::string id;                       ///< as that of a finding
@@ -45,7 +48,7 @@ struct WhatIf {
 };
 
 /// The effects of a diagnosis to try: what was found, with what it cannot be told from, the formulas of the
-/// user, and what comes nearest to a finding; at most a dozen.
+/// user, and what comes nearest to a finding; at most `most_what_if_effects`.
 std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
                                                 const std::vector<ModelEffect>& formulas);
 
