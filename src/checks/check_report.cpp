@@ -184,6 +184,8 @@ Report check_report(const Checks& checks) {
         "Flight", fmt::format("{}, {} to {} UTC", report.flight_names[i], utc_text(report.time[first]),
                               utc_text(report.time[end - 1], "%H:%M:%S")));
   }
+  if (report.flight_names.size() < checks.flights.size())
+    report.facts.emplace_back("All flights", fmt::format("{}", fmt::join(checks.flights, ", ")));
   report.facts.emplace_back("Program", "pcor " PCOR_VERSION);
   for (const std::string& note : checks.notes) report.facts.emplace_back("Note", note);
   if (DotPanel picture = forest(checks); !picture.rows.empty()) report.items.emplace_back(std::move(picture));

@@ -94,40 +94,33 @@ std::vector<FlightDiagnosis> flights_of(const Analysis& analysis) {
 /// Keeps the records of the flights that pictures show, which then all members have.
 void keep_series(const Analysis& analysis, const std::optional<std::vector<std::size_t>>& wanted,
                  std::vector<FlightDiagnosis>& flights) {
-  std::vector<std::size_t> entries;  // against the first reference
   for (std::size_t f = 0; f < flights.size(); ++f) {
     flights[f].number = analysis.flights()[f].file;
     flights[f].name = analysis.flights()[f].samples->name;
-    if (analysis.flights()[f].reference == 0) entries.push_back(f);
   }
-  std::set<std::size_t> kept;
+  std::vector<std::size_t> kept;
   if (wanted) {
-    kept.insert(wanted->begin(), wanted->end());
+    for (std::size_t f = 0; f < flights.size(); ++f) {
+      if (std::find(wanted->begin(), wanted->end(), flights[f].number) != wanted->end()) kept.push_back(f);
+    }
   } else {
-    const auto described =
-        analysis.share().of_entries(entries).of_each_flight<FlightToShow>([&](std::size_t k) {
-          const FlightDiagnosis& flight = flights[entries[k]];
-          SquareSum sum;
-          for (const double value : flight.before) {
-            if (!std::isnan(value)) sum.add(value);
-          }
-          return FlightToShow{flight.samples->time.front(), sum.count > 0.0 ? sum.rms() : nan};
-        });
-    for (const std::size_t k : flights_to_show(described)) kept.insert(flights[entries[k]].number);
+    kept = flights_to_show(analysis.share().of_each_flight<FlightToShow>([&](std::size_t f) {
+      SquareSum sum;
+      for (const double value : flights[f].before) {
+        if (!std::isnan(value)) sum.add(value);
+      }
+      return FlightToShow{flights[f].samples->time.front(), sum.count > 0.0 ? sum.rms() : nan};
+    }));
   }
-  entries.clear();
-  for (std::size_t f = 0; f < flights.size(); ++f) {
-    if (kept.count(flights[f].number) > 0) entries.push_back(f);
-  }
-  auto series = analysis.share().of_entries(entries).of_each_flight<FlightDiagnosis>(
-      [&](std::size_t k) { return std::move(flights[entries[k]]); });
+  auto series = analysis.share().of_entries(kept).of_each_flight<FlightDiagnosis>(
+      [&](std::size_t k) { return std::move(flights[kept[k]]); });
   for (FlightDiagnosis& flight : flights) {
     FlightDiagnosis outline;
     outline.number = flight.number;
     outline.name = std::move(flight.name);
     flight = std::move(outline);
   }
-  for (std::size_t k = 0; k < entries.size(); ++k) flights[entries[k]] = std::move(series[k]);
+  for (std::size_t k = 0; k < kept.size(); ++k) flights[kept[k]] = std::move(series[k]);
 }
 
 /// The model's own coefficients, fitted again.
@@ -356,11 +349,11 @@ std::string places_text(const TracedVariable& variable) {
 std::string Finding::id() const { return of_reference ? id_on_other_system(system, effect.id) : effect.id; }
 
 std::vector<std::size_t> Diagnosis::flights_with_records() const {
-  std::set<std::size_t> numbers;
+  std::vector<std::size_t> numbers;
   for (const FlightDiagnosis& flight : flights) {
-    if (flight.samples) numbers.insert(flight.number);
+    if (flight.samples) numbers.push_back(flight.number);
   }
-  return {numbers.begin(), numbers.end()};
+  return numbers;
 }
 
 void judge_held_out(Diagnosis& diagnosis) {

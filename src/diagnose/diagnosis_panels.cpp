@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <set>
-
 #include <pcor/diagnose/diagnosis_report.hpp>
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/model/formula.hpp>
@@ -329,14 +327,8 @@ void add_facts(DiagnosisPanels& panels, const Diagnosis& diagnosis, const ModelF
     if (diagnosis.masks[i] > 0)
       left_out.push_back(fmt::format("{} {}", diagnosis.masks[i], mask_facts[i].meaning));
   }
-  std::set<std::size_t> flights;
-  std::set<std::size_t> shown;
-  for (const FlightDiagnosis& flight : diagnosis.flights) {
-    flights.insert(flight.number);
-    if (flight.samples) shown.insert(flight.number);
-  }
-  if (std::string text = shown_text(shown.size(), flights.size()); !text.empty())
-    panels.report().summary.push_back(std::move(text));
+  std::string text = shown_text(diagnosis.flights_with_records().size(), diagnosis.flights.size());
+  if (!text.empty()) panels.report().summary.push_back(std::move(text));
   if (!left_out.empty()) facts.emplace_back("Not used", fmt::format("{}", fmt::join(left_out, "; ")));
   panels.add_flight_facts();
   facts.emplace_back("Program", "pcor " PCOR_VERSION);

@@ -12,10 +12,11 @@
 namespace pcor::internal {
 namespace {
 
+constexpr std::ptrdiff_t most = 32;
+
 /// Dates at even distances in a range of them.
 void add_some(std::vector<double>& tried, std::vector<double>::const_iterator first,
               std::vector<double>::const_iterator last) {
-  constexpr std::ptrdiff_t most = 32;
   const std::ptrdiff_t count = last - first;
   const std::ptrdiff_t some = std::min(count, most);
   for (std::ptrdiff_t k = 0; k < some; ++k) tried.push_back(first[(2 * k + 1) * count / (2 * some)]);
@@ -40,13 +41,22 @@ StepDates::StepDates(std::vector<double> begins) : begins_(std::move(begins)) {
   put_in_order(begins_);
   if (!begins_.empty()) begins_.erase(begins_.begin());
   add_some(tried_, begins_.begin(), begins_.end());
+  // Of a step that few flights lie before, or behind, a date that is far from it would leave little.
+  const std::size_t half_a_distance = begins_.size() / (2 * most);
+  for (std::size_t few = 1; few < half_a_distance; few *= 2) {
+    tried_.push_back(begins_[few - 1]);
+    tried_.push_back(begins_[begins_.size() - few]);
+  }
+  put_in_order(tried_);
 }
 
 StepDates::StepDates(const FlightFiles& flights) : StepDates(begins_of(flights)) {}
 
 bool StepDates::refine(const std::vector<Finding>& findings) {
   std::vector<ModelEffect> effects;
-  for (const Finding& finding : findings) effects.push_back(finding.effect);
+  for (const Finding& finding : findings) {
+    if (!finding.of_reference) effects.push_back(finding.effect);  // there a step is tried on one date
+  }
   std::vector<double> tried = tried_;
   for (const double date : dates_of(effects)) {
     const auto after = std::upper_bound(tried_.begin(), tried_.end(), date);

@@ -9,7 +9,7 @@ namespace pcor::internal {
 
 /// The dates on which a step of an effect is tried: the begins of flights after the first, as the role date
 /// has them. Each is a candidate of its own, so that of many flights some are tried that are spread over
-/// them, and where a step is found, those around it.
+/// them, closer to each other at both ends, and where a step is found, those around it.
 class StepDates {
  public:
   explicit StepDates(const FlightFiles& flights);

@@ -24,7 +24,10 @@ namespace {
 
 constexpr int closed = -1;
 constexpr std::size_t chunk_cache_bytes = 1 << 18, chunk_cache_slots = 1009;
-constexpr std::size_t page = std::size_t{4} << 10, large_record = std::size_t{32} << 10;
+constexpr std::size_t page = std::size_t{4} << 10;
+// Of records between these only the pages are moved that hold what is wanted. Longer ones hold so much else
+// that bringing all of it into memory would take longer.
+constexpr std::size_t large_record = std::size_t{32} << 10, longest_brought = std::size_t{1} << 20;
 
 enum class Content { classic, hdf5, other };
 
@@ -83,6 +86,10 @@ Content content_of(const std::filesystem::path& path) {
   return Content::other;
 }
 
+bool is_brought(std::size_t record_bytes) {
+  return record_bytes > large_record && record_bytes <= longest_brought;
+}
+
 std::string without_trailing_blanks(std::string text) {
   const std::size_t end = text.find_last_not_of(std::string_view("\0 \t\r\n", 5));
   text.resize(end == std::string::npos ? 0 : end + 1);
@@ -134,8 +141,9 @@ NetcdfFile NetcdfFile::open(const std::filesystem::path& path) {
   ClassicLayout layout;
   if (content_of(path) == Content::classic) layout = checked_layout_of_classic(path);
   int id = closed;
-  // Of large records only the pages are moved that hold what is wanted.
-  std::size_t buffer = layout.record_bytes > large_record ? page : classic_buffer_bytes;
+  std::size_t buffer = is_brought(layout.record_bytes)      ? page
+                       : layout.record_bytes > large_record ? large_record
+                                                            : classic_buffer_bytes;
   const int opened = nc__open(name.c_str(), NC_NOWRITE, &buffer, &id);
   if (opened == NC_ENOMEM || opened == ENOMEM) throw std::bad_alloc();
   if (opened > 0)
@@ -409,7 +417,7 @@ std::array<double, 2> NetcdfFile::valid_range(int variable) const {
 
 void NetcdfFile::bring_into_memory(RecordBlock records) const {
   const std::size_t end = records.first + records.count;
-  if (record_bytes_ <= large_record || end <= brought_) return;
+  if (!is_brought(record_bytes_) || records.count == 0 || end <= brought_) return;
   const std::size_t first = std::max(records.first, brought_);
   brought_ = end;
   std::ifstream file(path_, std::ios::binary);
@@ -424,9 +432,12 @@ void NetcdfFile::bring_into_memory(RecordBlock records) const {
 
 void NetcdfFile::read(int variable, RecordBlock records, double* out) const {
   fit_chunk_cache(variable);
-  bring_into_memory(records);
+  const std::vector<int> dimensions = dimensions_of(variable);
+  int unlimited = -1;
+  check(nc_inq_unlimdim(id_, &unlimited), "cannot read its dimensions");
+  if (!dimensions.empty() && dimensions.front() == unlimited) bring_into_memory(records);
   std::vector<std::size_t> start, count;
-  for (const int dimension : dimensions_of(variable)) {
+  for (const int dimension : dimensions) {
     start.push_back(start.empty() ? records.first : 0);
     count.push_back(count.empty() ? records.count : dimension_length(dimension));
   }

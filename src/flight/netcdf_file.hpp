@@ -96,7 +96,7 @@ class NetcdfFile final : public FlightFile {
   // Of a classic file with records.
   std::size_t record_bytes_ = 0;
   std::size_t records_begin_ = 0;    // in bytes from that of the file
-  mutable std::size_t brought_ = 0;  // records that were brought into memory
+  mutable std::size_t brought_ = 0;  // behind the last record that was brought into memory
   mutable std::set<int> fitted_;     // variables whose chunk cache is fit
 };
 

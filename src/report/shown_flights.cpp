@@ -101,7 +101,8 @@ void show_flights_over_time(Report& report, std::size_t most) {
 std::string shown_text(std::size_t shown, std::size_t flights, const std::string& which) {
   if (shown >= flights) return "";
   return fmt::format(
-      "The pictures, and what is selected in them, are of {} of the {} flights: {}. All other numbers are of "
+      "The pictures of samples, and what is selected in them, are of {} of the {} flights: {}. All else is "
+      "of "
       "all flights.",
       shown, flights, which);
 }

@@ -44,11 +44,28 @@ TEST(StepDates, OfOneFlightAreNone) {
 
 TEST(StepDates, OfManyFlightsAreSomeUntilOneIsFound) {
   StepDates dates(begins(2000));
-  EXPECT_LE(dates.tried().size(), 32U);
+  EXPECT_LE(dates.tried().size(), 42U);
   EXPECT_FALSE(dates.refine({}));
   Finding other;
   other.effect.id = "static-lag";
   other.effect.parameters = {0.3};
+  EXPECT_FALSE(dates.refine({other}));
+}
+
+// A step between so many flights and the others is tried so near that half of its evidence is left at least.
+TEST(StepDates, OfManyFlightsLieCloseAtBothEnds) {
+  const StepDates dates(begins(2000));
+  for (int before = 1; before < 2000; ++before) {
+    const double truth = 100.0 + before;
+    EXPECT_LE(std::abs(nearest(dates.tried(), truth) - truth), 0.5 * std::min(before, 2000 - before))
+        << before;
+  }
+}
+
+TEST(StepDates, AreNotRefinedByWhatIsFoundOfTheOtherSystem) {
+  StepDates dates(begins(2000));
+  Finding other = step_on(dates.tried().front());
+  other.of_reference = true;
   EXPECT_FALSE(dates.refine({other}));
 }
 

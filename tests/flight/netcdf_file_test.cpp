@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "flight/classic_netcdf.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace pcor::internal {
@@ -38,13 +39,17 @@ void write_classic(const std::filesystem::path& path, std::size_t records, std::
 
 class RecordsOfAClassicFile : public testing::TestWithParam<std::size_t> {};
 
-// Small ones are read through a large buffer, large ones are brought into memory and read in small pieces.
+// Small ones are read through a large buffer, large ones are brought into memory and read in small pieces,
+// and the longest are not.
 TEST_P(RecordsOfAClassicFile, AreReadInAnyOrderOfBlocks) {
   constexpr std::size_t records = 7;
   const std::size_t wide = GetParam();
   const test::TemporaryDirectory directory;
   const std::filesystem::path path = directory / "classic.nc";
   write_classic(path, records, wide);
+  const auto layout = layout_of_classic(path);
+  ASSERT_TRUE(layout);
+  EXPECT_EQ(layout->records_begin + records * layout->record_bytes, std::filesystem::file_size(path));
   const NetcdfFile file = NetcdfFile::open(path);
   for (const RecordBlock block : {RecordBlock{4, 2}, {0, 3}, {6, 1}, {0, records}, {2, 0}, {1, 5}}) {
     for (int variable = 0; variable < 4; ++variable) {
@@ -58,7 +63,7 @@ TEST_P(RecordsOfAClassicFile, AreReadInAnyOrderOfBlocks) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(OfAnySize, RecordsOfAClassicFile, testing::Values(1, 300, 3000, 40000));
+INSTANTIATE_TEST_SUITE_P(OfAnySize, RecordsOfAClassicFile, testing::Values(1, 300, 3000, 40000, 200000));
 
 }  // namespace
 }  // namespace pcor::internal

@@ -266,7 +266,10 @@ void run(const Options& options) {
   compare_options.mask = mask_options(options.comparison);
   compare_options.time_stamp = time_stamp(options.comparison);
   compare_options.team = &team();
-  if (!options.residuals.empty()) compare_options.most_series = options.comparison.flights.size();
+  if (!options.residuals.empty())
+    compare_options.most_series = options.comparison.flights.size();
+  else if (!wants_report(options.common))
+    compare_options.most_series = 0;  // all else is numbers
   Comparison comparison;
   {
     Progress bar("comparing", !options.common.quiet);

@@ -259,10 +259,10 @@ struct Diagnosis {
   Statistics flaps_out;                 ///< of samples left out because flaps are out, as the model is given
   std::vector<HeldOutPart> held_out{};  ///< the later parts of flights, or flights that `improve` held out
   std::array<std::size_t, mask_count> masks{};
-  std::vector<FlightDiagnosis> flights{};  ///< against each reference, those against the first one first
+  std::vector<FlightDiagnosis> flights{};  ///< against the first reference
   std::vector<std::string> notes{};
 
-  /// The numbers of the flights whose records are held, each once.
+  /// The numbers of the flights whose records are held.
   std::vector<std::size_t> flights_with_records() const;
 };
 
