@@ -186,9 +186,7 @@ void Analysis::for_each_reference(const std::vector<std::size_t>& groups, const 
       {[&](std::size_t f) -> Eigen::MatrixXd { return columns_[f](Eigen::all, places); },
        [&](std::size_t f) { return left_of(f, groups, estimate); }, digest_of(packed(estimate))},
       find);
-  first_noise_ = noise_.front();
-  first_noise_.level.clear();
-  for (std::size_t f = 0; f < flights_.size(); ++f) first_noise_.level.push_back(noise_[f].level[0]);
+  first_noise_ = noise_of_first_reference(binned_, noise_);
 }
 
 void Analysis::find_first_noise(const Eigen::VectorXd& estimate) {

@@ -78,4 +78,11 @@ std::vector<NoiseModel> noise_of_flights(const FlightShare& share, const BinnedF
   return noise;
 }
 
+NoiseModel noise_of_first_reference(const BinnedFlights& flights, const std::vector<NoiseModel>& noise) {
+  NoiseModel first = noise.front();
+  first.level.clear();
+  for (std::size_t f = 0; f < flights.first_count(); ++f) first.level.push_back(noise[f].level[0]);
+  return first;
+}
+
 }  // namespace pcor::internal

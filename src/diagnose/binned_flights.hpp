@@ -50,4 +50,7 @@ using FindNoise =
 std::vector<NoiseModel> noise_of_flights(const FlightShare& share, const BinnedFlights& flights,
                                          const BinnedFit& fit, const FindNoise& find);
 
+/// That of the flights against the first reference as one, with the levels of the own.
+NoiseModel noise_of_first_reference(const BinnedFlights& flights, const std::vector<NoiseModel>& noise);
+
 }  // namespace pcor::internal

@@ -195,6 +195,7 @@ WhatIfFit::WhatIfFit(TeamColumns flights, TeamColumns others,
         flight.given[i] += flight.base.row(as_index(i)).cast<double>().dot(given_.head(base_));
     }
   }
+  sum_held_out();
   for (const ColumnGroup& group : groups_) told_.push_back(places_of(group, base_));
   for (const std::vector<std::size_t>& some : subsets_of(found)) settle(some, is_robust, residual_at);
 }
@@ -305,9 +306,7 @@ std::vector<NoiseModel> WhatIfFit::noise_after(const Eigen::VectorXd& values,
       [&](const auto& bins, const auto& fitted, const auto& left) {
         return drifts ? find_noise(bins, fitted, left, threads).model : estimate_noise(bins, left);
       });
-  noise_ = noise.front();
-  noise_.level.clear();
-  for (std::size_t f = 0; f < binned_.first_count(); ++f) noise_.level.push_back(noise[f].level[0]);
+  noise_ = noise_of_first_reference(binned_, noise);
   return noise;
 }
 
@@ -346,6 +345,10 @@ void WhatIfFit::sum_records() {
                .kinds;
   outliers_ = std::move(alike_.back());
   alike_.pop_back();
+}
+
+void WhatIfFit::sum_held_out() {
+  const Eigen::Index width = given_.size() + 1;
   held_out_ = others_.share.sum_of_each_flight<SumOfProducts>([&](std::size_t f) {
     const FlightColumns& flight = others_.flights[f];
     SumOfProducts sum{Eigen::MatrixXd::Zero(width, width), 0.0};

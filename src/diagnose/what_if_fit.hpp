@@ -100,6 +100,7 @@ class WhatIfFit {
                                       const std::vector<Eigen::Index>& free, bool drifts);
   double rms_of(const Eigen::VectorXd& values) const;
   void sum_records();
+  void sum_held_out();
 
   TeamColumns flights_;
   TeamColumns others_;
