@@ -1,5 +1,6 @@
 """A page in headless chromium, moved by the input of a mouse and a keyboard as a reader's hand moves it."""
 
+import base64
 import json
 import os
 import subprocess
@@ -22,13 +23,14 @@ class Browser:
         os.close(to_us)
         self.out = os.fdopen(to_browser, "wb")
         self.into = os.fdopen(from_browser, "rb")
+        self.received = b""
         self.number = 0
         self.session = None
-        self.errors = []
+        self.errors = []  # what a page threw or told on its console
         target = self.ask("Target.createTarget", url="about:blank")["targetId"]
         self.session = self.ask("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
-        self.ask("Runtime.enable")
-        self.ask("Page.enable")
+        for domain in ("Runtime", "Log", "Page"):
+            self.ask(f"{domain}.enable")
 
     def close(self):
         self.child.kill()
@@ -37,15 +39,20 @@ class Browser:
         self.into.close()
 
     def message(self):
-        text = b""
-        while not text.endswith(b"\0"):
-            letter = self.into.read1(1)
-            if not letter:
+        while b"\0" not in self.received:
+            more = self.into.read1(1 << 16)
+            if not more:
                 raise EOFError("the browser has ended")
-            text += letter
-        found = json.loads(text[:-1])
-        if found.get("method") == "Runtime.exceptionThrown":
-            self.errors.append(found["params"]["exceptionDetails"]["text"])
+            self.received += more
+        text, _, self.received = self.received.partition(b"\0")
+        found = json.loads(text)
+        kind, told = found.get("method"), found.get("params")
+        if kind == "Runtime.exceptionThrown":
+            self.errors.append(told["exceptionDetails"]["text"])
+        elif kind == "Runtime.consoleAPICalled":
+            self.errors.append(f"{told['type']}: {[each.get('value') for each in told['args']]}")
+        elif kind == "Log.entryAdded":
+            self.errors.append(told["entry"]["text"])
         return found
 
     def ask(self, method, **parameters):
@@ -67,6 +74,19 @@ class Browser:
         self.ask("Page.navigate", url="about:blank")
         self.ask("Page.navigate", url=address)
         self.wait("Boolean(window.pcorReport && window.pcorReport.ready)")
+
+    def resize(self, width, height=900):
+        self.ask("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+
+    def screenshot(self, **more):
+        """A picture of the page, PNG."""
+        return base64.b64decode(self.ask("Page.captureScreenshot", format="png", **more)["data"])
+
+    def self_test(self, address):
+        """What a page finds that tests itself."""
+        self.errors.clear()
+        self.open(f"{address}#selftest" if "#" not in address else f"{address}+selftest")
+        return json.loads(self.value("document.getElementById('selftest').textContent"))
 
     def wait(self, condition, seconds=60):
         """Until a condition holds; what the page does by itself takes its time on a busy machine."""

@@ -86,17 +86,12 @@ class EveryReport(unittest.TestCase):
     def tearDownClass(cls):
         cls.browser.close()
 
-    def resize(self, width):
-        self.browser.ask("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
-
     def test_every_panel_has_data_wide_and_narrow(self):
         for command in LOOKED_AT:
             for width in (1400, 420):
                 with self.subTest(command=command, width=width):
-                    self.resize(width)
-                    self.browser.errors.clear()
-                    self.browser.open(page(command) + "#selftest")
-                    result = json.loads(self.browser.value("document.getElementById('selftest').textContent"))
+                    self.browser.resize(width)
+                    result = self.browser.self_test(page(command))
                     self.assertEqual(result["wrong"], [])
                     self.assertGreater(result["panels"], 1)
                     self.assertEqual(self.browser.errors, [])
@@ -105,7 +100,7 @@ class EveryReport(unittest.TestCase):
         axe = axe_core()
         if not axe:
             self.skipTest("axe-core cannot be had from npm")
-        self.resize(1400)
+        self.browser.resize(1400)
         for command in LOOKED_AT:
             for theme in ("light", "dark"):
                 with self.subTest(command=command, theme=theme):

@@ -9,7 +9,6 @@ hinting. Where there is no Chromium or no such font the test is skipped (status 
 PCOR_REQUIRE_CHROMIUM is set.
 """
 
-import base64
 import os
 import shutil
 import subprocess
@@ -18,9 +17,11 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import numpy
+from PIL import Image
+
 sys.argv, ACCEPT = [word for word in sys.argv if word != "--accept"], "--accept" in sys.argv
 from browser import Browser  # noqa: E402
-from pictures import decode_png  # noqa: E402
 
 SAMPLE_REPORT, SOURCE = (Path(word).resolve() for word in sys.argv[1:3])
 ACCEPTED = SOURCE / "tests/report/accepted"
@@ -43,16 +44,11 @@ FONTS = """<?xml version="1.0"?>
 """
 
 
-def blocks(picture):
-    """The mean red, green and blue of each square of a picture."""
-    width, height, rows = picture
-    means = []
-    for top in range(0, height - BLOCK + 1, BLOCK):
-        lines = rows[top:top + BLOCK]
-        for left in range(0, width - BLOCK + 1, BLOCK):
-            parts = [line[3 * left:3 * (left + BLOCK)] for line in lines]
-            means.append(tuple(sum(sum(part[channel::3]) for part in parts) / BLOCK ** 2 for channel in range(3)))
-    return means
+def blocks(path):
+    """The height of a picture, and the mean red, green and blue of each square of it."""
+    with Image.open(path) as picture:
+        width, height = (side - side % BLOCK for side in picture.size)
+        return picture.height, numpy.asarray(picture.convert("RGB").crop((0, 0, width, height)).reduce(BLOCK), int)
 
 
 class Looks(unittest.TestCase):
@@ -76,9 +72,8 @@ class Looks(unittest.TestCase):
         cls.directory.cleanup()
 
     def picture(self, width, wish, is_print, part):
-        ask = self.browser.ask
-        ask("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
-        ask("Emulation.setEmulatedMedia", media="print" if is_print else "screen")
+        self.browser.resize(width)
+        self.browser.ask("Emulation.setEmulatedMedia", media="print" if is_print else "screen")
         self.browser.open(f"{self.report.as_uri()}#{wish}")
         if is_print:
             self.browser.value("dispatchEvent(new Event('beforeprint'))")
@@ -87,7 +82,7 @@ class Looks(unittest.TestCase):
         self.browser.settle()
         height = self.browser.value("document.documentElement.scrollHeight")
         clip = {"x": 0, "y": 0, "width": width, "height": height, "scale": part}
-        return base64.b64decode(ask("Page.captureScreenshot", format="png", captureBeyondViewport=True, clip=clip)["data"])
+        return self.browser.screenshot(captureBeyondViewport=True, clip=clip)
 
     def test_looks_as_accepted(self):
         for name, width, wish, is_print, part in LOOKS:
@@ -99,17 +94,18 @@ class Looks(unittest.TestCase):
                     ACCEPTED.mkdir(exist_ok=True)
                     shutil.copy(found, accepted)
                     continue
-                now, before = decode_png(found), decode_png(accepted)
+                (height, now), (height_before, before) = blocks(found), blocks(accepted)
                 # A pixel or two, by how heights of lines are rounded.
-                self.assertAlmostEqual(now[1], before[1], delta=2, msg="the page has another height")
-                differ = [max(abs(a - b) for a, b in zip(one, other)) for one, other in zip(blocks(now), blocks(before))]
+                self.assertAlmostEqual(height, height_before, delta=2, msg="the page has another height")
+                rows = min(len(now), len(before))
+                differ = abs(now[:rows] - before[:rows]).max(axis=2)
                 # Another version of the browser smooths edges in another way: that moves the mean of a square by a few of
                 # 255, a curve that is gone or a word elsewhere by more than 12.
-                beyond = sum(each > 12 for each in differ)
-                if beyond > 0.003 * len(differ):
+                beyond = int((differ > 12).sum())
+                if beyond > 0.003 * differ.size:
                     kept = Path(tempfile.gettempdir()) / f"pcor-report-{name}.png"
                     shutil.copy(found, kept)
-                    self.fail(f"{beyond} of {len(differ)} squares differ; see {kept}, and accept it with --accept if it is right")
+                    self.fail(f"{beyond} of {differ.size} squares differ; see {kept}, and accept it with --accept if it is right")
 
 
 if __name__ == "__main__":

@@ -6,7 +6,8 @@
 Without chromium it is skipped (status 77), or fails if PCOR_REQUIRE_CHROMIUM is set.
 """
 
-import html
+import base64
+import io
 import json
 import os
 import re
@@ -19,8 +20,10 @@ import urllib.parse
 import xml.etree.ElementTree
 from pathlib import Path
 
+import numpy
+from PIL import Image
+
 from browser import Browser
-from pictures import decode_png
 
 SAMPLE_REPORT = Path(sys.argv[1]).resolve()
 SOURCE = Path(sys.argv[2]).resolve()
@@ -33,14 +36,15 @@ def run(*command):
     return subprocess.run(command, check=True, capture_output=True, text=True, timeout=120)
 
 
-def chromium(profile, *words):
-    return run(CHROMIUM, "--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--enable-logging=stderr",
-               f"--user-data-dir={profile}", *words)
+def pixels(path):
+    """A picture as numbers: rows, columns, and red, green and blue."""
+    with Image.open(path) as picture:
+        return numpy.asarray(picture.convert("RGB"), int)
 
 
-def coloured(rows):
+def coloured(picture):
     """How many pixels are clearly not grey, in every fourth row."""
-    return sum(max(row[i:i + 3]) - min(row[i:i + 3]) > 40 for row in rows[::4] for i in range(0, len(row), 3))
+    return (numpy.ptp(picture[::4], axis=2) > 40).sum()
 
 
 class ReportInBrowser(unittest.TestCase):
@@ -50,28 +54,20 @@ class ReportInBrowser(unittest.TestCase):
         cls.folder = Path(cls.directory.name)
         cls.report = cls.folder / "report.html"
         run(SAMPLE_REPORT, cls.report)
+        cls.browser = Browser(CHROMIUM, cls.folder / "profile", words=("--hide-scrollbars",))
 
     @classmethod
     def tearDownClass(cls):
+        cls.browser.close()
         cls.directory.cleanup()
 
-    def browse(self, report, wish, *words):
-        return chromium(self.folder / "profile", *words, f"{report.as_uri()}#{wish}")
-
-    def self_test(self, report, *wishes, width=1280):
-        shown = self.browse(report, "+".join(("selftest", *wishes)), f"--window-size={width},900", "--dump-dom")
-        self.assertEqual([line for line in shown.stderr.splitlines() if "CONSOLE" in line], [])
-        found = re.search(r'<pre id="selftest">(.*?)</pre>', shown.stdout, re.DOTALL)
-        self.assertIsNotNone(found, "the page did not test itself")
-        result = json.loads(html.unescape(found.group(1)))
+    def self_test(self, report, wish="light", width=1280):
+        self.browser.resize(width)
+        result = self.browser.self_test(f"{report.as_uri()}#{wish}")
+        self.assertEqual(self.browser.errors, [])
         self.assertEqual(result["wrong"], [])
         self.assertEqual(result["panels"], PANELS)
         return result
-
-    def screenshot(self, wish, width):
-        picture = self.folder / f"{wish}-{width}.png"
-        self.browse(self.report, wish, f"--window-size={width},2400", f"--screenshot={picture}")
-        return decode_png(picture)
 
     def test_page_tests_itself(self):
         result = self.self_test(self.report, "light")
@@ -100,16 +96,19 @@ class ReportInBrowser(unittest.TestCase):
         for wish, bright in (("light", True), ("dark", False)):
             for width in (700, 1600):
                 with self.subTest(wish=wish, width=width):
-                    _, height, rows = self.screenshot(wish, width)
-                    self.assertEqual(height, 2400)
-                    corner = sum(rows[0][:3]) / 3
-                    self.assertEqual(corner > 128, bright)
-                    self.assertGreater(coloured(rows), 3000)
+                    self.browser.resize(width, 2400)
+                    self.browser.open(f"{self.report.as_uri()}#{wish}")
+                    self.browser.settle()
+                    picture = pixels(io.BytesIO(self.browser.screenshot()))
+                    self.assertEqual(len(picture), 2400)
+                    self.assertEqual(picture[0, 0].mean() > 128, bright)
+                    self.assertGreater(coloured(picture), 3000)
 
     def test_print(self):
-        pages = self.folder / "report.pdf"
-        self.browse(self.report, "dark", f"--print-to-pdf={pages}")
-        self.assertGreater(pages.stat().st_size, 50_000)
+        self.browser.open(f"{self.report.as_uri()}#dark")
+        pages = base64.b64decode(self.browser.ask("Page.printToPDF", printBackground=True)["data"])
+        self.assertTrue(pages.startswith(b"%PDF"))
+        self.assertGreater(len(pages), 50_000)
 
     def figures(self, folder, use):
         run(SAMPLE_REPORT, "--figures", folder, use)
@@ -134,9 +133,9 @@ class ReportInBrowser(unittest.TestCase):
                 points = float(each.get("font-size")) * float(svg.get("width")) / float(svg.get("viewBox").split()[2]) * 0.75
                 self.assertGreaterEqual(points, 8, each.text)
         for raster in rasters:
-            width, _, rows = decode_png(raster)
-            self.assertGreaterEqual(width, 1600)
-            self.assertGreater(coloured(rows), 200, raster.name)
+            picture = pixels(raster)
+            self.assertGreaterEqual(picture.shape[1], 1600)
+            self.assertGreater(coloured(picture), 200, raster.name)
 
     def test_pictures_for_a_column_and_a_slide(self):
         for use, width in (("column", 325), ("slide", 1280)):
