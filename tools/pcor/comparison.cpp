@@ -14,6 +14,7 @@
 #include <pcor/words/error.hpp>
 #include <pcor/words/suggest.hpp>
 #include "choices.hpp"
+#include "processes.hpp"
 #include "team.hpp"
 
 namespace pcor::tool {
@@ -79,6 +80,7 @@ void add_flight_options(CLI::App& command, ComparisonOptions& options) {
       ->capture_default_str();
   command.add_flag("--skip-unreadable", options.skip_unreadable,
                    "leave out a flight that is damaged or is none, and say so");
+  add_processes_option(command);
   command.parse_complete_callback([&options] {
     if (options.skip_unreadable) leave_out_unreadable(options.flights);
   });

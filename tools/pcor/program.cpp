@@ -17,6 +17,7 @@
 #include <system_error>
 #include <vector>
 
+#include <pcor/team/forked_team.hpp>
 #include <pcor/words/error.hpp>
 #include <pcor/words/replacement_file.hpp>
 
@@ -25,6 +26,7 @@
 #include "commands.hpp"
 #include "crash.hpp"
 #include "model_name.hpp"
+#include "processes.hpp"
 #include "report_origin.hpp"
 #include "team.hpp"
 #include "text.hpp"
@@ -59,6 +61,14 @@ void fill_closed_streams() {
     if (place > STDERR_FILENO) close(place);
     if (place < 0 || place > STDERR_FILENO) return;
   }
+}
+
+/// What is printed on standard output comes from the first of a team, for all.
+void print_nothing() {
+  const int nowhere = open("/dev/null", O_WRONLY);
+  if (nowhere < 0) return;
+  dup2(nowhere, STDOUT_FILENO);
+  close(nowhere);
 }
 
 /// @throws CLI::ArgumentMismatch if several processes would all do the whole work of a command
@@ -131,17 +141,29 @@ Ending failed(const Error& error, bool at_once) {
   finish_text();
   std::fflush(stdout);
   const Error of_all = team().leave(error).value_or(error);
-  tell(fmt::format("pcor: {}", of_all.what()));
+  if (*of_all.what() != '\0') tell(fmt::format("pcor: {}", of_all.what()));
   return {work_not_done, at_once || is_final(of_all)};
 }
 
 }  // namespace
+
+Ending run_program(int argc, char** argv) {
+  fill_closed_streams();
+  try {
+    ForkedTeam team(processes_wanted({argv + 1, argv + argc}));
+    return run_program(argc, argv, team);
+  } catch (const Error& error) {
+    tell(fmt::format("pcor: {}", error.what()));
+    return {work_not_done};
+  }
+}
 
 Ending run_program(int argc, char** argv, Team& team) {
   mind_signals();
   const CrashesExplained explained;
   fill_closed_streams();
   set_team(team);
+  if (!is_speaker()) print_nothing();
   try {
     set_program(argv[0]);
     const int status = run(argc, argv);

@@ -12,7 +12,10 @@ struct Ending {
   bool at_once = false;
 };
 
-/// Reads the command line and does what it says, together with the other members of the team.
+/// Reads the command line and does what it says, in as many processes as it asks for.
+Ending run_program(int argc, char** argv);
+
+/// The same, together with the other members of the team.
 Ending run_program(int argc, char** argv, Team& team);
 
 /// Ends this process so.

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """The tool on several processes says and writes what it does alone, and ends wherever one of them fails.
 
-    processes_test.py TOOL TOOL_ON_PROCESSES LAUNCHER SOURCE_DIRECTORY
+    processes_test.py TOOL SOURCE_DIRECTORY                              processes that the tool begins itself
+    processes_test.py TOOL SOURCE_DIRECTORY TOOL_WITH_MPI LAUNCHER       those of MPI
 """
 
 import os
@@ -15,7 +16,9 @@ import time
 import unittest
 from pathlib import Path
 
-TOOL, TOOL_ON_PROCESSES, LAUNCHER, SOURCE = (Path(word).absolute() for word in sys.argv[1:5])
+OPTIONS = [word for word in sys.argv[1:] if word.startswith("-")]  # for unittest
+TOOL, SOURCE, *MPI = (Path(word).absolute() for word in sys.argv[1:] if not word.startswith("-"))
+TOOL_ON_PROCESSES, LAUNCHER = MPI or (TOOL, None)
 MODEL = SOURCE / "data/scenarios/models/c130-psfd-eq18.toml"
 SCENARIO = SOURCE / "data/scenarios/c130-short.toml"
 FLIGHTS = 5
@@ -31,15 +34,19 @@ ENVIRONMENT = dict(
 SECONDS = 120
 
 
+def command(count, *words):
+    if LAUNCHER:
+        return [LAUNCHER, "-n", str(count), TOOL_ON_PROCESSES, *words]
+    return [TOOL, *words, "--processes", str(count)]
+
+
 def on_processes(count, *words, **options):
-    return subprocess.run(
-        [LAUNCHER, "-n", str(count), TOOL_ON_PROCESSES, *words],
-        capture_output=True, text=True, env=ENVIRONMENT, timeout=SECONDS, **options)
+    return subprocess.run(command(count, *words), capture_output=True, text=True, env=ENVIRONMENT, timeout=SECONDS, **options)
 
 
 def with_one_name(text):
-    """What is to be copied begins with the program as it was called."""
-    return text.replace(str(TOOL_ON_PROCESSES), "pcor").replace(str(TOOL), "pcor")
+    """What is to be copied begins with the program as it was called, and what was called may say how many processes."""
+    return re.sub(r" --processes \d+", "", text.replace(str(TOOL_ON_PROCESSES), "pcor").replace(str(TOOL), "pcor"))
 
 
 class Processes(unittest.TestCase):
@@ -181,10 +188,11 @@ class Processes(unittest.TestCase):
             told = [line for line in together.stderr.splitlines() if line.startswith("pcor: ")]
             self.assertEqual("\n".join(told) + "\n", alone.stderr.replace(str(TOOL), str(TOOL_ON_PROCESSES)))
 
+    @unittest.skipUnless(LAUNCHER, "the processes of one command")
     def test_processes_with_different_commands_are_refused(self):
-        def command(*more):
-            return [TOOL_ON_PROCESSES, "refit", *self.flights[:2], "-m", MODEL, "-o", "fitted.toml", *more]
-        together = subprocess.run([LAUNCHER, "-n", "1", *command(), ":", "-n", "1", *command("--loss", "huber")],
+        def one(*more):
+            return ["-n", "1", TOOL_ON_PROCESSES, "refit", *self.flights[:2], "-m", MODEL, "-o", "fitted.toml", *more]
+        together = subprocess.run([LAUNCHER, *one(), ":", *one("--loss", "huber")],
                                   capture_output=True, text=True, env=ENVIRONMENT, timeout=SECONDS, cwd=self.path)
         self.assertEqual(together.returncode, 1)
         self.assertIn("their commands or their files differ", together.stderr)
@@ -192,11 +200,12 @@ class Processes(unittest.TestCase):
 
     def test_what_is_for_one_process_is_refused(self):
         words = ["process", self.flights[0], "-m", MODEL, "-o", "corrected.nc"]
-        self.assertEqual(on_processes(1, *words, cwd=self.path).returncode, 0)
-        (self.path / "corrected.nc").unlink()
+        if LAUNCHER:
+            self.assertEqual(on_processes(1, *words, cwd=self.path).returncode, 0)
+            (self.path / "corrected.nc").unlink()
         together = on_processes(2, *words, cwd=self.path)
         self.assertEqual(together.returncode, 2)
-        self.assertIn("docs/campaigns.md", together.stderr)
+        self.assertIn("docs/campaigns.md" if LAUNCHER else "there is no option '--processes'", together.stderr)
         self.assertFalse((self.path / "corrected.nc").exists())
 
     def at_work(self):
@@ -216,8 +225,8 @@ class Processes(unittest.TestCase):
         words = ["refit", *self.flights, "-m", MODEL, "-o", "fitted.toml", "--memory", "0"]
         killed = 0
         for trial in range(6):
-            job = subprocess.Popen([LAUNCHER, "-n", "3", TOOL_ON_PROCESSES, *words], cwd=self.path, env=ENVIRONMENT,
-                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+            job = subprocess.Popen(command(3, *words), cwd=self.path, env=ENVIRONMENT, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE, text=True, start_new_session=True)
             try:
                 processes = []
                 begin = time.monotonic()
@@ -227,12 +236,15 @@ class Processes(unittest.TestCase):
                 if len(processes) == 3 and job.poll() is None:
                     os.kill(processes[trial % 3], signal.SIGKILL)
                     killed += 1
-                    self.assertNotEqual(job.wait(timeout=SECONDS), 0)
+                    told = job.communicate(timeout=SECONDS)[1]
+                    self.assertNotEqual(job.returncode, 0)
+                    if not LAUNCHER and trial % 3:  # not the first of them, which would tell
+                        self.assertRegex(told, r'\Apcor: one of the 3 processes of this run was ended by the signal "Killed".*\n\Z')
                     begin = time.monotonic()
                     while self.at_work() and time.monotonic() - begin < SECONDS:
                         time.sleep(0.1)
                     self.assertEqual(self.at_work(), [])
-                job.wait(timeout=SECONDS)
+                job.communicate(timeout=SECONDS)
             finally:
                 if job.poll() is None:
                     os.killpg(job.pid, signal.SIGKILL)
@@ -241,4 +253,4 @@ class Processes(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1] + sys.argv[5:])
+    unittest.main(argv=sys.argv[:1] + OPTIONS)

@@ -1,0 +1,110 @@
+#include <pcor/team/forked_team.hpp>
+
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace pcor {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+/// Lets processes work as a team. @return what the first of them comes to, as text
+///
+/// All of the team hold the end of a pipe, so that the text has its end when all have ended: else the test
+/// would wait until its time is over.
+std::string by_team(std::size_t size, const std::function<std::string(Team&)>& work) {
+  int ends[2];
+  if (::pipe(ends) != 0) return "no pipe";
+  const pid_t process = ::fork();
+  if (process == 0) {
+    std::string text;
+    {
+      ForkedTeam team(size);
+      try {
+        text = work(team);
+      } catch (const Error& error) {
+        // As a program does: the last words to the others, who may be gone.
+        const Error last = team.leave(error).value_or(error);
+        text = std::string("error: ") + last.what();
+      }
+      if (team.rank() > 0) text.clear();
+    }
+    [[maybe_unused]] const auto written = ::write(ends[1], text.data(), text.size());
+    ::_exit(0);
+  }
+  ::close(ends[1]);
+  std::string found;
+  char some[4096];
+  for (ssize_t count = 0; (count = ::read(ends[0], some, sizeof some)) > 0;)
+    found.append(some, static_cast<std::size_t>(count));
+  ::close(ends[0]);
+  ::waitpid(process, nullptr, 0);
+  return found;
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const std::string& part : parts) text += "<" + part + ">";
+  return text;
+}
+
+TEST(ForkedTeam, GathersOnAllMembersWhatEachHas) {
+  const auto work = [](Team& team) {
+    const std::string own = joined(team.gather(std::string(team.rank(), 'x')));
+    return joined(team.gather(own + std::string("\0", 1)));
+  };
+  const std::string each = "<<><x><xx>" + std::string("\0", 1) + ">";
+  EXPECT_EQ(by_team(3, work), each + each + each);
+  EXPECT_EQ(by_team(1, work), "<<>" + std::string("\0", 1) + ">");
+}
+
+TEST(ForkedTeam, GathersMoreThanASocketHolds) {
+  constexpr std::size_t count = 5'000'000;
+  const auto work = [](Team& team) {
+    const std::string own(count + team.rank(), static_cast<char>('a' + team.rank()));
+    std::string found;
+    for (const std::string& part : team.gather(own)) {
+      const bool is_whole = part == std::string(part.size(), part.front());
+      found += part.front() + std::to_string(part.size()) + (is_whole ? " " : "! ");
+    }
+    return joined(team.gather(found));
+  };
+  const std::string found = "<a5000000 b5000001 c5000002 d5000003 >";
+  EXPECT_EQ(by_team(4, work), found + found + found + found);
+}
+
+TEST(ForkedTeam, FailsWhereAMemberIsKilled) {
+  const auto work = [](Team& team) {
+    if (team.rank() == 2) ::raise(SIGKILL);
+    return joined(team.gather("part"));
+  };
+  EXPECT_THAT(by_team(3, work), AllOf(HasSubstr("one of the 3 processes"), HasSubstr("Killed")));
+}
+
+TEST(ForkedTeam, FailsWithoutAWordWhereAMemberHasSaidWhyItEnds) {
+  const auto work = [](Team& team) {
+    if (team.rank() == 1) ::_exit(1);
+    return joined(team.gather("part"));
+  };
+  EXPECT_EQ(by_team(3, work), "error: ");
+}
+
+TEST(ForkedTeam, EndsWithItsFirstMember) {
+  const auto work = [](Team& team) {
+    team.gather("");
+    if (team.rank() == 0) ::raise(SIGKILL);
+    while (true) ::pause();
+    return std::string("never");
+  };
+  EXPECT_EQ(by_team(3, work), "");
+}
+
+}  // namespace
+}  // namespace pcor

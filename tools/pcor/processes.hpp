@@ -1,0 +1,17 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace pcor::tool {
+
+/// Adds `--processes` to a command whose flights several processes share.
+void add_processes_option(CLI::App& command);
+
+/// How many processes `--processes` asks for, to be begun before the command line is read. 1 where it does
+/// not ask, or not as it should, which is said when it is read.
+std::size_t processes_wanted(const std::vector<std::string>& words);
+
+}  // namespace pcor::tool
