@@ -146,7 +146,7 @@ void CfDescription::define_trajectory(const std::string& flight) {
 }
 
 void CfDescription::drop(int variable, const std::string& attribute) const {
-  if (nc_inq_attid(output_.id(), variable, attribute.c_str(), nullptr) == NC_NOERR)
+  if (file().find_attribute(variable, attribute))
     output_.check(nc_del_att(output_.id(), variable, attribute.c_str()));
 }
 

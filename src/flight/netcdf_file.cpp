@@ -230,7 +230,9 @@ int NetcdfFile::variable_count() const {
 
 std::optional<int> NetcdfFile::find_variable(const std::string& name) const {
   int variable = 0;
-  if (nc_inq_varid(id_, name.c_str(), &variable) != NC_NOERR) return std::nullopt;
+  const int status = nc_inq_varid(id_, name.c_str(), &variable);
+  if (status == NC_ENOTVAR || status == NC_EBADNAME) return std::nullopt;
+  check(status, "cannot look for the variable " + name);
   return variable;
 }
 
@@ -278,10 +280,17 @@ std::vector<std::string> NetcdfFile::attribute_names(int variable) const {
   return names;
 }
 
+std::optional<NetcdfFile::Attribute> NetcdfFile::find_attribute(int variable, const std::string& name) const {
+  Attribute found;
+  const int status = nc_inq_att(id_, variable, name.c_str(), &found.type, &found.length);
+  if (status == NC_ENOTATT || status == NC_EBADNAME) return std::nullopt;
+  check(status, "cannot look for the attribute " + name);
+  return found;
+}
+
 std::string NetcdfFile::text_attribute(int variable, const std::string& name) const {
-  nc_type type = NC_NAT;
-  std::size_t length = 0;
-  if (nc_inq_att(id_, variable, name.c_str(), &type, &length) != NC_NOERR || length == 0) return {};
+  const auto [type, length] = find_attribute(variable, name).value_or(Attribute());
+  if (length == 0) return {};
   if (type == NC_CHAR) {
     std::string text(length, '\0');
     check(nc_get_att_text(id_, variable, name.c_str(), text.data()), "cannot read the attribute " + name);
@@ -306,9 +315,8 @@ std::string NetcdfFile::text_attribute(int variable, const std::string& name) co
 }
 
 std::vector<double> NetcdfFile::number_attribute(int variable, const std::string& name) const {
-  nc_type type = NC_NAT;
-  std::size_t length = 0;
-  if (nc_inq_att(id_, variable, name.c_str(), &type, &length) != NC_NOERR || type > NC_STRING) return {};
+  const auto [type, length] = find_attribute(variable, name).value_or(Attribute());
+  if (type == NC_NAT || type > NC_STRING) return {};
   std::vector<double> numbers;
   if (type != NC_CHAR && type != NC_STRING) {
     numbers.resize(length);
@@ -399,12 +407,12 @@ std::array<double, 2> NetcdfFile::valid_range(int variable) const {
       !(text_attribute(variable, "scale_factor") + text_attribute(variable, "add_offset")).empty();
   std::array<double, 2> range{-infinity, infinity};
   for (const auto& each : attributes) {
-    nc_type own_type = NC_NAT;
-    if (nc_inq_atttype(id_, variable, each.name, &own_type) != NC_NOERR) continue;
+    const auto attribute = find_attribute(variable, each.name);
+    if (!attribute) continue;
     const std::vector<double> numbers = stored_numbers(variable, each.name);
     if (numbers.size() != each.count)
       refuse_attribute(variable, each.name, each.count == 1 ? "is not one number" : "is not two numbers");
-    if (is_packed && (own_type == NC_FLOAT || own_type == NC_DOUBLE))
+    if (is_packed && (attribute->type == NC_FLOAT || attribute->type == NC_DOUBLE))
       refuse_attribute(
           variable, each.name,
           "has another type than the packed integers, so that it cannot be told whether it is of "

@@ -51,6 +51,15 @@ class NetcdfFile final : public FlightFile {
 
   int type_of(int variable) const;
 
+  /// What an attribute is made of.
+  struct Attribute {
+    int type = 0;  ///< an nc_type
+    std::size_t length = 0;
+  };
+
+  /// Nothing where there is no such attribute. @throws Error or std::bad_alloc where the library cannot tell
+  std::optional<Attribute> find_attribute(int variable, const std::string& name) const;
+
   const std::filesystem::path& path() const override { return path_; }
   std::size_t records_at_once() const override;
   int variable_count() const override;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
 #include <memory>
 #include <mutex>
@@ -108,10 +109,20 @@ std::mutex& udunits_lock() {
   return lock;
 }
 
+/// What UDUNITS answers. @throws std::bad_alloc where it gets no memory, of which it may say that a unit is
+/// wrong
+template <class Question>
+auto answer_to(const Question& question) {
+  errno = 0;
+  auto answer = question();
+  if (!answer && (errno == ENOMEM || ut_get_status() == UT_OS)) throw std::bad_alloc();
+  return answer;
+}
+
 ut_system* udunits() {
   static const std::unique_ptr<ut_system, Deleter> system = [] {
     ut_set_error_message_handler(ut_ignore);
-    return std::unique_ptr<ut_system, Deleter>(ut_read_xml(nullptr));
+    return answer_to([] { return std::unique_ptr<ut_system, Deleter>(ut_read_xml(nullptr)); });
   }();
   if (!system)
     throw Error(
@@ -122,9 +133,9 @@ ut_system* udunits() {
 
 Unit parse(const std::string& unit) {
   if (unit.empty()) return nullptr;
-  Unit parsed(ut_parse(udunits(), standard_unit(unit).c_str(), UT_UTF8));
-  if (!parsed && ut_get_status() == UT_OS) throw std::bad_alloc();
-  return parsed;
+  ut_system* const system = udunits();
+  const std::string standard = standard_unit(unit);
+  return answer_to([&] { return Unit(ut_parse(system, standard.c_str(), UT_UTF8)); });
 }
 
 std::string how_to_state(const UnitOwner& owner, const std::string& to) {
@@ -160,11 +171,12 @@ UnitConversion UnitConversion::between(const std::string& from, const std::strin
   if (!source)
     throw Error(Error::Code::unit,
                 whose + " has the unit \"" + shown + "\", which is not known; " + how_to_state(owner, to));
-  if (!ut_are_convertible(source.get(), target.get()))
+  if (!answer_to([&] { return ut_are_convertible(source.get(), target.get()); }))
     throw Error(Error::Code::unit, whose + " has the unit \"" + shown + "\", which cannot be converted to " +
                                        to + "; choose another variable, or " + how_to_state(owner, to));
 
-  const Converter converter(ut_get_converter(source.get(), target.get()));
+  const Converter converter =
+      answer_to([&] { return Converter(ut_get_converter(source.get(), target.get())); });
   const auto convert = [&](double value) { return cv_convert_double(converter.get(), value); };
   // A wide span keeps the rounding of an offset (273.15) out of the scale.
   constexpr double span = 1 << 20;

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
+#include <initializer_list>
 
 #include <pcor/flight/file_in_hand.hpp>
 #include <pcor/words/replacement_file.hpp>
@@ -44,16 +45,16 @@ void print(const char* text) {
   _exit(work_not_done);
 }
 
-/// Whether one of the libraries that read files is in the middle of something: of those that are shared, as
-/// only these can be told by name.
-bool is_in_library() {
+/// Whether one of some libraries is in the middle of something: of those that are shared, as only these can
+/// be told by name.
+bool is_in(std::initializer_list<const char*> libraries) {
   constexpr int most_frames = 64;
   void* frames[most_frames];
   const int count = backtrace(frames, most_frames);
   for (int i = 0; i < count; ++i) {
     Dl_info place{};
     if (dladdr(frames[i], &place) == 0 || place.dli_fname == nullptr) continue;
-    for (const char* library : {"/libhdf5", "/libnetcdf", "/libudunits", "/libcrypto"})
+    for (const char* const library : libraries)
       if (std::strstr(place.dli_fname, library) != nullptr) return true;
   }
   return false;
@@ -61,7 +62,9 @@ bool is_in_library() {
 
 extern "C" void explain(int signal) {
   remove_unfinished_files();  // before a look at a stack that may be damaged, too
-  if (is_in_library()) give_up(file_in_hand());
+  if (is_in({"/libudunits", "/libcrypto"}))
+    give_up(nullptr);  // which meet with no damage that was not looked for
+  if (is_in({"/libhdf5", "/libnetcdf"})) give_up(file_in_hand());
   for (std::size_t i = 0; i < crashes.size(); ++i)
     if (crashes[i] == signal) sigaction(signal, &earlier[i], nullptr);
   std::raise(signal);
@@ -86,7 +89,7 @@ void handle(int signal, void (*handler)(int), int flags, struct sigaction* befor
 }  // namespace
 
 CrashesExplained::CrashesExplained() {
-  is_in_library();  // the first time loads what it needs
+  is_in({});  // the first time loads what it needs
   // A stack of its own: the library's may be used up.
   static std::byte stack[stack_bytes];
   stack_t place{};

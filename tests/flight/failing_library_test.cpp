@@ -1,0 +1,79 @@
+#include <dlfcn.h>
+#include <gmock/gmock.h>
+#include <netcdf.h>
+#include <pcor/flight/flight.hpp>
+
+#include <filesystem>
+#include <new>
+#include <string>
+
+#include <pcor/words/error.hpp>
+#include "flight/netcdf_file.hpp"
+#include "support/short_flight.hpp"
+
+namespace {
+
+/// What the netCDF library answers when it is asked for a certain attribute or variable; NC_NOERR: what it
+/// finds.
+int answer = NC_NOERR;
+std::string asked_for;
+
+template <class Function>
+Function* of_library(Function* /*this_one*/, const char* name) {
+  return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
+}
+
+bool fails(const char* name) { return answer != NC_NOERR && asked_for == name; }
+
+}  // namespace
+
+// They stand before those of the library.
+extern "C" {
+
+int nc_inq_att(int file, int variable, const char* name, nc_type* type, std::size_t* length) {
+  return fails(name) ? answer : of_library(&nc_inq_att, "nc_inq_att")(file, variable, name, type, length);
+}
+
+int nc_inq_varid(int file, const char* name, int* variable) {
+  return fails(name) ? answer : of_library(&nc_inq_varid, "nc_inq_varid")(file, name, variable);
+}
+}
+
+namespace pcor::internal {
+namespace {
+
+class FailingLibrary : public testing::Test {
+ protected:
+  ~FailingLibrary() override { answer = NC_NOERR; }
+
+  static void fail(const char* name, int status) {
+    asked_for = name;
+    answer = status;
+  }
+};
+
+// As if they were not there, numbers would come without their scale, or a variable would be left out.
+TEST_F(FailingLibrary, IsNotTakenForAnAttributeThatIsNotThere) {
+  for (const char* const name : {"scale_factor", "add_offset", "_FillValue", "valid_range", "units"}) {
+    fail(name, NC_EHDFERR);
+    EXPECT_THROW(Flight(test::short_flight()).variable("PSFD"), Error) << name;
+    fail(name, NC_ENOMEM);
+    EXPECT_THROW(Flight(test::short_flight()).variable("PSFD"), std::bad_alloc) << name;
+    fail(name, NC_ENOTATT);
+    EXPECT_NO_THROW(Flight(test::short_flight()).variable("PSFD")) << name;
+  }
+}
+
+TEST_F(FailingLibrary, IsNotTakenForAVariableThatIsNotThere) {
+  const NetcdfFile file = NetcdfFile::open(test::short_flight());
+  EXPECT_TRUE(file.find_variable("PSFD"));
+  fail("PSFD", NC_EHDFERR);
+  EXPECT_THROW(file.find_variable("PSFD"), Error);
+  fail("PSFD", NC_ENOMEM);
+  EXPECT_THROW(file.find_variable("PSFD"), std::bad_alloc);
+  fail("PSFD", NC_ENOTVAR);
+  EXPECT_FALSE(file.find_variable("PSFD"));
+}
+
+}  // namespace
+}  // namespace pcor::internal
