@@ -252,8 +252,10 @@ void overrule(Diagnosis& diagnosis) {
 }
 
 /// @param dates on which a step is tried
+/// @param[out] found those that come of the search, also where a variable of the files overrules them
 Diagnosis diagnosis_with(const FlightFiles& files, const ModelFile& model, const References& all_references,
-                         const DiagnoseOptions& options, const std::vector<double>& dates) {
+                         const DiagnoseOptions& options, const std::vector<double>& dates,
+                         std::vector<Finding>& found) {
   Diagnosis diagnosis;
   const References references = usable_references(all_references, diagnosis.notes);
   diagnosis.reference = description_of(references);
@@ -279,7 +281,7 @@ Diagnosis diagnosis_with(const FlightFiles& files, const ModelFile& model, const
   const Analysis analysis(std::move(columns), groups_of(model, set.candidates), options.seed,
                           options.explained);
   diagnosis.threshold = analysis.result().threshold;
-  diagnosis.findings = findings_of(analysis, set.candidates);
+  found = diagnosis.findings = findings_of(analysis, set.candidates);
   advise(analysis, set, model, options.mask, diagnosis.findings);
   diagnosis.absorbed = absorbed_of(analysis, set.candidates, set.base);
   diagnosis.limits = limits_of(analysis, set.candidates, diagnosis.findings);
@@ -377,8 +379,9 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
   require_one_aircraft(aircraft);
   StepDates dates(files);
   for (;;) {
-    Diagnosis diagnosis = diagnosis_with(files, model, all_references, options, dates.tried());
-    if (!dates.refine(diagnosis.findings)) return diagnosis;
+    std::vector<Finding> found;
+    Diagnosis diagnosis = diagnosis_with(files, model, all_references, options, dates.tried(), found);
+    if (!dates.refine(found)) return diagnosis;
   }
 }
 
