@@ -113,6 +113,9 @@ ClassicLayout checked_layout_of_classic(const std::filesystem::path& path) {
   return *layout;
 }
 
+/// Whether a word that files hold, or a user gives, is no name that netCDF allows.
+bool can_name_nothing(int status) { return status == NC_EBADNAME || status == NC_EMAXNAME; }
+
 }  // namespace
 
 std::size_t elements(const std::vector<std::size_t>& shape) {
@@ -191,7 +194,11 @@ void NetcdfFile::check(int status, const std::string& doing) const {
   if (use_ == Use::reading) require_unchanged();
   std::string message = path_.string() + ": " + doing + ": " + netcdf_reason(status);
   if (use_ == Use::reading)
-    throw Error(Error::Code::file, message + "; fetch the file again from its source");
+    throw Error(
+        Error::Code::file,
+        message + (status == NC_EATTMETA ? "; take away what is neither text nor a list of numbers, as "
+                                           "a table, or fetch the file again from its source"
+                                         : "; fetch the file again from its source"));
   std::error_code code;
   const auto space = std::filesystem::space(std::filesystem::absolute(path_).parent_path(), code);
   constexpr std::uintmax_t little = 1 << 20;
@@ -231,7 +238,7 @@ int NetcdfFile::variable_count() const {
 std::optional<int> NetcdfFile::find_variable(const std::string& name) const {
   int variable = 0;
   const int status = nc_inq_varid(id_, name.c_str(), &variable);
-  if (status == NC_ENOTVAR || status == NC_EBADNAME) return std::nullopt;
+  if (status == NC_ENOTVAR || can_name_nothing(status)) return std::nullopt;
   check(status, "cannot look for the variable " + name);
   return variable;
 }
@@ -283,8 +290,8 @@ std::vector<std::string> NetcdfFile::attribute_names(int variable) const {
 std::optional<NetcdfFile::Attribute> NetcdfFile::find_attribute(int variable, const std::string& name) const {
   Attribute found;
   const int status = nc_inq_att(id_, variable, name.c_str(), &found.type, &found.length);
-  if (status == NC_ENOTATT || status == NC_EBADNAME) return std::nullopt;
-  check(status, "cannot look for the attribute " + name);
+  if (status == NC_ENOTATT || can_name_nothing(status)) return std::nullopt;
+  check(status, "cannot read its attributes, among them perhaps " + name);
   return found;
 }
 

@@ -79,7 +79,8 @@ std::optional<UnitConversion> epoch_conversion(const Counting& time) {
                     time.of, year, time.calendar));
   try {
     return UnitConversion::between(time.units, "seconds since 1970-01-01 00:00:00 UTC", {});
-  } catch (const Error&) {
+  } catch (const Error& error) {
+    if (error.code() != Error::Code::unit) throw;
     throw Error(
         fmt::format("{} counts in \"{}\", where what follows the date is not a time of day in UTC or "
                     "with an offset in hours; {}",

@@ -223,7 +223,8 @@ class Reader final : TomlReader {
     }
     try {
       UnitConversion::between(unit, wanted, {});
-    } catch (const Error&) {
+    } catch (const Error& error) {
+      if (error.code() != Error::Code::unit) throw;
       fail(entry, fmt::format("{}: the unit {} does not convert to {}; give one that does", called(entry),
                               in_quotes(unit), wanted));
     }

@@ -1,6 +1,7 @@
 #include <pcor/team/team.hpp>
 
 #include <algorithm>
+#include <new>
 
 #include "team/packed.hpp"
 
@@ -113,6 +114,9 @@ std::optional<Error> Team::leave(const std::optional<Error>& error) {
     talk(last);
   } catch (const Error& of_all) {
     return of_all;
+  } catch (const std::bad_alloc&) {
+    // The others see that this member is gone.
+    return error.value_or(Error("the memory is exhausted; give fewer or shorter flights at a time"));
   }
   return std::nullopt;
 }

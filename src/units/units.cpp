@@ -115,7 +115,7 @@ template <class Question>
 auto answer_to(const Question& question) {
   errno = 0;
   auto answer = question();
-  if (!answer && (errno == ENOMEM || ut_get_status() == UT_OS)) throw std::bad_alloc();
+  if (!answer && errno == ENOMEM) throw std::bad_alloc();
   return answer;
 }
 
@@ -126,7 +126,6 @@ ut_system* udunits() {
   }();
   if (!system)
     throw Error(
-        Error::Code::unit,
         "the unit database of UDUNITS cannot be read; install udunits2-data or set UDUNITS2_XML_PATH");
   return system.get();
 }
@@ -197,7 +196,8 @@ bool is_convertible(const std::string& from, const std::string& to) {
   try {
     UnitConversion::between(from, to, {});
     return true;
-  } catch (const Error&) {
+  } catch (const Error& error) {
+    if (error.code() != Error::Code::unit) throw;
     return false;
   }
 }

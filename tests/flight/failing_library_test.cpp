@@ -64,6 +64,16 @@ TEST_F(FailingLibrary, IsNotTakenForAnAttributeThatIsNotThere) {
   }
 }
 
+TEST_F(FailingLibrary, SaysWhatCanBeDoneWithAnAttributeThatItCannotRead) {
+  fail("units", NC_EATTMETA);
+  try {
+    Flight(test::short_flight()).variable("PSFD");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("take away what is neither text nor a list of numbers"));
+  }
+}
+
 TEST_F(FailingLibrary, IsNotTakenForAVariableThatIsNotThere) {
   const NetcdfFile file = NetcdfFile::open(test::short_flight());
   EXPECT_TRUE(file.find_variable("PSFD"));
@@ -73,6 +83,11 @@ TEST_F(FailingLibrary, IsNotTakenForAVariableThatIsNotThere) {
   EXPECT_THROW(file.find_variable("PSFD"), std::bad_alloc);
   fail("PSFD", NC_ENOTVAR);
   EXPECT_FALSE(file.find_variable("PSFD"));
+  // As of words in attributes that are no names.
+  for (const std::string& word : {std::string(300, 'x'), std::string("a/b"), std::string("\xff")}) {
+    EXPECT_FALSE(file.find_variable(word)) << word;
+    EXPECT_FALSE(file.find_attribute(NC_GLOBAL, word)) << word;
+  }
 }
 
 }  // namespace

@@ -17,9 +17,6 @@ import tempfile
 import unittest
 from pathlib import Path
 
-import numpy
-from PIL import Image
-
 sys.argv, ACCEPT = [word for word in sys.argv if word != "--accept"], "--accept" in sys.argv
 from browser import Browser  # noqa: E402
 
@@ -46,6 +43,9 @@ FONTS = """<?xml version="1.0"?>
 
 def blocks(path):
     """The height of a picture, and the mean red, green and blue of each square of it."""
+    import numpy
+    from PIL import Image
+
     with Image.open(path) as picture:
         width, height = (side - side % BLOCK for side in picture.size)
         return picture.height, numpy.asarray(picture.convert("RGB").crop((0, 0, width, height)).reduce(BLOCK), int)

@@ -1,11 +1,13 @@
 #include <pcor/team/forked_team.hpp>
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <functional>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -33,6 +35,8 @@ std::string by_team(std::size_t size, const std::function<std::string(Team&)>& w
         // As a program does: the last words to the others, who may be gone.
         const Error last = team.leave(error).value_or(error);
         text = std::string("error: ") + last.what();
+      } catch (const std::bad_alloc&) {
+        team.leave(Error("no memory"));
       }
       if (team.rank() > 0) text.clear();
     }
@@ -85,15 +89,41 @@ TEST(ForkedTeam, FailsWhereAMemberIsKilled) {
     if (team.rank() == 2) ::raise(SIGKILL);
     return joined(team.gather("part"));
   };
-  EXPECT_THAT(by_team(3, work), AllOf(HasSubstr("one of the 3 processes"), HasSubstr("Killed")));
+  EXPECT_THAT(by_team(3, work), AllOf(HasSubstr("one of the 3 processes"), HasSubstr("was killed")));
 }
 
 TEST(ForkedTeam, FailsWithoutAWordWhereAMemberHasSaidWhyItEnds) {
+  const auto ends_with = [](int status) {
+    return by_team(3, [status](Team& team) {
+      if (team.rank() == 1) ::_exit(status);
+      return joined(team.gather("part"));
+    });
+  };
+  EXPECT_EQ(ends_with(ForkedTeam::has_told), "error: ");
+  for (const int status : {0, 1})
+    EXPECT_THAT(ends_with(status), HasSubstr("ended before the others")) << status;
+}
+
+TEST(ForkedTeam, DoesNotWaitForTheOthersWhereOneIsLost) {
   const auto work = [](Team& team) {
-    if (team.rank() == 1) ::_exit(1);
+    if (team.rank() == 1)
+      while (true) ::pause();
+    if (team.rank() == 2) ::raise(SIGUSR1);
     return joined(team.gather("part"));
   };
-  EXPECT_EQ(by_team(3, work), "error: ");
+  EXPECT_THAT(by_team(3, work), HasSubstr("User defined signal 1"));
+}
+
+TEST(ForkedTeam, FailsWhereAMemberHasNoMemoryForWhatItHears) {
+  const auto work = [](Team& team) {
+    if (team.rank() == 1) {
+      const rlimit little{std::size_t{64} << 20U, std::size_t{64} << 20U};
+      ::setrlimit(RLIMIT_AS, &little);
+    }
+    return std::to_string(
+        team.gather(team.rank() == 0 ? std::string(std::size_t{80} << 20U, 'x') : "").size());
+  };
+  EXPECT_THAT(by_team(3, work), HasSubstr("ended before the others"));
 }
 
 TEST(ForkedTeam, EndsWithItsFirstMember) {

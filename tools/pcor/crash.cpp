@@ -10,7 +10,6 @@
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
-#include <initializer_list>
 
 #include <pcor/flight/file_in_hand.hpp>
 #include <pcor/words/replacement_file.hpp>
@@ -18,13 +17,13 @@
 namespace pcor::tool {
 namespace {
 
-constexpr int work_not_done = 1;
 constexpr double most_seconds = 4;  // a hundred times what is usual
 constexpr std::size_t stack_bytes = std::size_t{64} << 10;
 constexpr std::array crashes{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 
 std::array<struct sigaction, crashes.size()> earlier;  // a sanitizer's, where there is one
 volatile std::sig_atomic_t is_running = 0;
+volatile std::sig_atomic_t status_of_crash = 1;
 
 void print(const char* text) {
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text));
@@ -42,29 +41,33 @@ void print(const char* text) {
         "a library that reads and writes files failed, as where the memory or the disk is full; make room, "
         "or give fewer flights at a time\n");
   }
-  _exit(work_not_done);
+  _exit(status_of_crash);
 }
 
-/// Whether one of some libraries is in the middle of something: of those that are shared, as only these can
-/// be told by name.
-bool is_in(std::initializer_list<const char*> libraries) {
+/// What is in the middle of something.
+enum class Busy { other, library, reader_of_flights };
+
+/// Of libraries those that are shared can be told by name.
+Busy what_is_busy() {
   constexpr int most_frames = 64;
   void* frames[most_frames];
   const int count = backtrace(frames, most_frames);
+  Busy found = Busy::other;
   for (int i = 0; i < count; ++i) {
     Dl_info place{};
     if (dladdr(frames[i], &place) == 0 || place.dli_fname == nullptr) continue;
-    for (const char* const library : libraries)
-      if (std::strstr(place.dli_fname, library) != nullptr) return true;
+    const auto is = [&place](const char* name) { return std::strstr(place.dli_fname, name) != nullptr; };
+    // What reads units and makes digests meets no flight that may be damaged.
+    if (is("/libudunits") || is("/libcrypto")) return Busy::library;
+    if (is("/libhdf5") || is("/libnetcdf")) found = Busy::reader_of_flights;
   }
-  return false;
+  return found;
 }
 
 extern "C" void explain(int signal) {
   remove_unfinished_files();  // before a look at a stack that may be damaged, too
-  if (is_in({"/libudunits", "/libcrypto"}))
-    give_up(nullptr);  // which meet with no damage that was not looked for
-  if (is_in({"/libhdf5", "/libnetcdf"})) give_up(file_in_hand());
+  const Busy busy = what_is_busy();
+  if (busy != Busy::other) give_up(busy == Busy::reader_of_flights ? file_in_hand() : nullptr);
   for (std::size_t i = 0; i < crashes.size(); ++i)
     if (crashes[i] == signal) sigaction(signal, &earlier[i], nullptr);
   std::raise(signal);
@@ -88,8 +91,9 @@ void handle(int signal, void (*handler)(int), int flags, struct sigaction* befor
 
 }  // namespace
 
-CrashesExplained::CrashesExplained() {
-  is_in({});  // the first time loads what it needs
+CrashesExplained::CrashesExplained(int status) {
+  status_of_crash = status;
+  what_is_busy();  // the first look at a stack loads a library, which no handler of signals may do
   // A stack of its own: the library's may be used up.
   static std::byte stack[stack_bytes];
   stack_t place{};

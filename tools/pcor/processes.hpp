@@ -12,6 +12,9 @@ void add_processes_option(CLI::App& command);
 
 /// How many processes `--processes` asks for, to be begun before the command line is read. 1 where it does
 /// not ask, or not as it should, which is said when it is read.
-std::size_t processes_wanted(const std::vector<std::string>& words);
+std::size_t processes_to_begin(const std::vector<std::string>& words);
+
+/// The words of a command line without `--processes`, which changes nothing of what comes of it.
+std::vector<std::string> without_processes(const std::vector<std::string>& words);
 
 }  // namespace pcor::tool

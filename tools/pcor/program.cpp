@@ -148,9 +148,10 @@ Ending failed(const Error& error, bool at_once) {
 }  // namespace
 
 Ending run_program(int argc, char** argv) {
-  fill_closed_streams();
+  fill_closed_streams();  // before there are connections of processes, which would take their places
+  std::signal(SIGCHLD, SIG_DFL);
   try {
-    ForkedTeam team(processes_wanted({argv + 1, argv + argc}));
+    ForkedTeam team(processes_to_begin({argv + 1, argv + argc}));
     return run_program(argc, argv, team);
   } catch (const Error& error) {
     tell(fmt::format("pcor: {}", error.what()));
@@ -160,7 +161,8 @@ Ending run_program(int argc, char** argv) {
 
 Ending run_program(int argc, char** argv, Team& team) {
   mind_signals();
-  const CrashesExplained explained;
+  const bool is_copy = dynamic_cast<ForkedTeam*>(&team) != nullptr && team.rank() > 0;
+  const CrashesExplained explained(is_copy ? ForkedTeam::has_told : work_not_done);
   fill_closed_streams();
   set_team(team);
   if (!is_speaker()) print_nothing();

@@ -9,6 +9,7 @@
 #include <pcor/report/figures.hpp>
 #include <pcor/words/utc.hpp>
 #include "choices.hpp"
+#include "processes.hpp"
 #include "team.hpp"
 
 namespace pcor::tool {
@@ -24,7 +25,8 @@ FigureUse use_named(const std::string& name) {
 
 void remember_command(int count, const char* const* words) {
   command_of_this_run = "pcor";
-  for (int i = 1; i < count; ++i) command_of_this_run += " " + shell_word(words[i]);
+  for (const std::string& word : without_processes({words + 1, words + count}))
+    command_of_this_run += " " + shell_word(word);
 }
 
 bool wants_report(const CommonOptions& options) {

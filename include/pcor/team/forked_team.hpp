@@ -10,54 +10,47 @@
 namespace pcor {
 
 /// Processes of one machine that share a work: the process that makes the team, of rank 0, and copies of it,
-/// which go on from the same place with ranks of their own. Each has its own netCDF library, which reads for
-/// one thread of a process at a time.
+/// which go on from the same place with ranks of their own. They read at the same time, which threads of one
+/// process cannot, as the netCDF library reads for one of them at a time.
 ///
-/// Where a copy ends, rank 0 fails with the next exchange; where rank 0 ends, the copies get SIGTERM. At the
-/// end of its life the team of rank 0 waits for the copies to end; what they end with is not looked at any
-/// more.
+/// Where a copy ends before the others, rank 0 throws the Error of that from its next exchange, and the other
+/// copies get SIGTERM; so they do where rank 0 ends. The caller must not ignore SIGCHLD: the system would
+/// forget how copies ended.
 class ForkedTeam final : public Team {
  public:
+  /// The status with which a copy ends that has told the user why it does: of that loss rank 0 throws an
+  /// Error without a text.
+  static constexpr int has_told = 3;
+
   /// To be made while the process has one thread and no open flight.
   /// @param size processes, at least 1
   /// @throws Error if the system begins no more processes
   explicit ForkedTeam(std::size_t size);
+
+  /// Of rank 0: waits for the copies to end.
   ~ForkedTeam() override;
 
   std::size_t rank() const override { return rank_; }
   std::size_t size() const override { return size_; }
 
  private:
-  /// @throws Error if another process has ended; one without a text if that has said why.
   std::vector<std::string> exchange(const std::string& own) override;
 
-  /// The end of a connection with another process.
-  class Connection {
-   public:
-    Connection(int descriptor, int process) : descriptor_(descriptor), process_(process) {}
-    Connection(Connection&& other) noexcept;
-    Connection& operator=(Connection&&) = delete;
-    Connection(const Connection&) = delete;
-    Connection& operator=(const Connection&) = delete;
-    ~Connection();
-
-    /// False where the other process is gone.
-    bool send(const std::string& bytes) const;
-    bool receive(std::string& bytes) const;
-
-    int process() const { return process_; }
-
-   private:
-    int descriptor_;
-    int process_;
+  /// A process that this one talks to.
+  struct Other {
+    int process;
+    int connection;  ///< a descriptor
   };
 
-  Error loss_of(const Connection& other) const;
+  void receive_of_all(std::vector<std::string>& all);
+  void require(bool is_done, const Other& other);
+  Error loss_of(const Other& other, int why) const;
+  void let_go(bool at_once);
 
   std::size_t rank_ = 0;
   std::size_t size_ = 1;
-  std::vector<Connection> others_{};  // of rank 0 all others, in the order of ranks; of these rank 0
-  std::optional<Error> loss_{};       // after which nothing is exchanged any more
+  std::vector<Other> others_{};  // of rank 0 all others, in the order of ranks; of these rank 0
+  std::optional<Error> loss_{};  // after which nothing is exchanged any more
 };
 
 }  // namespace pcor

@@ -18,8 +18,8 @@ struct Message;
 /// each looks at some of the flights, and what they made of them is gathered on all: so every member comes to
 /// the same result, which is that of one member alone, bit by bit, on processors of one kind.
 ///
-/// A class derived from it says how bytes are exchanged; `pcor_mpi` does it by MPI. Members of a team call
-/// the same functions of it in the same order, each from one thread.
+/// A class derived from it says how bytes are exchanged: `ForkedTeam`, and `MpiTeam` of `pcor_mpi`. Members
+/// of a team call the same functions of it in the same order, each from one thread.
 class Team {
  public:
   Team() = default;

@@ -1,0 +1,58 @@
+#include <dlfcn.h>
+#include <gmock/gmock.h>
+#include <udunits2.h>
+#include <pcor/units/units.hpp>
+
+#include <cerrno>
+#include <new>
+#include <string>
+
+#include <pcor/words/error.hpp>
+
+namespace {
+
+std::string failing;  // the function of UDUNITS that fails, where there is one
+int reason = 0;       // errno that it leaves
+
+template <class Function>
+Function* of_library(Function* /*this_one*/, const char* name) {
+  return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
+}
+
+bool fails(const char* name) {
+  if (failing != name) return false;
+  errno = reason;
+  return true;
+}
+
+}  // namespace
+
+// They stand before those of the library.
+extern "C" {
+
+ut_unit* ut_parse(const ut_system* system, const char* text, ut_encoding encoding) {
+  return fails("ut_parse") ? nullptr : of_library(&ut_parse, "ut_parse")(system, text, encoding);
+}
+
+int ut_are_convertible(const ut_unit* one, const ut_unit* other) {
+  return fails("ut_are_convertible") ? 0 : of_library(&ut_are_convertible, "ut_are_convertible")(one, other);
+}
+}
+
+namespace pcor {
+namespace {
+
+/// A unit that cannot be read for want of memory is no unit that is wrong: what it is of would be left out.
+TEST(FailingUnits, AreNotTakenForWrongOnes) {
+  EXPECT_TRUE(is_convertible("mbar", "hPa"));
+  for (const char* const function : {"ut_parse", "ut_are_convertible"}) {
+    failing = function;
+    reason = ENOMEM;
+    EXPECT_THROW(is_convertible("mbar", "hPa"), std::bad_alloc) << function;
+    reason = 0;
+    EXPECT_FALSE(is_convertible("mbar", "hPa")) << function;
+  }
+}
+
+}  // namespace
+}  // namespace pcor
