@@ -1,4 +1,3 @@
-#include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <netcdf.h>
 #include <pcor/flight/flight.hpp>
@@ -9,7 +8,10 @@
 
 #include <pcor/words/error.hpp>
 #include "flight/netcdf_file.hpp"
+#include "support/of_library.hpp"
 #include "support/short_flight.hpp"
+
+using pcor::test::of_library;
 
 namespace {
 
@@ -17,11 +19,6 @@ namespace {
 /// finds.
 int answer = NC_NOERR;
 std::string asked_for;
-
-template <class Function>
-Function* of_library(Function* /*this_one*/, const char* name) {
-  return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
-}
 
 bool fails(const char* name) { return answer != NC_NOERR && asked_for == name; }
 

@@ -1,4 +1,3 @@
-#include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <udunits2.h>
 #include <pcor/units/units.hpp>
@@ -8,16 +7,14 @@
 #include <string>
 
 #include <pcor/words/error.hpp>
+#include "support/of_library.hpp"
+
+using pcor::test::of_library;
 
 namespace {
 
 std::string failing;  // the function of UDUNITS that fails, where there is one
 int reason = 0;       // errno that it leaves
-
-template <class Function>
-Function* of_library(Function* /*this_one*/, const char* name) {
-  return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
-}
 
 bool fails(const char* name) {
   if (failing != name) return false;

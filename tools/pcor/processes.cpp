@@ -30,10 +30,25 @@ std::string trouble_with(const std::string& word) {
   return "";
 }
 
-/// How many words, from this one on, are the option: 0, 1 or 2.
-std::size_t length_of_option(const std::vector<std::string>& words, std::size_t place) {
-  if (words[place] == option) return std::min<std::size_t>(2, words.size() - place);
-  return words[place].compare(0, option.size() + 1, std::string(option) + "=") == 0 ? 1 : 0;
+/// A command line in two.
+struct Parted {
+  std::string number{};  // behind the option, where that is said; the last of several
+  std::vector<std::string> rest{};
+};
+
+Parted parted(const std::vector<std::string>& words) {
+  const std::string with_number = std::string(option) + "=";
+  Parted result;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == option) {
+      if (++i < words.size()) result.number = words[i];
+    } else if (words[i].compare(0, with_number.size(), with_number) == 0) {
+      result.number = words[i].substr(with_number.size());
+    } else {
+      result.rest.push_back(words[i]);
+    }
+  }
+  return result;
 }
 
 }  // namespace
@@ -51,24 +66,11 @@ void add_processes_option(CLI::App& command) {
 
 std::size_t processes_to_begin(const std::vector<std::string>& words) {
   can_begin_processes = true;
-  std::size_t count = 1;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    const std::size_t length = length_of_option(words, i);
-    if (length == 0) continue;
-    const std::string_view last = words[i + length - 1];
-    count = processes_in(length == 1 ? last.substr(std::min(last.size(), option.size() + 1)) : last);
-  }
-  return std::max<std::size_t>(count, 1);
+  return std::max<std::size_t>(processes_in(parted(words).number), 1);
 }
 
 std::vector<std::string> without_processes(const std::vector<std::string>& words) {
-  std::vector<std::string> kept;
-  for (std::size_t i = 0; i < words.size();) {
-    const std::size_t length = length_of_option(words, i);
-    if (length == 0) kept.push_back(words[i]);
-    i += std::max<std::size_t>(length, 1);
-  }
-  return kept;
+  return parted(words).rest;
 }
 
 }  // namespace pcor::tool
