@@ -40,20 +40,20 @@ std::bitset<state_capacity> set_of(const Quantities& quantities) {
   return set;
 }
 
-bool has_avx2() {
-#if defined(__x86_64__)
-  return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
-#else
-  return false;
-#endif
-}
-
-BatchKernel kernel() {
-  static const BatchKernel best = run_batch_avx2 != nullptr && has_avx2() ? run_batch_avx2 : &run_batch;
-  return best;
-}
-
 }  // namespace
+
+std::vector<BatchKernel> internal::batch_kernels() {
+  std::vector<BatchKernel> kernels;
+#if defined(__x86_64__)
+  const bool has_avx512 = __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512cd") != 0 &&
+                          __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512bw") != 0;
+  const bool has_avx2 = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
+  if (has_avx512 && run_batch_avx512 != nullptr) kernels.push_back(run_batch_avx512);
+  if (has_avx2 && run_batch_avx2 != nullptr) kernels.push_back(run_batch_avx2);
+#endif
+  kernels.push_back(&run_batch);
+  return kernels;
+}
 
 Batch::Batch(const Model& model, const std::vector<Quantity>& recorded, CorrectWith with)
     : chain_(built(model, recorded, with)), with_(with), recorded_(set_of(chain_.inputs())) {
@@ -105,7 +105,8 @@ void Batch::run(const std::vector<Input>& inputs, const std::vector<Output>& out
   job.outputs = outputs.data();
   job.output_count = outputs.size();
   job.samples = samples;
-  kernel()(job);
+  static const BatchKernel fastest = batch_kernels().front();
+  fastest(job);
 }
 
 }  // namespace pcor

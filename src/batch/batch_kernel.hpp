@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <vector>
 
 #include <pcor/batch/batch.hpp>
 #include <pcor/realtime/stages.hpp>
@@ -24,9 +25,14 @@ struct BatchJob {
 
 using BatchKernel = void (*)(const BatchJob&);
 
-/// The kernel for every processor, and that for x86 with AVX2 and FMA; null where the compiler has none.
+/// The kernel for every processor, and those for x86 with AVX2 and FMA, and with AVX-512 and its extensions CD,
+/// DQ and BW; null where the compiler has none.
 void run_batch(const BatchJob& job);
 extern const BatchKernel run_batch_avx2;
+extern const BatchKernel run_batch_avx512;
+
+/// The kernels that this processor can run, the fastest first.
+std::vector<BatchKernel> batch_kernels();
 
 /// The chain over all samples of a job, `Pack::size` at a time.
 template <class Pack>

@@ -23,7 +23,7 @@ class PackMask {
   const Register& second() const { return second_; }
 
   friend PackMask operator!(const PackMask& a) {
-    return {a.first_ ^ Register(true), a.second_ ^ Register(true)};
+    return {~a.first_, ~a.second_};
   }
   friend PackMask operator&&(const PackMask& a, const PackMask& b) {
     return {a.first_ & b.first_, a.second_ & b.second_};

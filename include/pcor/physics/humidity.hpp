@@ -27,16 +27,19 @@ S vapor_pressure_over_water(const S& temperature) {
 /// A vapour pressure, hPa, that is surely below saturation over water at `temperature` in K, for a fraction
 /// of what `vapor_pressure_over_water` costs:
 ///
-///     e = ((T - 147.5 K)/103.15 K)^9 hPa
+///     e = (1.160299 + 1.622958 x + 0.6518156 x^2 + 0.002964515 x^3 - 0.02742532 x^4)^4 hPa,
+///     x = (T - 257.5 K)/67.5 K
 ///
-/// Between 0.95 and 0.996 of saturation from 220 to 310 K and below it everywhere. Zero below 147.5
-/// and above 332 K. NaN gives NaN.
+/// Between 0.9969 and 0.99993 of saturation from 190 to 325 K, to which it was fitted; zero elsewhere. NaN
+/// gives NaN.
 template <class S>
 S vapor_pressure_below_saturation(const S& temperature) {
-  const S base = (temperature - S(147.5)) * S(1.0 / 103.15);
-  const S square = base * base;
-  const S fourth = square * square;
-  return select(base < S(0.0) || temperature > S(332.0), S(0.0), S(fourth * fourth * base));
+  const S x = (temperature - S(257.5)) * S(1.0 / 67.5);
+  const S square = x * x;
+  const S root = S(1.160299) + S(1.622958) * x +
+                 square * (S(0.6518156) + S(0.002964515) * x - S(0.02742532) * square);
+  const S root_square = root * root;
+  return select(temperature < S(190.0) || temperature > S(325.0), S(0.0), S(root_square * root_square));
 }
 
 /// Saturation vapour pressure over ice, hPa, at `temperature` in K.

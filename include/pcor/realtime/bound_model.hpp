@@ -38,7 +38,7 @@ class BoundModel {
   bool derives(Quantity quantity) const { return needs(quantity) && !recorded(quantity); }
 
   /// True where some effect acts at the place.
-  bool acts(Where where) const { return begin_of(where) != begin_of(where, 1); }
+  bool acts(Where where) const { return acting_[static_cast<std::size_t>(where)]; }
 
   /// What the effects at the place read, and at the static ports the domain of the model.
   std::vector<Quantity> read_at(Where where) const {
@@ -175,18 +175,24 @@ class BoundModel {
   template <class R, class S, class P>
   R sum_of_terms(Where where, const State<S>& state, const P* parameters) const {
     R total(0.0);
-    for (std::size_t i = begin_of(where); i < begin_of(where, 1); ++i) {
-      total = total + value(terms_[i], state, parameters + terms_[i].first_parameter);
+    const Term* const end = terms_.data() + begin_of(where, 1);
+    for (const Term* term = terms_.data() + begin_of(where); term != end; ++term) {
+      total = total + value(*term, state, parameters + term->first_parameter);
     }
     return finite_or_missing(total);
   }
 
   template <class S, class P>
   Promoted<S, P> value(const Term& term, const State<S>& state, const P* own) const {
-    if (term.effect < catalogue_size) {
-      const Promoted<S, P> value = effect_functions<S, P>[term.effect](state, own);
-      return term.scaling.is_none() ? value : scaled(value, term.scaling, state);
-    }
+    if (term.effect >= catalogue_size) return value_beyond_catalogue(term, state, own);
+    const Promoted<S, P> value = effect_functions<S, P>[term.effect](state, own);
+    return term.scaling.is_none() ? value : scaled(value, term.scaling, state);
+  }
+
+  // Out of the way of the effects that most models are made of.
+  template <class S, class P>
+  [[gnu::noinline]] Promoted<S, P> value_beyond_catalogue(const Term& term, const State<S>& state,
+                                                          const P* own) const {
     if (term.effect == Term::is_addition) return Promoted<S, P>(*own);
     const BoundFormula& bound = formulas_[term.formula];
     std::array<S, formula_variable_capacity> variables;
@@ -195,13 +201,14 @@ class BoundModel {
   }
 
   template <class R, class S>
-  static R scaled(const R& value, const Scaling& scaling, const State<S>& state) {
+  [[gnu::noinline]] static R scaled(const R& value, const Scaling& scaling, const State<S>& state) {
     return value * R(factor(scaling, state[Quantity::static_pressure], state[Quantity::dynamic_pressure]));
   }
 
   std::vector<Term> effects_;  // in the order of the model
   std::vector<Term> terms_;    // what acts, by place
   std::array<std::size_t, where_count + 1> where_begin_{};
+  std::bitset<where_count> acting_;  // of each place whether there are such
   std::vector<BoundFormula> formulas_;
   std::vector<double> parameters_;
   std::vector<std::string> extra_names_;

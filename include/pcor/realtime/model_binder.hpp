@@ -202,8 +202,9 @@ class ModelBinder {
   void add_term(const Term& term) {
     const auto end = static_cast<std::ptrdiff_t>(bound_.begin_of(term.where, 1));
     bound_.terms_.insert(bound_.terms_.begin() + end, term);
-    for (std::size_t next = static_cast<std::size_t>(term.where) + 1; next <= where_count; ++next)
-      ++bound_.where_begin_[next];
+    const auto place = static_cast<std::size_t>(term.where);
+    for (std::size_t next = place + 1; next <= where_count; ++next) ++bound_.where_begin_[next];
+    bound_.acting_.set(place);
   }
 
   // Finds the place of a further variable; a new one where the name is new. False where there is no room.
