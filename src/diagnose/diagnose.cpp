@@ -251,12 +251,18 @@ void overrule(Diagnosis& diagnosis) {
   }
 }
 
+/// A diagnosis, and what its search found, also where a variable of the files overrules that.
+struct SearchedDiagnosis {
+  Diagnosis diagnosis{};
+  std::vector<Finding> found{};
+};
+
 /// @param dates on which a step is tried
-/// @param[out] found those that come of the search, also where a variable of the files overrules them
-Diagnosis diagnosis_with(const FlightFiles& files, const ModelFile& model, const References& all_references,
-                         const DiagnoseOptions& options, const std::vector<double>& dates,
-                         std::vector<Finding>& found) {
-  Diagnosis diagnosis;
+SearchedDiagnosis diagnosis_with(const FlightFiles& files, const ModelFile& model,
+                                 const References& all_references, const DiagnoseOptions& options,
+                                 const std::vector<double>& dates) {
+  SearchedDiagnosis result;
+  Diagnosis& diagnosis = result.diagnosis;
   const References references = usable_references(all_references, diagnosis.notes);
   diagnosis.reference = description_of(references);
   CandidateSet set = find_candidates(model, options.formulas, files, references, dates);
@@ -281,7 +287,7 @@ Diagnosis diagnosis_with(const FlightFiles& files, const ModelFile& model, const
   const Analysis analysis(std::move(columns), groups_of(model, set.candidates), options.seed,
                           options.explained);
   diagnosis.threshold = analysis.result().threshold;
-  found = diagnosis.findings = findings_of(analysis, set.candidates);
+  result.found = diagnosis.findings = findings_of(analysis, set.candidates);
   advise(analysis, set, model, options.mask, diagnosis.findings);
   diagnosis.absorbed = absorbed_of(analysis, set.candidates, set.base);
   diagnosis.limits = limits_of(analysis, set.candidates, diagnosis.findings);
@@ -311,7 +317,7 @@ Diagnosis diagnosis_with(const FlightFiles& files, const ModelFile& model, const
   judge_held_out(diagnosis);
   std::sort(diagnosis.notes.begin(), diagnosis.notes.end());
   diagnosis.notes.erase(std::unique(diagnosis.notes.begin(), diagnosis.notes.end()), diagnosis.notes.end());
-  return diagnosis;
+  return result;
 }
 
 }  // namespace
@@ -379,9 +385,8 @@ Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelF
   require_one_aircraft(aircraft);
   StepDates dates(files);
   for (;;) {
-    std::vector<Finding> found;
-    Diagnosis diagnosis = diagnosis_with(files, model, all_references, options, dates.tried(), found);
-    if (!dates.refine(found)) return diagnosis;
+    SearchedDiagnosis searched = diagnosis_with(files, model, all_references, options, dates.tried());
+    if (!dates.refine(searched.found)) return std::move(searched.diagnosis);
   }
 }
 

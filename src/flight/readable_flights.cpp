@@ -1,23 +1,51 @@
 #include <pcor/flight/readable_flights.hpp>
 
+#include <cstddef>
+#include <optional>
+
 #include <pcor/flight/flight.hpp>
 #include <pcor/words/error.hpp>
 #include "team/flight_share.hpp"
+#include "team/in_a_copy.hpp"
 
 namespace pcor {
 
 using namespace internal;
 
-ReadableFlights readable_flights(const std::vector<std::filesystem::path>& flights, Team& team) {
-  const std::vector<std::string> troubles =
-      share_of_flights(team, flights).of_each_flight<std::string>([&](std::size_t number) {
-        try {
-          const Flight opened(flights[number]);
-          return std::string();
-        } catch (const Error& error) {
-          return std::string(error.what());
-        }
-      });
+namespace {
+
+/// Why it cannot be opened; empty where it can.
+std::string trouble_with(const std::filesystem::path& flight) {
+  try {
+    const Flight opened(flight);
+    return "";
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+}  // namespace
+
+ReadableFlights readable_flights(const std::vector<std::filesystem::path>& flights, Team& team,
+                                 OpenedIn where) {
+  const FlightShare share = share_of_flights(team, flights);
+  const auto troubles = share.on_each_flight<std::string>([&](std::vector<std::string>& all) {
+    std::vector<std::size_t> own;
+    for (std::size_t number = 0; number < flights.size(); ++number) {
+      if (share.owns(number)) own.push_back(number);
+    }
+    const auto trouble = [&](std::size_t k) { return trouble_with(flights[own[k]]); };
+    if (where == OpenedIn::this_process) {
+      for (std::size_t k = 0; k < own.size(); ++k) all[own[k]] = trouble(k);
+      return;
+    }
+    const std::vector<std::optional<std::string>> said = in_a_copy(own.size(), trouble);
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      all[own[k]] =
+          said[k].value_or(flights[own[k]].string() +
+                           " is damaged: the HDF5 library could not read it; fetch it again from its source");
+    }
+  });
   ReadableFlights readable;
   for (std::size_t number = 0; number < flights.size(); ++number) {
     if (troubles[number].empty()) {

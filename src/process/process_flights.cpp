@@ -5,6 +5,7 @@
 #include <map>
 #include <system_error>
 
+#include <pcor/flight/readable_flights.hpp>
 #include <pcor/process/up_to_date.hpp>
 #include <pcor/words/error.hpp>
 
@@ -22,6 +23,12 @@ void process_one(const ProcessTask& task, const ProcessFlightsOptions& options, 
   ProcessOptions process = options.process;
   process.history = task.history;
   flight.summary = process_flight(task.input, flight.model, task.output, process);
+}
+
+/// @throws Error where the flight cannot be opened, also where the HDF5 library would crash on it
+void require_readable(const fs::path& flight) {
+  for (const std::string& trouble : readable_flights({flight}, alone(), OpenedIn::a_copy).troubles)
+    throw Error(trouble);
 }
 
 }  // namespace
@@ -69,6 +76,7 @@ std::vector<ProcessedFlight> process_flights(const std::vector<ProcessTask>& tas
     flight.input = tasks[i].input;
     flight.output = tasks[i].output;
     try {
+      if (options.skip_unreadable) require_readable(flight.input);
       flight.model = model_of(flight.input);
       process_one(tasks[i], options, flight);
     } catch (const Error& error) {

@@ -2,95 +2,35 @@
 
 #include <fmt/format.h>
 #include <poll.h>
-#include <sys/prctl.h>
-#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <csignal>
-#include <cstdint>
 #include <cstring>
 
+#include "team/copy_of_process.hpp"
+
 namespace pcor {
-namespace {
 
-// Those that follow leave errno at 0 where the other process has ended.
-
-bool send_all(int connection, const char* bytes, std::size_t count) {
-  while (count > 0) {
-    const ssize_t sent = ::send(connection, bytes, count, MSG_NOSIGNAL);
-    if (sent < 0 && errno == EINTR) continue;
-    if (sent < 0) {
-      if (errno == EPIPE || errno == ECONNRESET) errno = 0;
-      return false;
-    }
-    bytes += sent;
-    count -= static_cast<std::size_t>(sent);
-  }
-  return true;
-}
-
-bool receive_all(int connection, char* bytes, std::size_t count) {
-  while (count > 0) {
-    const ssize_t received = ::recv(connection, bytes, count, 0);
-    if (received < 0 && errno == EINTR) continue;
-    if (received <= 0) {
-      if (received == 0 || errno == ECONNRESET) errno = 0;
-      return false;
-    }
-    bytes += received;
-    count -= static_cast<std::size_t>(received);
-  }
-  return true;
-}
-
-bool send_text(int connection, const std::string& text) {
-  const std::uint64_t count = text.size();
-  return send_all(connection, reinterpret_cast<const char*>(&count), sizeof count) &&
-         send_all(connection, text.data(), text.size());
-}
-
-bool receive_text(int connection, std::string& text) {
-  std::uint64_t count = 0;
-  if (!receive_all(connection, reinterpret_cast<char*>(&count), sizeof count)) return false;
-  text.resize(count);
-  return receive_all(connection, text.data(), text.size());
-}
-
-/// What the process ended with, as waitpid has it; nothing where the system has forgotten it.
-std::optional<int> end_of(int process) {
-  int status = 0;
-  while (::waitpid(process, &status, 0) < 0)
-    if (errno != EINTR) return std::nullopt;
-  return status;
-}
-
-}  // namespace
+using namespace internal;
 
 ForkedTeam::ForkedTeam(std::size_t size) : size_(size) {
-  const pid_t first = ::getpid();
   for (std::size_t rank = 1; rank < size; ++rank) {
-    int ends[2] = {-1, -1};
-    const bool is_connected = ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) == 0;
-    const pid_t process = is_connected ? ::fork() : -1;
-    if (process < 0) {
+    const std::optional<CopiedProcess> copied = copy_this_process(SIGTERM);
+    if (!copied) {
       const std::string why = std::strerror(errno);
-      for (const int end : ends) ::close(end);
       let_go(true);
       throw Error(fmt::format("{} processes cannot be begun: {}; ask for fewer", size, why));
     }
-    if (process > 0) {
-      ::close(ends[1]);
-      others_.push_back({process, ends[0]});
+    const Other other{copied->other.process, copied->other.connection};
+    if (!copied->is_copy) {
+      others_.push_back(other);
       continue;
     }
-    ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-    if (::getppid() != first) ::_exit(1);
-    for (const Other& other : others_) ::close(other.connection);
-    ::close(ends[0]);
+    for (const Other& earlier : others_) ::close(earlier.connection);
     rank_ = rank;
-    others_ = {{first, ends[1]}};
+    others_ = {other};
     return;
   }
 }

@@ -22,6 +22,10 @@ from pathlib import Path
 
 import netCDF4
 
+sys.dont_write_bytecode = True  # no __pycache__ in the source directory
+sys.path.append(str(Path(sys.argv[2]).resolve() / "tests/hostile"))
+from damaged_flights import cut_flight, damaged_heaps  # noqa: E402
+
 TOOL = Path(sys.argv[1]).resolve()
 SOURCE = Path(sys.argv[2]).resolve()
 NAME = "c130-psfd-qcr-2003"
@@ -172,6 +176,27 @@ class Unreadable(ManyFlights):
         a, b = self.flights("a.nc", "b.nc")
         subprocess.run(["ncrename", "-v", "QCR,QCX", b], check=True, capture_output=True)
         self.assertEqual(self.states([b, a], "--skip-unreadable"), {"b.nc": "unreadable", "a.nc": "processed"})
+
+    @unittest.skipIf(os.environ.get("PCOR_SANITIZED"), "a sanitizer tells what HDF5 reads beyond its memory")
+    def test_one_on_which_hdf5_crashes_is_a_bad_flight(self):
+        model = SOURCE / "data/scenarios/models/c130-psfd-eq18.toml"
+        a, b, whole = (self.path / name for name in ("a.nc", "b.nc", "whole.nc"))
+        for seed, flight in (("1", a), ("2", b)):
+            self.run_tool("simulate", SOURCE / "data/scenarios/c130-short.toml", "--seed", seed, "-o", flight)
+        cut_flight(a, whole, "NETCDF4")
+        crashes = 0
+        for number, content in enumerate(damaged_heaps(whole.read_bytes())):
+            bad = self.path / f"bad{number}.nc"
+            bad.write_bytes(content)
+            alone = self.process([bad], model=model)
+            self.assertEqual(alone.returncode, 1)
+            crashes += "the HDF5 library could not read it" in alone.stderr
+            self.assertEqual(self.states([a, bad, b], "--skip-unreadable", model=model),
+                             {"a.nc": "processed", bad.name: "unreadable", "b.nc": "processed"})
+            compared = self.run_tool("compare", a, bad, b, "-m", model, "--skip-unreadable", "--quiet")
+            self.assertEqual(compared.returncode, 0, compared.stderr)
+            self.assertRegex(compared.stderr, f"^left out: .*{bad.name} .*\n$")
+        self.assertGreater(crashes, 0)
 
     def test_nothing_done_is_status_1(self):
         result = self.process([self.bad_flight(), self.bad_flight("worse.nc")], "--skip-unreadable")

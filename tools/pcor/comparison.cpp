@@ -44,7 +44,9 @@ namespace {
 
 /// Takes out the flights that cannot be opened, and says so. @throws Error if none is left.
 void leave_out_unreadable(std::vector<std::string>& flights) {
-  const ReadableFlights readable = readable_flights({flights.begin(), flights.end()}, team());
+  const ReadableFlights readable =
+      readable_flights({flights.begin(), flights.end()}, team(),
+                       can_begin_processes() ? OpenedIn::a_copy : OpenedIn::this_process);
   for (const std::string& trouble : readable.troubles)
     tell_choices({fmt::format("left out: {}", trouble)}, false);
   if (readable.flights.empty())

@@ -21,10 +21,10 @@ std::size_t processes_in(std::string_view word) {
   return is_number && count <= most_processes ? count : 0;
 }
 
-bool can_begin_processes = false;  // as pcor does, and pcor_mpi does not
+bool is_asked = false;
 
 std::string trouble_with(const std::string& word) {
-  if (!can_begin_processes)
+  if (!can_begin_processes())
     return "is for pcor alone; mpirun or the like says how many processes pcor_mpi has";
   if (processes_in(word) == 0) return fmt::format("{} is no number from 1 to {}", word, most_processes);
   return "";
@@ -64,8 +64,10 @@ void add_processes_option(CLI::App& command) {
       ->default_str("1");
 }
 
+bool can_begin_processes() { return is_asked; }
+
 std::size_t processes_to_begin(const std::vector<std::string>& words) {
-  can_begin_processes = true;
+  is_asked = true;
   return std::max<std::size_t>(processes_in(parted(words).number), 1);
 }
 

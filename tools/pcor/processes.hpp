@@ -10,6 +10,9 @@ namespace pcor::tool {
 /// Adds `--processes` to a command whose flights several processes share.
 void add_processes_option(CLI::App& command);
 
+/// Whether this program may make copies of itself, as pcor may and pcor_mpi may not.
+bool can_begin_processes();
+
 /// How many processes `--processes` asks for, to be begun before the command line is read. 1 where it does
 /// not ask, or not as it should, which is said when it is read.
 std::size_t processes_to_begin(const std::vector<std::string>& words);

@@ -152,17 +152,16 @@ Ending run_program(int argc, char** argv) {
   std::signal(SIGCHLD, SIG_DFL);
   try {
     ForkedTeam team(processes_to_begin({argv + 1, argv + argc}));
-    return run_program(argc, argv, team);
+    return run_program(argc, argv, team, team.rank() == 0 ? work_not_done : ForkedTeam::has_told);
   } catch (const Error& error) {
     tell(fmt::format("pcor: {}", error.what()));
     return {work_not_done};
   }
 }
 
-Ending run_program(int argc, char** argv, Team& team) {
+Ending run_program(int argc, char** argv, Team& team, int status_of_crash) {
   mind_signals();
-  const bool is_copy = dynamic_cast<ForkedTeam*>(&team) != nullptr && team.rank() > 0;
-  const CrashesExplained explained(is_copy ? ForkedTeam::has_told : work_not_done);
+  const CrashesExplained explained(status_of_crash);
   fill_closed_streams();
   set_team(team);
   if (!is_speaker()) print_nothing();

@@ -16,7 +16,8 @@ struct Ending {
 Ending run_program(int argc, char** argv);
 
 /// The same, together with the other members of the team.
-Ending run_program(int argc, char** argv, Team& team);
+/// @param status_of_crash with which this process ends where a library crashes
+Ending run_program(int argc, char** argv, Team& team, int status_of_crash = 1);
 
 /// Ends this process so.
 [[noreturn]] void end_process(const Ending& ending);
