@@ -290,29 +290,65 @@ TEST(Batch, TakesOtherCoefficients) {
 }
 
 // Processors with wider registers have kernels of their own.
-TEST(Batch, IsTheSameInEveryKernelThatThisProcessorRuns) {
+Arrays in_kernel(BatchKernel kernel, const Batch& batch, const Arrays& recorded, std::size_t count) {
+  Arrays found;
+  for (const Quantity quantity : derived) found[quantity].resize(count, 12345.0);
+  const std::vector<Batch::Input> inputs = inputs_of(recorded);
+  const std::vector<Batch::Output> outputs = outputs_of(found);
+  BatchJob job;
+  job.chain = &batch.chain();
+  job.parameters = batch.chain().parameters().data();
+  job.runs.fill(true);
+  job.inputs = inputs.data();
+  job.input_count = inputs.size();
+  job.outputs = outputs.data();
+  job.output_count = outputs.size();
+  job.samples = count;
+  kernel(job);
+  return found;
+}
+
+TEST(Batch, IsTheLoopInEveryKernelThatThisProcessorRuns) {
   const std::vector<Quantity> roles = with_lams(gv_roles);
   const Batch batch(gv(), roles);
   constexpr std::size_t count = 1001;
   const Arrays recorded = random_samples(count, roles);
   const Arrays expected = in_loop(gv(), roles, recorded, count, CorrectWith::model);
-  const std::vector<Batch::Input> inputs = inputs_of(recorded);
   EXPECT_EQ(batch_kernels().back(), &run_batch);
-  for (const BatchKernel kernel : batch_kernels()) {
-    Arrays found;
-    for (const Quantity quantity : derived) found[quantity].resize(count, 12345.0);
-    const std::vector<Batch::Output> outputs = outputs_of(found);
-    BatchJob job;
-    job.chain = &batch.chain();
-    job.parameters = batch.chain().parameters().data();
-    job.runs.fill(true);
-    job.inputs = inputs.data();
-    job.input_count = inputs.size();
-    job.outputs = outputs.data();
-    job.output_count = outputs.size();
-    job.samples = count;
-    kernel(job);
-    expect_equal(found, expected);
+  for (const BatchKernel kernel : batch_kernels())
+    expect_equal(in_kernel(kernel, batch, recorded, count), expected);
+}
+
+TEST(Batch, EveryFunctionOfAFormulaIsThatOfTheLoopInEveryKernel) {
+  const std::vector<double> values{0.3, -0.7,  0.0, 2.5, nan,  1.0,   -2.0,   17.0,  1e-3,
+                                   0.5, -0.31, 4.0, 1e5, -7e4, 700.0, -745.0, 1e-300};
+  const std::vector<Quantity> roles{Quantity::static_pressure, Quantity::dynamic_pressure};
+  const Arrays recorded{{Quantity::static_pressure, std::vector<double>(values.size(), 700.0)},
+                        {Quantity::dynamic_pressure, std::vector<double>(values.size(), 70.0)},
+                        {extra_quantity(0), values}};
+  for (const char* text : {"exp(x)", "log(x)", "log10(x)", "sqrt(x)", "abs(x)", "sin(x)", "cos(x)", "tan(x)",
+                           "tanh(x)", "min(x, 1)", "max(x, -1)", "x^3", "x^-2", "x^1.5", "pow(2, x)",
+                           "if(x < 0.4, x, 1/x)", "if(x >= 2.5, -x, 2)"}) {
+    Model model;
+    ModelEffect effect;
+    effect.id = "function";
+    effect.formula = "k * (" + std::string(text) + ")";
+    effect.parameter_names = {"k"};
+    effect.parameters = {0.01};
+    model.effects = {effect};
+    const Batch batch(model, roles);
+    const Arrays expected = in_loop(model, roles, recorded, values.size(), CorrectWith::model);
+    EXPECT_GT(values_in(expected.at(Quantity::static_defect)), 4U) << text;
+    for (const BatchKernel kernel : batch_kernels()) {
+      const Arrays found = in_kernel(kernel, batch, recorded, values.size());
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        const double defect = found.at(Quantity::static_defect)[i];
+        const double wanted = expected.at(Quantity::static_defect)[i];
+        if (std::isnan(defect) && std::isnan(wanted)) continue;
+        // Rounding of the functions of packs, and of a sine near its zeros.
+        EXPECT_NEAR(defect, wanted, 4e-15 * std::abs(wanted) + 1e-17) << text << " of " << values[i];
+      }
+    }
   }
 }
 
