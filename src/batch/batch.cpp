@@ -45,9 +45,10 @@ std::bitset<state_capacity> set_of(const Quantities& quantities) {
 std::vector<BatchKernel> internal::batch_kernels() {
   std::vector<BatchKernel> kernels;
 #if defined(__x86_64__)
-  const bool has_avx512 = __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512cd") != 0 &&
-                          __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512bw") != 0;
   const bool has_avx2 = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
+  const bool has_avx512 = has_avx2 && __builtin_cpu_supports("avx512f") != 0 &&
+                          __builtin_cpu_supports("avx512cd") != 0 &&
+                          __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512bw") != 0;
   if (has_avx512 && run_batch_avx512 != nullptr) kernels.push_back(run_batch_avx512);
   if (has_avx2 && run_batch_avx2 != nullptr) kernels.push_back(run_batch_avx2);
 #endif

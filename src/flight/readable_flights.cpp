@@ -43,7 +43,8 @@ ReadableFlights readable_flights(const std::vector<std::filesystem::path>& fligh
     for (std::size_t k = 0; k < own.size(); ++k) {
       all[own[k]] =
           said[k].value_or(flights[own[k]].string() +
-                           " is damaged: the HDF5 library could not read it; fetch it again from its source");
+                           ": a copy of the program crashed where it was opened, as the HDF5 library does on "
+                           "a damaged file; fetch it again from its source");
     }
   });
   ReadableFlights readable;

@@ -5,7 +5,6 @@
 #include <map>
 #include <system_error>
 
-#include <pcor/flight/readable_flights.hpp>
 #include <pcor/process/up_to_date.hpp>
 #include <pcor/words/error.hpp>
 
@@ -25,10 +24,25 @@ void process_one(const ProcessTask& task, const ProcessFlightsOptions& options, 
   flight.summary = process_flight(task.input, flight.model, task.output, process);
 }
 
-/// @throws Error where the flight cannot be opened, also where the HDF5 library would crash on it
-void require_readable(const fs::path& flight) {
-  for (const std::string& trouble : readable_flights({flight}, alone(), OpenedIn::a_copy).troubles)
-    throw Error(trouble);
+/// Why flights cannot be opened, where that is looked for before.
+std::map<fs::path, std::string> troubles_with(const std::vector<ProcessTask>& tasks,
+                                              const ProcessFlightsOptions& options) {
+  std::map<fs::path, std::string> troubles;
+  if (!options.skip_unreadable || options.opened_in == OpenedIn::this_process) return troubles;
+  std::vector<fs::path> flights;
+  for (const ProcessTask& task : tasks) {
+    std::error_code none;
+    if (!options.if_stale || !fs::exists(task.output, none)) flights.push_back(task.input);
+  }
+  const ReadableFlights readable = readable_flights(flights, alone(), options.opened_in);
+  std::size_t good = 0;
+  for (const fs::path& flight : flights) {
+    if (good < readable.flights.size() && readable.flights[good] == flight)
+      ++good;
+    else
+      troubles[flight] = readable.troubles[troubles.size()];
+  }
+  return troubles;
 }
 
 }  // namespace
@@ -69,6 +83,7 @@ std::vector<ProcessTask> tasks_in_folder(const std::vector<fs::path>& flights, c
 std::vector<ProcessedFlight> process_flights(const std::vector<ProcessTask>& tasks,
                                              const ModelOfFlight& model_of,
                                              const ProcessFlightsOptions& options) {
+  const std::map<fs::path, std::string> troubles = troubles_with(tasks, options);
   std::vector<ProcessedFlight> flights;
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     if (options.begins) options.begins(i);
@@ -76,7 +91,8 @@ std::vector<ProcessedFlight> process_flights(const std::vector<ProcessTask>& tas
     flight.input = tasks[i].input;
     flight.output = tasks[i].output;
     try {
-      if (options.skip_unreadable) require_readable(flight.input);
+      if (const auto trouble = troubles.find(flight.input); trouble != troubles.end())
+        throw Error(trouble->second);
       flight.model = model_of(flight.input);
       process_one(tasks[i], options, flight);
     } catch (const Error& error) {

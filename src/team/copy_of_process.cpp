@@ -7,7 +7,6 @@
 
 #include <cerrno>
 #include <cstddef>
-#include <cstdint>
 
 namespace pcor::internal {
 namespace {
@@ -69,9 +68,9 @@ bool send_text(int connection, const std::string& text) {
          send_all(connection, text.data(), text.size());
 }
 
-bool receive_text(int connection, std::string& text) {
+bool receive_text(int connection, std::string& text, std::uint64_t most) {
   std::uint64_t count = 0;
-  if (!receive_all(connection, reinterpret_cast<char*>(&count), sizeof count)) return false;
+  if (!receive_all(connection, reinterpret_cast<char*>(&count), sizeof count) || count > most) return false;
   text.resize(count);
   return receive_all(connection, text.data(), text.size());
 }

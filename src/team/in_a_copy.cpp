@@ -6,6 +6,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <csignal>
 
 #include "team/copy_of_process.hpp"
@@ -13,53 +15,75 @@
 namespace pcor::internal {
 namespace {
 
-constexpr int has_thrown = 77;   // status
+constexpr std::size_t most_letters = 10000;
 constexpr int most_seconds = 4;  // of processor time: a hundred times what is usual
 
-/// What the process it is a copy of does where it is stopped, or crashes, is not for the copy.
-void forget_habits() {
-  for (int signal = 1; signal < NSIG; ++signal) std::signal(signal, SIG_DFL);
+/// What this process does where it is stopped is not for a copy of it; what it ignores the copy does, too.
+void reset_signals() {
+  for (int signal = 1; signal < NSIG; ++signal) {
+    if (std::signal(signal, SIG_DFL) == SIG_IGN) std::signal(signal, SIG_IGN);
+  }
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+}
+
+/// A crash that is told by who made the copy is not told by the system, too.
+void crash_in_silence() {
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
   if (nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
+#endif
 }
 
 [[noreturn]] void work_and_end(int connection, std::size_t first, std::size_t count,
                                const std::function<std::string(std::size_t)>& work) {
-  forget_habits();
+  reset_signals();
+  crash_in_silence();
   try {
     for (std::size_t i = first; i < count; ++i) {
       const itimerval limit{{0, 0}, {most_seconds, 0}};
       ::setitimer(ITIMER_PROF, &limit, nullptr);
       if (!send_text(connection, work(i))) break;
     }
-  } catch (...) {
-    ::_exit(has_thrown);
+  } catch (...) {  // who made the copy does the work again, and throws it
   }
   ::_exit(0);
+}
+
+bool is_crash(const std::optional<int>& end) {
+  constexpr std::array crashes{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGPROF};
+  return end && WIFSIGNALED(*end) &&
+         std::find(crashes.begin(), crashes.end(), WTERMSIG(*end)) != crashes.end();
 }
 
 }  // namespace
 
 std::vector<std::optional<std::string>> in_a_copy(std::size_t count,
                                                   const std::function<std::string(std::size_t)>& work) {
-  std::vector<std::optional<std::string>> said(count);
-  for (std::size_t i = 0; i < count; ++i) {
+  std::vector<std::optional<std::string>> results(count);
+  for (std::size_t i = 0; i < count;) {
+    const std::size_t first = i;
     const std::optional<CopiedProcess> copied = copy_this_process(SIGKILL);
-    if (!copied) {
-      said[i] = work(i);
-      continue;
+    if (copied && copied->is_copy) work_and_end(copied->other.connection, first, count, work);
+    bool crashed = false;
+    if (copied) {
+      for (std::string text; i < count && receive_text(copied->other.connection, text, most_letters); ++i)
+        results[i] = text;
+      ::close(copied->other.connection);
+      crashed = is_crash(end_of(copied->other.process));
     }
-    const auto& [process, connection] = copied->other;
-    if (copied->is_copy) work_and_end(connection, i, count, work);
-    for (std::string text; i < count && receive_text(connection, text); ++i) said[i] = text;
-    ::close(connection);
-    const std::optional<int> end = end_of(process);
-    const bool throws = end && WIFEXITED(*end) && WEXITSTATUS(*end) == has_thrown;
-    if (throws && i < count) said[i] = work(i);
+    if (i == count) break;
+    if (!crashed) {
+      results[i] = work(i);
+      ++i;
+    } else if (i == first) {
+      ++i;  // what came before in one copy may have spoilt it, so only the first of a copy is told of
+    }
   }
-  return said;
+  return results;
 }
 
 }  // namespace pcor::internal

@@ -17,24 +17,56 @@ using testing::ElementsAre;
 using testing::Optional;
 using testing::StrEq;
 
-TEST(InACopy, SaysWhatTheWorkSays) {
-  const int here = ::getpid();
-  const auto said = in_a_copy(
-      3, [here](std::size_t i) { return std::to_string(i) + (::getpid() == here ? " here" : " in a copy"); });
-  EXPECT_THAT(said, ElementsAre(Optional(StrEq("0 in a copy")), Optional(StrEq("1 in a copy")),
-                                Optional(StrEq("2 in a copy"))));
+/// "here" in the process that called it, else "in a copy".
+class Place {
+ public:
+  bool is_here() const { return ::getpid() == here_; }
+  std::string operator()() const { return is_here() ? "here" : "in a copy"; }
+
+ private:
+  int here_ = ::getpid();
+};
+
+TEST(InACopy, ReturnsWhatTheWorkReturns) {
+  const Place place;
+  const auto results = in_a_copy(3, [&](std::size_t i) { return std::to_string(i) + " " + place(); });
+  EXPECT_THAT(results, ElementsAre(Optional(StrEq("0 in a copy")), Optional(StrEq("1 in a copy")),
+                                   Optional(StrEq("2 in a copy"))));
   EXPECT_TRUE(in_a_copy(0, [](std::size_t) { return ""; }).empty());
 }
 
-TEST(InACopy, ACrashTakesOneAnswerAlong) {
-  const auto said = in_a_copy(6, [](std::size_t i) -> std::string {
+TEST(InACopy, ACrashTakesOneResultAlong) {
+  const std::string most(10000, 'x');
+  const auto results = in_a_copy(6, [&](std::size_t i) -> std::string {
     if (i == 0 || i == 2) std::raise(SIGSEGV);
-    if (i == 3) std::abort();
-    if (i == 5) ::_exit(0);
-    return std::string(100000, 'x') + std::to_string(i);
+    if (i == 3 || i == 5) std::abort();
+    return most;
   });
-  EXPECT_THAT(said, ElementsAre(std::nullopt, Optional(std::string(100000, 'x') + "1"), std::nullopt,
-                                std::nullopt, Optional(std::string(100000, 'x') + "4"), std::nullopt));
+  EXPECT_THAT(results, ElementsAre(std::nullopt, Optional(most), std::nullopt, std::nullopt, Optional(most),
+                                   std::nullopt));
+}
+
+TEST(InACopy, WhatSpoilsTheCopyIsNotTheFaultOfTheNext) {
+  static bool is_spoilt = false;
+  const auto results = in_a_copy(3, [](std::size_t i) -> std::string {
+    if (is_spoilt) std::abort();
+    is_spoilt = i == 0;
+    return "whole";
+  });
+  EXPECT_THAT(results, testing::Each(Optional(StrEq("whole"))));
+}
+
+TEST(InACopy, WhatNoCrashEndsIsDoneHere) {
+  const Place place;
+  for (const int signal : {SIGKILL, SIGTERM}) {
+    const auto results = in_a_copy(2, [&](std::size_t i) {
+      if (i == 0 && !place.is_here()) std::raise(signal);
+      return place();
+    });
+    EXPECT_THAT(results, ElementsAre(Optional(StrEq("here")), Optional(StrEq("in a copy"))));
+  }
+  const auto too_long = in_a_copy(1, [&](std::size_t) { return place() + std::string(10001, '.'); });
+  EXPECT_THAT(too_long.front(), Optional(testing::StartsWith("here")));
 }
 
 TEST(InACopy, WhatIsThrownIsThrownHere) {
@@ -45,25 +77,29 @@ TEST(InACopy, WhatIsThrownIsThrownHere) {
   EXPECT_THROW(in_a_copy(3, throws), std::bad_alloc);
 }
 
-// What the program does where it is stopped, as to remove what is unfinished, a copy must not do.
 volatile std::sig_atomic_t handled = 0;
 
-TEST(InACopy, KnowsNoHandlersOfSignals) {
-  const auto before = std::signal(SIGTERM, [](int) { handled = 1; });
-  const auto said = in_a_copy(2, [](std::size_t i) {
-    if (i == 0) std::raise(SIGTERM);
-    return std::string(handled == 0 ? "unhandled" : "handled");
+// What the program does where it is stopped, as to remove what is unfinished, a copy must not do.
+TEST(InACopy, HasNoHandlersOfSignalsAndIgnoresWhatIsIgnored) {
+  const Place place;
+  const auto stop = std::signal(SIGTERM, [](int) { handled = 1; });
+  const auto hang_up = std::signal(SIGHUP, SIG_IGN);
+  const auto results = in_a_copy(2, [&](std::size_t i) {
+    if (!place.is_here()) std::raise(i == 0 ? SIGTERM : SIGHUP);
+    return place();
   });
-  std::signal(SIGTERM, before);
-  EXPECT_THAT(said, ElementsAre(std::nullopt, Optional(StrEq("unhandled"))));
+  std::signal(SIGTERM, stop);
+  std::signal(SIGHUP, hang_up);
+  EXPECT_THAT(results, ElementsAre(Optional(StrEq("here")), Optional(StrEq("in a copy"))));
+  EXPECT_EQ(handled, 0);
 }
 
 TEST(InACopy, WorkWithoutEndHasOne) {
-  const auto said = in_a_copy(2, [](std::size_t i) {
+  const auto results = in_a_copy(2, [](std::size_t i) {
     for (volatile int forever = 0; i == 0;) forever = forever + 1;
     return std::string("done");
   });
-  EXPECT_THAT(said, ElementsAre(std::nullopt, Optional(StrEq("done"))));
+  EXPECT_THAT(results, ElementsAre(std::nullopt, Optional(StrEq("done"))));
 }
 
 }  // namespace

@@ -193,10 +193,12 @@ class Unreadable(ManyFlights):
             crashes += "the HDF5 library could not read it" in alone.stderr
             self.assertEqual(self.states([a, bad, b], "--skip-unreadable", model=model),
                              {"a.nc": "processed", bad.name: "unreadable", "b.nc": "processed"})
-            compared = self.run_tool("compare", a, bad, b, "-m", model, "--skip-unreadable", "--quiet")
-            self.assertEqual(compared.returncode, 0, compared.stderr)
-            self.assertRegex(compared.stderr, f"^left out: .*{bad.name} .*\n$")
-        self.assertGreater(crashes, 0)
+            for processes in ("1", "2"):
+                compared = self.run_tool("compare", a, bad, b, "-m", model, "--skip-unreadable", "--quiet", "--processes", processes)
+                self.assertEqual(compared.returncode, 0, compared.stderr)
+                self.assertRegex(compared.stderr, f"^left out: .*{bad.name}.*\n$")
+        if not crashes:
+            self.skipTest("this HDF5 library does not crash on such files")
 
     def test_nothing_done_is_status_1(self):
         result = self.process([self.bad_flight(), self.bad_flight("worse.nc")], "--skip-unreadable")

@@ -45,8 +45,7 @@ namespace {
 /// Takes out the flights that cannot be opened, and says so. @throws Error if none is left.
 void leave_out_unreadable(std::vector<std::string>& flights) {
   const ReadableFlights readable =
-      readable_flights({flights.begin(), flights.end()}, team(),
-                       can_begin_processes() ? OpenedIn::a_copy : OpenedIn::this_process);
+      readable_flights({flights.begin(), flights.end()}, team(), place_to_open());
   for (const std::string& trouble : readable.troubles)
     tell_choices({fmt::format("left out: {}", trouble)}, false);
   if (readable.flights.empty())

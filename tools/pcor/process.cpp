@@ -20,6 +20,7 @@
 #include "command.hpp"
 #include "model_name.hpp"
 #include "model_of_flight.hpp"
+#include "processes.hpp"
 #include "progress.hpp"
 #include "report_origin.hpp"
 
@@ -318,6 +319,7 @@ void run(const Options& options) {
   process.process = process_options(options);
   process.if_stale = options.if_stale;
   process.skip_unreadable = options.skip_unreadable;
+  process.opened_in = place_to_open();
   std::optional<Progress> bar;
   process.begins = [&](std::size_t task) {
     bar.emplace(many ? fmt::format("processing {} of {}", task + 1, tasks.size()) : "processing",

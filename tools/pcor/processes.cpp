@@ -21,11 +21,10 @@ std::size_t processes_in(std::string_view word) {
   return is_number && count <= most_processes ? count : 0;
 }
 
-bool is_asked = false;
+bool may_copy_itself = false;  // as pcor, which asks how many processes to begin
 
 std::string trouble_with(const std::string& word) {
-  if (!can_begin_processes())
-    return "is for pcor alone; mpirun or the like says how many processes pcor_mpi has";
+  if (!may_copy_itself) return "is for pcor alone; mpirun or the like says how many processes pcor_mpi has";
   if (processes_in(word) == 0) return fmt::format("{} is no number from 1 to {}", word, most_processes);
   return "";
 }
@@ -64,10 +63,10 @@ void add_processes_option(CLI::App& command) {
       ->default_str("1");
 }
 
-bool can_begin_processes() { return is_asked; }
+OpenedIn place_to_open() { return may_copy_itself ? OpenedIn::a_copy : OpenedIn::this_process; }
 
 std::size_t processes_to_begin(const std::vector<std::string>& words) {
-  is_asked = true;
+  may_copy_itself = true;
   return std::max<std::size_t>(processes_in(parted(words).number), 1);
 }
 

@@ -5,13 +5,15 @@
 #include <string>
 #include <vector>
 
+#include <pcor/flight/readable_flights.hpp>
+
 namespace pcor::tool {
 
 /// Adds `--processes` to a command whose flights several processes share.
 void add_processes_option(CLI::App& command);
 
-/// Whether this program may make copies of itself, as pcor may and pcor_mpi may not.
-bool can_begin_processes();
+/// Where flights are opened that may be damaged: pcor may make a copy of itself, pcor_mpi may not.
+OpenedIn place_to_open();
 
 /// How many processes `--processes` asks for, to be begun before the command line is read. 1 where it does
 /// not ask, or not as it should, which is said when it is read.

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include <pcor/flight/readable_flights.hpp>
 #include <pcor/process/process.hpp>
 
 namespace pcor {
@@ -41,6 +42,9 @@ struct ProcessFlightsOptions {
   ProcessOptions process{};      ///< of each flight; the history is that of its task
   bool if_stale = false;         ///< leave alone what `is_up_to_date`
   bool skip_unreadable = false;  ///< go on after a flight that cannot be read or lacks what the model needs
+  /// In a copy of the process, all flights to be skipped for a crash are found before the first is processed;
+  /// of those with `if_stale` that have an output already none is opened for it.
+  OpenedIn opened_in = OpenedIn::this_process;
   std::function<void(std::size_t task)> begins{};             ///< told before each flight
   std::function<void(const ProcessedFlight& flight)> ends{};  ///< told after each flight
 };

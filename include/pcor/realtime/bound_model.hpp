@@ -184,15 +184,10 @@ class BoundModel {
 
   template <class S, class P>
   Promoted<S, P> value(const Term& term, const State<S>& state, const P* own) const {
-    if (term.effect >= catalogue_size) return value_beyond_catalogue(term, state, own);
-    const Promoted<S, P> value = effect_functions<S, P>[term.effect](state, own);
-    return term.scaling.is_none() ? value : scaled(value, term.scaling, state);
-  }
-
-  // Out of the way of the effects that most models are made of.
-  template <class S, class P>
-  [[gnu::noinline]] Promoted<S, P> value_beyond_catalogue(const Term& term, const State<S>& state,
-                                                          const P* own) const {
+    if (term.effect < catalogue_size) {
+      const Promoted<S, P> value = effect_functions<S, P>[term.effect](state, own);
+      return term.scaling.is_none() ? value : scaled(value, term.scaling, state);
+    }
     if (term.effect == Term::is_addition) return Promoted<S, P>(*own);
     const BoundFormula& bound = formulas_[term.formula];
     std::array<S, formula_variable_capacity> variables;
@@ -201,14 +196,14 @@ class BoundModel {
   }
 
   template <class R, class S>
-  [[gnu::noinline]] static R scaled(const R& value, const Scaling& scaling, const State<S>& state) {
+  static R scaled(const R& value, const Scaling& scaling, const State<S>& state) {
     return value * R(factor(scaling, state[Quantity::static_pressure], state[Quantity::dynamic_pressure]));
   }
 
   std::vector<Term> effects_;  // in the order of the model
   std::vector<Term> terms_;    // what acts, by place
   std::array<std::size_t, where_count + 1> where_begin_{};
-  std::bitset<where_count> acting_;  // of each place whether there are such
+  std::bitset<where_count> acting_;  // whether a term acts at each place
   std::vector<BoundFormula> formulas_;
   std::vector<double> parameters_;
   std::vector<std::string> extra_names_;
