@@ -3,6 +3,7 @@
 #include <pthread.h>
 
 #include <atomic>
+#include <cstddef>
 #include <ctime>
 
 namespace pcor {
@@ -11,6 +12,8 @@ namespace {
 std::atomic<const char*> in_hand{nullptr};
 std::atomic<clockid_t> readers_clock{CLOCK_PROCESS_CPUTIME_ID};
 std::atomic<double> taken_at{0.0};
+std::atomic<std::size_t> first_path{0};  // its hash; 0 where there is none
+std::atomic<bool> has_others{false};
 static_assert(std::atomic<const char*>::is_always_lock_free && std::atomic<clockid_t>::is_always_lock_free &&
               std::atomic<double>::is_always_lock_free);
 
@@ -24,6 +27,8 @@ double seconds_of(clockid_t clock) noexcept {
 
 const char* file_in_hand() noexcept { return in_hand; }
 
+bool others_were_in_hand() noexcept { return has_others; }
+
 double seconds_in_hand() noexcept { return in_hand ? seconds_of(readers_clock) - taken_at : 0.0; }
 
 internal::FileInHand::FileInHand(const std::filesystem::path& path) noexcept : before_(in_hand) {
@@ -32,6 +37,9 @@ internal::FileInHand::FileInHand(const std::filesystem::path& path) noexcept : b
   readers_clock = clock;
   taken_at = seconds_of(clock);
   in_hand = path.c_str();
+  const std::size_t hash = std::filesystem::hash_value(path);
+  std::size_t none = 0;
+  if (!first_path.compare_exchange_strong(none, hash) && none != hash) has_others = true;
 }
 
 internal::FileInHand::~FileInHand() { in_hand = before_; }

@@ -14,9 +14,12 @@ TEST(FileInHand, IsTheOneThatIsReadLast) {
   {
     const FileInHand first(outer);
     EXPECT_STREQ(file_in_hand(), "outer.nc");
+    { const FileInHand again(outer); }
+    EXPECT_FALSE(others_were_in_hand());
     {
       const FileInHand second(inner);
       EXPECT_STREQ(file_in_hand(), "inner.nc");
+      EXPECT_TRUE(others_were_in_hand());
     }
     EXPECT_STREQ(file_in_hand(), "outer.nc");
   }

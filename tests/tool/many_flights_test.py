@@ -191,6 +191,10 @@ class Unreadable(ManyFlights):
             alone = self.process([bad], model=model)
             self.assertEqual(alone.returncode, 1)
             crashes += "the HDF5 library could not read it" in alone.stderr
+            # What it spoils may be seen at the next flight only, which is not said to be the damaged one then.
+            together = self.run_tool("compare", a, bad, b, "-m", model, "--quiet")
+            self.assertEqual(together.returncode, 1)
+            self.assertRegex(together.stderr, f"{bad.name}|or a flight that was read before it")
             self.assertEqual(self.states([a, bad, b], "--skip-unreadable", model=model),
                              {"a.nc": "processed", bad.name: "unreadable", "b.nc": "processed"})
             for processes in ("1", "2"):

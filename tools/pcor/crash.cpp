@@ -29,13 +29,16 @@ void print(const char* text) {
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text));
 }
 
-/// @param file that is damaged; null where none is
+/// @param file at which a damaged one was seen; null where none was
 [[noreturn]] void give_up(const char* file) {
   remove_unfinished_files();
   print("pcor: ");
   if (file != nullptr) {
     print(file);
-    print(" is damaged: the HDF5 library could not read it; fetch it again from its source\n");
+    print(others_were_in_hand()
+              ? " is damaged, or a flight that was read before it: the HDF5 library could not read it; see "
+                "which by pcor inspect, and fetch that again from its source\n"
+              : " is damaged: the HDF5 library could not read it; fetch it again from its source\n");
   } else {
     print(
         "a library that reads and writes files failed, as where the memory or the disk is full; make room, "
