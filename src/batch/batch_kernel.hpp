@@ -25,8 +25,8 @@ struct BatchJob {
 
 using BatchKernel = void (*)(const BatchJob&);
 
-/// The kernel for every processor, and those for x86 with AVX2 and FMA, and with AVX-512 and its extensions CD,
-/// DQ and BW; null where the compiler has none.
+/// The kernel for every processor, and those for x86 with AVX2 and FMA, and with AVX-512 and its extensions
+/// CD, DQ and BW; null where the compiler has none.
 void run_batch(const BatchJob& job);
 extern const BatchKernel run_batch_avx2;
 extern const BatchKernel run_batch_avx512;

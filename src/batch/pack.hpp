@@ -22,9 +22,7 @@ class PackMask {
   const Register& first() const { return first_; }
   const Register& second() const { return second_; }
 
-  friend PackMask operator!(const PackMask& a) {
-    return {~a.first_, ~a.second_};
-  }
+  friend PackMask operator!(const PackMask& a) { return {~a.first_, ~a.second_}; }
   friend PackMask operator&&(const PackMask& a, const PackMask& b) {
     return {a.first_ & b.first_, a.second_ & b.second_};
   }

@@ -8,8 +8,8 @@ namespace pcor {
 /// handlers of signals, to say which file it was; nothing is allocated.
 const char* file_in_hand() noexcept;
 
-/// Whether another flight was read before it. A damaged file may spoil the memory of the HDF5 library without a
-/// word, so that the library crashes on the next one.
+/// Whether another flight was read before it. A damaged file may spoil the memory of the HDF5 library without
+/// a word, so that the library crashes on the next one.
 bool others_were_in_hand() noexcept;
 
 /// How much processor time the thread that reads has spent since it last began to read, s: the list of the

@@ -36,8 +36,8 @@ template <class S>
 S vapor_pressure_below_saturation(const S& temperature) {
   const S x = (temperature - S(257.5)) * S(1.0 / 67.5);
   const S square = x * x;
-  const S root = S(1.160299) + S(1.622958) * x +
-                 square * (S(0.6518156) + S(0.002964515) * x - S(0.02742532) * square);
+  const S root =
+      S(1.160299) + S(1.622958) * x + square * (S(0.6518156) + S(0.002964515) * x - S(0.02742532) * square);
   const S root_square = root * root;
   return select(temperature < S(190.0) || temperature > S(325.0), S(0.0), S(root_square * root_square));
 }
