@@ -52,6 +52,14 @@ class Pack {
   static constexpr std::size_t size = 2 * Register::size;
 
   Pack() = default;
+  // Register by register: the copy that g++ 12 makes of such a class goes in pieces of 16 bytes through
+  // memory, and who reads a whole register there waits for it.
+  Pack(const Pack& other) : first_(other.first_.data), second_(other.second_.data) {}
+  Pack& operator=(const Pack& other) {
+    first_.data = other.first_.data;
+    second_.data = other.second_.data;
+    return *this;
+  }
   Pack(double every_lane) : first_(every_lane), second_(every_lane) {}
   Pack(const Register& first, const Register& second) : first_(first), second_(second) {}
 
