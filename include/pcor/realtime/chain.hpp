@@ -88,13 +88,13 @@ class Chain : public BoundModel {
   template <class S, class P, class Flags>
   Promoted<S, P> static_defect(const State<S>& state, const P* parameters, Flags& flags) const {
     using R = Promoted<S, P>;
-    const S p = state[Quantity::static_pressure];
-    const S q = state[Quantity::dynamic_pressure];
+    const S& p = state[Quantity::static_pressure];
+    const S& q = state[Quantity::dynamic_pressure];
     R defect = sum<R>(Where::static_defect, state, parameters);
     const auto flowing = p >= S(least_static_pressure) && is_flowing(q);
     flags.set(flowing && is_missing(defect), Quality::effect_input_missing);
     for (const Range& range : domain_) {
-      const S value = state[range.quantity];
+      const S& value = state[range.quantity];
       flags.set(value < S(range.lower) || value > S(range.upper), Quality::outside_domain);
     }
     if (has_minimum()) {
@@ -161,8 +161,8 @@ class Chain : public BoundModel {
   /// where no airspeed of the laser can be right.
   template <class S, class P, class Flags>
   S lams_static_defect(const State<S>& state, const P* parameters, Flags& flags) const {
-    const S p = state[Quantity::port_static_pressure];
-    const S q = state[Quantity::port_dynamic_pressure];
+    const S& p = state[Quantity::port_static_pressure];
+    const S& q = state[Quantity::port_dynamic_pressure];
     const S v = lams_airspeed(state, parameters);
     S e = recorded_humidity(state, parameters, p, flags) * p;
     const S thermometer = recovery_temperature_of(state, parameters);
