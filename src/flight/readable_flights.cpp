@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 
+#include <pcor/flight/file_in_hand.hpp>
 #include <pcor/flight/flight.hpp>
 #include <pcor/words/error.hpp>
 #include "team/flight_share.hpp"
@@ -39,7 +40,7 @@ ReadableFlights readable_flights(const std::vector<std::filesystem::path>& fligh
       for (std::size_t k = 0; k < own.size(); ++k) all[own[k]] = trouble(k);
       return;
     }
-    const std::vector<std::optional<std::string>> said = in_a_copy(own.size(), trouble);
+    const std::vector<std::optional<std::string>> said = in_a_copy(own.size(), most_seconds_in_hand, trouble);
     for (std::size_t k = 0; k < own.size(); ++k) {
       all[own[k]] =
           said[k].value_or(flights[own[k]].string() +
@@ -52,7 +53,7 @@ ReadableFlights readable_flights(const std::vector<std::filesystem::path>& fligh
     if (troubles[number].empty()) {
       readable.flights.push_back(flights[number]);
     } else {
-      readable.troubles.push_back(troubles[number]);
+      readable.unreadable.push_back({flights[number], troubles[number]});
     }
   }
   return readable;

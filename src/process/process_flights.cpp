@@ -34,14 +34,8 @@ std::map<fs::path, std::string> troubles_with(const std::vector<ProcessTask>& ta
     std::error_code none;
     if (!options.if_stale || !fs::exists(task.output, none)) flights.push_back(task.input);
   }
-  const ReadableFlights readable = readable_flights(flights, alone(), options.opened_in);
-  std::size_t good = 0;
-  for (const fs::path& flight : flights) {
-    if (good < readable.flights.size() && readable.flights[good] == flight)
-      ++good;
-    else
-      troubles[flight] = readable.troubles[troubles.size()];
-  }
+  for (const UnreadableFlight& unreadable : readable_flights(flights, alone(), options.opened_in).unreadable)
+    troubles[unreadable.flight] = unreadable.why;
   return troubles;
 }
 

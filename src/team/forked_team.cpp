@@ -23,14 +23,13 @@ ForkedTeam::ForkedTeam(std::size_t size) : size_(size) {
       let_go(true);
       throw Error(fmt::format("{} processes cannot be begun: {}; ask for fewer", size, why));
     }
-    const Other other{copied->other.process, copied->other.connection};
     if (!copied->is_copy) {
-      others_.push_back(other);
+      others_.push_back(copied->other);
       continue;
     }
-    for (const Other& earlier : others_) ::close(earlier.connection);
+    for (const OtherProcess& earlier : others_) ::close(earlier.connection);
     rank_ = rank;
-    others_ = {other};
+    others_ = {copied->other};
     return;
   }
 }
@@ -39,8 +38,8 @@ ForkedTeam::~ForkedTeam() { let_go(loss_.has_value()); }
 
 /// @param at_once the copies end where they are, and not with the work
 void ForkedTeam::let_go(bool at_once) {
-  for (const Other& other : others_) ::close(other.connection);
-  for (const Other& other : others_) {
+  for (const OtherProcess& other : others_) ::close(other.connection);
+  for (const OtherProcess& other : others_) {
     if (rank_ > 0) continue;
     if (at_once) ::kill(other.process, SIGTERM);
     end_of(other.process);
@@ -48,7 +47,7 @@ void ForkedTeam::let_go(bool at_once) {
   others_.clear();
 }
 
-Error ForkedTeam::loss_of(const Other& other, int why) const {
+Error ForkedTeam::loss_of(const OtherProcess& other, int why) const {
   constexpr const char* fewer = "give fewer processes, or fewer flights at a time";
   if (why != 0)
     return Error(fmt::format("the {} processes of this run cannot reach each other: {}; {}", size_,
@@ -67,7 +66,7 @@ Error ForkedTeam::loss_of(const Other& other, int why) const {
                            which + (is_killed ? "was killed" : "ended before the others"), fewer));
 }
 
-void ForkedTeam::require(bool is_done, const Other& other) {
+void ForkedTeam::require(bool is_done, const OtherProcess& other) {
   if (is_done) return;
   loss_ = loss_of(other, errno);
   throw *loss_;
@@ -76,7 +75,7 @@ void ForkedTeam::require(bool is_done, const Other& other) {
 /// Takes what comes first, so that it is seen at once where one of the others ends.
 void ForkedTeam::receive_of_all(std::vector<std::string>& all) {
   std::vector<pollfd> awaited;
-  for (const Other& other : others_) awaited.push_back({other.connection, POLLIN, 0});
+  for (const OtherProcess& other : others_) awaited.push_back({other.connection, POLLIN, 0});
   for (std::size_t left = others_.size(); left > 0;) {
     if (::poll(awaited.data(), awaited.size(), -1) < 0) {
       require(errno == EINTR, others_.front());
@@ -99,13 +98,13 @@ std::vector<std::string> ForkedTeam::exchange(const std::string& own) {
       "flights at a time");
   std::vector<std::string> all(size_);
   if (rank_ > 0) {
-    const Other& first = others_.front();
+    const OtherProcess& first = others_.front();
     require(send_text(first.connection, own), first);
     for (std::string& each : all) require(receive_text(first.connection, each), first);
   } else {
     all.front() = own;
     receive_of_all(all);
-    for (const Other& other : others_)
+    for (const OtherProcess& other : others_)
       for (const std::string& each : all) require(send_text(other.connection, each), other);
   }
   loss_.reset();

@@ -16,7 +16,6 @@ namespace pcor::internal {
 namespace {
 
 constexpr std::size_t most_letters = 10000;
-constexpr int most_seconds = 4;  // of processor time: a hundred times what is usual
 
 /// What this process does where it is stopped is not for a copy of it; what it ignores the copy does, too.
 void reset_signals() {
@@ -38,7 +37,7 @@ void crash_in_silence() {
 #endif
 }
 
-[[noreturn]] void work_and_end(int connection, std::size_t first, std::size_t count,
+[[noreturn]] void work_and_end(int connection, std::size_t first, std::size_t count, int most_seconds,
                                const std::function<std::string(std::size_t)>& work) {
   reset_signals();
   crash_in_silence();
@@ -61,13 +60,13 @@ bool is_crash(const std::optional<int>& end) {
 
 }  // namespace
 
-std::vector<std::optional<std::string>> in_a_copy(std::size_t count,
+std::vector<std::optional<std::string>> in_a_copy(std::size_t count, int most_seconds,
                                                   const std::function<std::string(std::size_t)>& work) {
   std::vector<std::optional<std::string>> results(count);
   for (std::size_t i = 0; i < count;) {
     const std::size_t first = i;
     const std::optional<CopiedProcess> copied = copy_this_process(SIGKILL);
-    if (copied && copied->is_copy) work_and_end(copied->other.connection, first, count, work);
+    if (copied && copied->is_copy) work_and_end(copied->other.connection, first, count, most_seconds, work);
     bool crashed = false;
     if (copied) {
       for (std::string text; i < count && receive_text(copied->other.connection, text, most_letters); ++i)

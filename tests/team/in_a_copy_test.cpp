@@ -17,6 +17,8 @@ using testing::ElementsAre;
 using testing::Optional;
 using testing::StrEq;
 
+constexpr int most_seconds = 1;
+
 /// "here" in the process that called it, else "in a copy".
 class Place {
  public:
@@ -29,15 +31,16 @@ class Place {
 
 TEST(InACopy, ReturnsWhatTheWorkReturns) {
   const Place place;
-  const auto results = in_a_copy(3, [&](std::size_t i) { return std::to_string(i) + " " + place(); });
+  const auto results =
+      in_a_copy(3, most_seconds, [&](std::size_t i) { return std::to_string(i) + " " + place(); });
   EXPECT_THAT(results, ElementsAre(Optional(StrEq("0 in a copy")), Optional(StrEq("1 in a copy")),
                                    Optional(StrEq("2 in a copy"))));
-  EXPECT_TRUE(in_a_copy(0, [](std::size_t) { return ""; }).empty());
+  EXPECT_TRUE(in_a_copy(0, most_seconds, [](std::size_t) { return ""; }).empty());
 }
 
 TEST(InACopy, ACrashTakesOneResultAlong) {
   const std::string most(10000, 'x');
-  const auto results = in_a_copy(6, [&](std::size_t i) -> std::string {
+  const auto results = in_a_copy(6, most_seconds, [&](std::size_t i) -> std::string {
     if (i == 0 || i == 2) std::raise(SIGSEGV);
     if (i == 3 || i == 5) std::abort();
     return most;
@@ -48,7 +51,7 @@ TEST(InACopy, ACrashTakesOneResultAlong) {
 
 TEST(InACopy, WhatSpoilsTheCopyIsNotTheFaultOfTheNext) {
   static bool is_spoilt = false;
-  const auto results = in_a_copy(3, [](std::size_t i) -> std::string {
+  const auto results = in_a_copy(3, most_seconds, [](std::size_t i) -> std::string {
     if (is_spoilt) std::abort();
     is_spoilt = i == 0;
     return "whole";
@@ -59,13 +62,14 @@ TEST(InACopy, WhatSpoilsTheCopyIsNotTheFaultOfTheNext) {
 TEST(InACopy, WhatNoCrashEndsIsDoneHere) {
   const Place place;
   for (const int signal : {SIGKILL, SIGTERM}) {
-    const auto results = in_a_copy(2, [&](std::size_t i) {
+    const auto results = in_a_copy(2, most_seconds, [&](std::size_t i) {
       if (i == 0 && !place.is_here()) std::raise(signal);
       return place();
     });
     EXPECT_THAT(results, ElementsAre(Optional(StrEq("here")), Optional(StrEq("in a copy"))));
   }
-  const auto too_long = in_a_copy(1, [&](std::size_t) { return place() + std::string(10001, '.'); });
+  const auto too_long =
+      in_a_copy(1, most_seconds, [&](std::size_t) { return place() + std::string(10001, '.'); });
   EXPECT_THAT(too_long.front(), Optional(testing::StartsWith("here")));
 }
 
@@ -74,7 +78,7 @@ TEST(InACopy, WhatIsThrownIsThrownHere) {
     if (i == 1) throw std::bad_alloc();
     return "";
   };
-  EXPECT_THROW(in_a_copy(3, throws), std::bad_alloc);
+  EXPECT_THROW(in_a_copy(3, most_seconds, throws), std::bad_alloc);
 }
 
 volatile std::sig_atomic_t handled = 0;
@@ -84,7 +88,7 @@ TEST(InACopy, HasNoHandlersOfSignalsAndIgnoresWhatIsIgnored) {
   const Place place;
   const auto stop = std::signal(SIGTERM, [](int) { handled = 1; });
   const auto hang_up = std::signal(SIGHUP, SIG_IGN);
-  const auto results = in_a_copy(2, [&](std::size_t i) {
+  const auto results = in_a_copy(2, most_seconds, [&](std::size_t i) {
     if (!place.is_here()) std::raise(i == 0 ? SIGTERM : SIGHUP);
     return place();
   });
@@ -95,7 +99,7 @@ TEST(InACopy, HasNoHandlersOfSignalsAndIgnoresWhatIsIgnored) {
 }
 
 TEST(InACopy, WorkWithoutEndHasOne) {
-  const auto results = in_a_copy(2, [](std::size_t i) {
+  const auto results = in_a_copy(2, most_seconds, [](std::size_t i) {
     for (volatile int forever = 0; i == 0;) forever = forever + 1;
     return std::string("done");
   });

@@ -46,8 +46,8 @@ namespace {
 void leave_out_unreadable(std::vector<std::string>& flights) {
   const ReadableFlights readable =
       readable_flights({flights.begin(), flights.end()}, team(), place_to_open());
-  for (const std::string& trouble : readable.troubles)
-    tell_choices({fmt::format("left out: {}", trouble)}, false);
+  for (const UnreadableFlight& unreadable : readable.unreadable)
+    tell_choices({fmt::format("left out: {}", unreadable.why)}, false);
   if (readable.flights.empty())
     throw Error(fmt::format("none of the {} flights can be read", flights.size()));
   flights.clear();

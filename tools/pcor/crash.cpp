@@ -17,7 +17,6 @@
 namespace pcor::tool {
 namespace {
 
-constexpr double most_seconds = 4;  // a hundred times what is usual
 constexpr std::size_t stack_bytes = std::size_t{64} << 10;
 constexpr std::array crashes{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 
@@ -77,7 +76,7 @@ extern "C" void explain(int signal) {
 }
 
 extern "C" void watch(int /*signal*/) {
-  if (file_in_hand() != nullptr && seconds_in_hand() >= most_seconds) give_up(file_in_hand());
+  if (file_in_hand() != nullptr && seconds_in_hand() >= most_seconds_in_hand) give_up(file_in_hand());
 }
 
 /// Libraries end a program where they get no memory.

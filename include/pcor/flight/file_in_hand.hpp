@@ -12,6 +12,10 @@ const char* file_in_hand() noexcept;
 /// a word, so that the library crashes on the next one.
 bool others_were_in_hand() noexcept;
 
+/// Processor time, s, after which a library that reads a flight never comes back: a hundred times what one
+/// takes to open, or to read some thousand records.
+inline constexpr int most_seconds_in_hand = 4;
+
 /// How much processor time the thread that reads has spent since it last began to read, s: the list of the
 /// variables, or some thousand records of one. 0 where no flight is read.
 double seconds_in_hand() noexcept;

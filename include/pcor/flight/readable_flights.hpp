@@ -8,10 +8,16 @@
 
 namespace pcor {
 
-/// Flights that can be opened, and why the others cannot.
+/// A flight that cannot be opened.
+struct UnreadableFlight {
+  std::filesystem::path flight{};
+  std::string why{};  ///< a sentence
+};
+
+/// Flights that can be opened, and those that cannot.
 struct ReadableFlights {
   std::vector<std::filesystem::path> flights{};
-  std::vector<std::string> troubles{};  ///< a sentence for each flight that is left out
+  std::vector<UnreadableFlight> unreadable{};
 };
 
 /// Where flights are opened to see whether they can be.

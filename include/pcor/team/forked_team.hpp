@@ -9,6 +9,10 @@
 
 namespace pcor {
 
+namespace internal {
+struct OtherProcess;
+}
+
 /// Processes of one machine that share a work: the process that makes the team, of rank 0, and copies of it,
 /// which go on from the same place with ranks of their own. They read at the same time, which threads of one
 /// process cannot, as the netCDF library reads for one of them at a time.
@@ -36,20 +40,15 @@ class ForkedTeam final : public Team {
  private:
   std::vector<std::string> exchange(const std::string& own) override;
 
-  /// A process that this one talks to.
-  struct Other {
-    int process;
-    int connection;  ///< a descriptor
-  };
-
   void receive_of_all(std::vector<std::string>& all);
-  void require(bool is_done, const Other& other);
-  Error loss_of(const Other& other, int why) const;
+  void require(bool is_done, const internal::OtherProcess& other);
+  Error loss_of(const internal::OtherProcess& other, int why) const;
   void let_go(bool at_once);
 
   std::size_t rank_ = 0;
   std::size_t size_ = 1;
-  std::vector<Other> others_{};  // of rank 0 all others, in the order of ranks; of these rank 0
+  std::vector<internal::OtherProcess>
+      others_;                   // of rank 0 all others, in the order of ranks; of these rank 0
   std::optional<Error> loss_{};  // after which nothing is exchanged any more
 };
 
