@@ -1,10 +1,6 @@
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
 #include <vector>
-
-#include "numerics/missing.hpp"
 
 namespace pcor::internal {
 
@@ -12,12 +8,7 @@ namespace pcor::internal {
 /// quantile at 0.75.
 inline constexpr double deviation_of_median = 1.482602218505602;
 
-/// Of an even number of values the upper of the middle two; NaN where there is none.
-inline double median(std::vector<double> values) {
-  if (values.empty()) return nan;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
+/// Of an even number of values the upper of the middle two. NaN are left out; NaN where nothing is left.
+double median(std::vector<double> values);
 
 }  // namespace pcor::internal

@@ -71,8 +71,6 @@ std::vector<Stretch> stretches_of(const std::vector<double>& values, const std::
 }
 
 double robust_deviation(std::vector<double> values) {
-  values.erase(std::remove_if(values.begin(), values.end(), [](double x) { return std::isnan(x); }),
-               values.end());
   for (double& value : values) value = std::abs(value);
   return deviation_of_median * median(std::move(values));
 }

@@ -23,40 +23,47 @@ constexpr double same_time = 1e-6;  // s
 /// Twice the logarithm of the likelihood that a slow part has to be worth.
 constexpr double worth_of_a_part = 2.0;
 
-/// The columns' products with each other: half the work of a product of matrices.
-Eigen::MatrixXd squares_of(const Eigen::Ref<const Eigen::MatrixXd>& columns) {
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
-  result.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
-  return result.selfadjointView<Eigen::Lower>();
-}
-
 /// The shapes of slow drift over a flight, cos(pi k t/T)/k: periods down to five minutes, at most 48.
-Eigen::MatrixXd drift_shapes(const Binning& bins) {
-  if (bins.size() < 2) return {as_index(bins.size()), 0};
+struct DriftShapes {
+  Eigen::MatrixXd columns{};
+  Eigen::MatrixXd squares{};  ///< the columns' products with each other
+};
+
+DriftShapes drift_shapes(const Binning& bins) {
+  DriftShapes shapes;
+  if (bins.size() < 2) return shapes;
   const double begin = bins.time().front();
   const double length = bins.time().back() - begin;
   const auto by_period = static_cast<std::size_t>(2.0 * length / shortest_period);
-  const std::size_t count = std::min({most_shapes, by_period, bins.size() / 15});
-  Eigen::MatrixXd shapes(as_index(bins.size()), as_index(count));
-  if (count == 0) return shapes;
-  // Chebyshev's recursion from one shape to the next, exact to 1e-12 up to the last.
-  const Eigen::Map<const Eigen::ArrayXd> time(bins.time().data(), shapes.rows());
+  const Eigen::Index count = as_index(std::min({most_shapes, by_period, bins.size() / 15}));
+  const Eigen::Map<const Eigen::ArrayXd> time(bins.time().data(), as_index(bins.size()));
   const Eigen::ArrayXd first = (pi * (time - begin) / length).cos();
-  Eigen::ArrayXd before = Eigen::ArrayXd::Ones(shapes.rows());
-  Eigen::ArrayXd now = first;
-  for (Eigen::Index k = 0; k < shapes.cols(); ++k) {
-    shapes.col(k) = now / static_cast<double>(k + 1);
+  // Chebyshev's recursion from one cosine to the next, exact to 1e-12 up to the last.
+  Eigen::ArrayXd before = first;
+  Eigen::ArrayXd now = Eigen::ArrayXd::Ones(first.size());
+  Eigen::VectorXd sums(2 * count + 1);
+  shapes.columns.resize(first.size(), count);
+  for (Eigen::Index k = 0; k < sums.size(); ++k) {
+    sums[k] = now.sum();
+    if (k > 0 && k <= count) shapes.columns.col(k - 1) = now / static_cast<double>(k);
     const Eigen::ArrayXd next = 2.0 * first * now - before;
     before = now;
     now = next;
+  }
+  // 2 cos(a) cos(b) = cos(a + b) + cos(a - b).
+  shapes.squares.resize(count, count);
+  for (Eigen::Index j = 1; j <= count; ++j) {
+    for (Eigen::Index k = 1; k <= count; ++k) {
+      shapes.squares(j - 1, k - 1) =
+          (sums[j + k] + sums[std::abs(j - k)]) / (2.0 * static_cast<double>(j) * static_cast<double>(k));
+    }
   }
   return shapes;
 }
 
 Eigen::VectorXd without_drift(const Binning& bins, const Eigen::VectorXd& residual) {
-  const Eigen::MatrixXd shapes = drift_shapes(bins);
+  auto [shapes, normal] = drift_shapes(bins);
   if (shapes.cols() == 0) return residual;
-  Eigen::MatrixXd normal = squares_of(shapes);
   normal.diagonal().array() += 1e-9 * normal.trace();
   return residual - shapes * symmetric_solution(normal, shapes.transpose() * residual);
 }
@@ -142,6 +149,13 @@ Eigen::VectorXd level_of_bins(const std::vector<NoiseLevel>& levels, const Binni
 }
 
 namespace {
+
+/// The columns' products with each other: half the work of a product of matrices.
+Eigen::MatrixXd squares_of(const Eigen::Ref<const Eigen::MatrixXd>& columns) {
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
+  result.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
+  return result.selfadjointView<Eigen::Lower>();
+}
 
 /// The restricted likelihood of residuals after columns, as the noise model changes.
 class RestrictedLikelihood {

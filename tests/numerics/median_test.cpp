@@ -1,0 +1,61 @@
+#include "numerics/median.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace pcor::internal {
+namespace {
+
+double by_order(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+TEST(Median, IsTheUpperOfTheMiddleTwo) {
+  EXPECT_TRUE(std::isnan(median({})));
+  EXPECT_EQ(median({3.0}), 3.0);
+  EXPECT_EQ(median({3.0, 1.0}), 3.0);
+  EXPECT_EQ(median({3.0, 1.0, 2.0}), 2.0);
+  EXPECT_EQ(median({4.0, 1.0, 2.0, 3.0}), 3.0);
+}
+
+TEST(Median, OfManyValuesIsThatOfTheirOrder) {
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  for (const std::size_t count : {4095U, 4096U, 4097U, 10000U, 100001U}) {
+    std::vector<double> values(count);
+    for (double& value : values) value = normal(random);
+    EXPECT_EQ(median(values), by_order(values)) << count;
+    for (double& value : values) value = std::round(value);
+    EXPECT_EQ(median(values), by_order(values)) << count << " of which many are equal";
+    std::fill(values.begin(), values.end(), 0.0);
+    EXPECT_EQ(median(values), 0.0) << count << " that are all equal";
+  }
+}
+
+TEST(Median, LeavesOutWhatIsMissing) {
+  const double missing = std::nan("");
+  EXPECT_TRUE(std::isnan(median({missing, missing})));
+  EXPECT_EQ(median({missing, 2.0, missing, 1.0, 3.0}), 2.0);
+  std::vector<double> values(2000, missing);
+  for (std::size_t i = 0; i < values.size(); i += 2) values[i] = static_cast<double>(i);
+  EXPECT_EQ(median(values), 1000.0);
+}
+
+/// The first bound is one of 31 values at even distances: here all of them lie beyond the others.
+TEST(Median, DoesNotDependOnTheValuesThatAreLookedAtFirst) {
+  constexpr std::size_t count = 16384;
+  for (const double odd : {-1e9, 1e9}) {
+    std::vector<double> values(count);
+    for (std::size_t i = 0; i < count; ++i) values[i] = static_cast<double>(i);
+    for (std::size_t i = 0; i < 31; ++i) values[(2 * i + 1) * count / 62] = odd;
+    EXPECT_EQ(median(values), by_order(values));
+  }
+}
+
+}  // namespace
+}  // namespace pcor::internal
