@@ -46,7 +46,13 @@ class Header {
     return sound_ ? sizes[type] : 0;
   }
 
-  void skip_name() { skip(padded(count())); }
+  // The netCDF library writes none that is longer, and copies one that is beyond the room for it.
+  void skip_name() {
+    constexpr std::uint64_t longest = 256;
+    const std::uint64_t length = count();
+    require(length <= longest);
+    skip(padded(length));
+  }
 
   void skip_attributes() {
     constexpr std::uint64_t tag = 12, least_bytes = 12;

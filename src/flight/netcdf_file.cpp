@@ -18,6 +18,7 @@
 
 #include "flight/classic_netcdf.hpp"
 #include "flight/file_in_hand.hpp"
+#include "words/quoting.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -112,6 +113,10 @@ ClassicLayout checked_layout_of_classic(const std::filesystem::path& path) {
             path.string(), layout->size, size));
   return *layout;
 }
+
+/// Room for any name, as the library copies all of one: HDF5 keeps the length of an attribute's in two bytes.
+/// Names in a classic file are looked at before (`layout_of_classic`).
+constexpr std::size_t room_for_name = std::size_t{1} << 16;
 
 /// Whether a word that files hold, or a user gives, is no name that netCDF allows.
 bool can_name_nothing(int status) { return status == NC_EBADNAME || status == NC_EMAXNAME; }
@@ -229,6 +234,15 @@ void NetcdfFile::fit_chunk_cache(int variable) const {
   nc_set_var_chunk_cache(id_, variable, std::max(2 * bytes, chunk_cache_bytes), chunk_cache_slots, 1);
 }
 
+std::string NetcdfFile::allowed(const std::string& name, const char* what) const {
+  if (name.size() <= NC_MAX_NAME) return name;
+  throw Error(
+      Error::Code::file,
+      fmt::format("{}: {} is called {}, and netCDF allows {} bytes for a name; give it a shorter one, "
+                  "as h5py can, or fetch the file again from its source",
+                  path_.string(), what, in_quotes(name), NC_MAX_NAME));
+}
+
 int NetcdfFile::variable_count() const {
   int count = 0;
   check(nc_inq_nvars(id_, &count), "cannot count its variables");
@@ -244,9 +258,9 @@ std::optional<int> NetcdfFile::find_variable(const std::string& name) const {
 }
 
 std::string NetcdfFile::variable_name(int variable) const {
-  char name[NC_MAX_NAME + 1] = {};
+  char name[room_for_name];
   check(nc_inq_varname(id_, variable, name), "cannot read a variable's name");
-  return name;
+  return allowed(name, "a variable");
 }
 
 std::vector<int> NetcdfFile::dimensions_of(int variable) const {
@@ -258,9 +272,9 @@ std::vector<int> NetcdfFile::dimensions_of(int variable) const {
 }
 
 std::string NetcdfFile::dimension_name(int dimension) const {
-  char name[NC_MAX_NAME + 1] = {};
+  char name[room_for_name];
   check(nc_inq_dimname(id_, dimension, name), "cannot read a dimension's name");
-  return name;
+  return allowed(name, "a dimension");
 }
 
 std::size_t NetcdfFile::dimension_length(int dimension) const {
@@ -280,9 +294,9 @@ std::vector<std::string> NetcdfFile::attribute_names(int variable) const {
   check(nc_inq_varnatts(id_, variable, &count), "cannot count attributes");
   std::vector<std::string> names;
   for (int i = 0; i < count; ++i) {
-    char name[NC_MAX_NAME + 1] = {};
+    char name[room_for_name];
     check(nc_inq_attname(id_, variable, i, name), "cannot read an attribute's name");
-    names.emplace_back(name);
+    names.push_back(allowed(name, "an attribute"));
   }
   return names;
 }

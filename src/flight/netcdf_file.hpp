@@ -91,6 +91,10 @@ class NetcdfFile final : public FlightFile {
   /// An attribute that states numbers of a variable, as `read` gives these.
   std::vector<double> stored_numbers(int variable, const std::string& name) const;
 
+  /// A name of what the file holds. @throws Error if it is longer than netCDF allows, as those that HDF5
+  /// allows may be: no function of the library finds what is called so
+  std::string allowed(const std::string& name, const char* what) const;
+
   [[noreturn]] void refuse_attribute(int variable, const std::string& name, const std::string& why) const;
 
   enum class Use { reading, writing };

@@ -181,6 +181,17 @@ TEST_F(FlightTest, ACountThatTheFileHasNoRoomForIsDamage) {
   }
 }
 
+/// The netCDF library copies a name to where there is room for 256 bytes, however long it is.
+TEST_F(FlightTest, ANameThatIsLongerThanNetcdfAllowsIsRefused) {
+  const std::filesystem::path seeds = std::filesystem::path(PCOR_SOURCE_DIR) / "tests/fuzz/seeds/flight";
+  std::filesystem::copy_file(seeds / "long_attribute_name.nc", path());
+  EXPECT_THAT(refusal(), HasSubstr("is truncated or damaged: its header cannot be read"));
+  std::filesystem::copy_file(seeds / "long_names_hdf5.nc", path(),
+                             std::filesystem::copy_options::overwrite_existing);
+  EXPECT_THAT(refusal(),
+              AllOf(HasSubstr("an attribute is called 'aaaa"), HasSubstr("netCDF allows 256 bytes")));
+}
+
 TEST_F(FlightTest, AnEmptyTimeDimensionIsRefused) {
   NetcdfMaker(path()).time({});
   EXPECT_THAT(refusal(), HasSubstr("has no records"));

@@ -1,24 +1,26 @@
-#include <sys/mman.h>
-#include <unistd.h>
 #include <pcor/flight/flight.hpp>
 
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <vector>
 
 #include "reading.hpp"
+#include "support/temporary_directory.hpp"
 
 namespace {
 
 constexpr std::size_t most_samples = 1 << 20;
 
-/// A file in memory that holds these bytes, in place of those before.
+/// A file that holds these bytes, in place of those before. It has a name of its own, for the HDF5 library
+/// opens none that has lost it.
 std::filesystem::path file_of(const std::uint8_t* bytes, std::size_t size) {
-  static const int file = ::memfd_create("flight", 0);
-  const bool is_written =
-      ::ftruncate(file, 0) == 0 && ::pwrite(file, bytes, size, 0) == static_cast<ssize_t>(size);
-  if (!is_written) std::abort();
-  return "/proc/self/fd/" + std::to_string(file);
+  static const pcor::test::TemporaryDirectory folder;
+  std::ofstream file(folder / "flight.nc", std::ios::binary);
+  file.write(reinterpret_cast<const char*>(bytes), static_cast<std::streamsize>(size));
+  file.close();
+  if (!file) std::abort();
+  return folder / "flight.nc";
 }
 
 void read_values(const pcor::Flight& flight, const pcor::VariableInfo& variable, int rate) {
