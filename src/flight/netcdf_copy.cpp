@@ -37,22 +37,30 @@ void NetcdfCopy::copy_global_attributes() const {
 }
 
 void NetcdfCopy::copy_attribute(int from, int to, const std::string& name, int type_of_variable) const {
+  // What HDF5 may hold and netCDF does not write is a matter of the input.
+  const auto check = [&](int status) {
+    if (status == NC_EBADNAME || status == NC_EBADTYPE || status == NC_EINVAL)
+      source_.refuse_attribute(from, name, "cannot be copied (" + netcdf_reason(status) + ")");
+    output_.check(status);
+  };
   nc_type type = NC_NAT;
-  output_.check(nc_inq_atttype(source_.id(), from, name.c_str(), &type));
+  check(nc_inq_atttype(source_.id(), from, name.c_str(), &type));
   if (type > NC_STRING) return;  // of the file's own making
   if (type == NC_CHAR) {
     const std::string text = source_.text_attribute(from, name);
-    return output_.put_text(to, name, name == "units" ? standard_unit(text) : text);
+    const std::string written = name == "units" ? standard_unit(text) : text;
+    if (!written.empty())
+      check(nc_put_att_text(output_.id(), to, name.c_str(), written.size(), written.data()));
+    return;
   }
   // A marker of missing values must have the type of the variable, which old writers did not know.
   const bool marker = name == "_FillValue" || name == "missing_value";
   if (marker && type != type_of_variable && type < NC_STRING) {
     const std::vector<double> values = source_.number_attribute(from, name);
-    output_.check(
-        nc_put_att_double(output_.id(), to, name.c_str(), type_of_variable, values.size(), values.data()));
+    check(nc_put_att_double(output_.id(), to, name.c_str(), type_of_variable, values.size(), values.data()));
     return;
   }
-  output_.check(nc_copy_att(source_.id(), from, name.c_str(), output_.id(), to));
+  check(nc_copy_att(source_.id(), from, name.c_str(), output_.id(), to));
 }
 
 bool NetcdfCopy::can_copy(const std::string& name) const {

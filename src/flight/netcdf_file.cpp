@@ -118,6 +118,21 @@ ClassicLayout checked_layout_of_classic(const std::filesystem::path& path) {
 /// Names in a classic file are looked at before (`layout_of_classic`).
 constexpr std::size_t room_for_name = std::size_t{1} << 16;
 
+const char* advice_to_reader(int status) {
+  switch (status) {
+    case NC_EATTMETA:
+      return "; take away what is neither text nor a list of numbers, as a table, or fetch the file again "
+             "from "
+             "its source";
+    case NC_EFILTER:
+    case NC_ENOFILTER:
+      return "; install the plug-in of HDF5 for the filter that it is compressed with, or write the file "
+             "without it where there is one, as nccopy -F none does";
+    default:
+      return "; fetch the file again from its source";
+  }
+}
+
 /// Whether a word that files hold, or a user gives, is no name that netCDF allows.
 bool can_name_nothing(int status) { return status == NC_EBADNAME || status == NC_EMAXNAME; }
 
@@ -198,12 +213,9 @@ void NetcdfFile::check(int status, const std::string& doing) const {
   if (status == NC_ENOMEM || status == ENOMEM) throw std::bad_alloc();
   if (use_ == Use::reading) require_unchanged();
   std::string message = path_.string() + ": " + doing + ": " + netcdf_reason(status);
-  if (use_ == Use::reading)
-    throw Error(
-        Error::Code::file,
-        message + (status == NC_EATTMETA ? "; take away what is neither text nor a list of numbers, as "
-                                           "a table, or fetch the file again from its source"
-                                         : "; fetch the file again from its source"));
+  if (use_ == Use::reading) throw Error(Error::Code::file, message + advice_to_reader(status));
+  if (status == NC_EBADNAME)
+    throw Error(Error::Code::output, message + "; rename what is called so in the input, or copy less of it");
   std::error_code code;
   const auto space = std::filesystem::space(std::filesystem::absolute(path_).parent_path(), code);
   constexpr std::uintmax_t little = 1 << 20;
@@ -409,7 +421,7 @@ std::vector<double> NetcdfFile::missing_values(int variable) const {
 }
 
 void NetcdfFile::refuse_attribute(int variable, const std::string& name, const std::string& why) const {
-  const std::string of = variable_name(variable);
+  const std::string of = variable == NC_GLOBAL ? "global" : variable_name(variable);
   throw Error(Error::Code::variable,
               fmt::format("{}: the attribute {} of {} {}; correct it, or take it away with ncatted -a "
                           "{},{},d,, {}",

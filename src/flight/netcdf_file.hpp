@@ -51,6 +51,9 @@ class NetcdfFile final : public FlightFile {
 
   int type_of(int variable) const;
 
+  /// @param variable or NC_GLOBAL. @throws Error "<path>: the attribute <name> of <variable> <why>; ..."
+  [[noreturn]] void refuse_attribute(int variable, const std::string& name, const std::string& why) const;
+
   /// What an attribute is made of.
   struct Attribute {
     int type = 0;  ///< an nc_type
@@ -94,8 +97,6 @@ class NetcdfFile final : public FlightFile {
   /// A name of what the file holds. @throws Error if it is longer than netCDF allows, as those that HDF5
   /// allows may be: no function of the library finds what is called so
   std::string allowed(const std::string& name, const char* what) const;
-
-  [[noreturn]] void refuse_attribute(int variable, const std::string& name, const std::string& why) const;
 
   enum class Use { reading, writing };
 

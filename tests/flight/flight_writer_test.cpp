@@ -453,6 +453,21 @@ TEST_F(FlightWriterTest, WhatCannotBeCopiedIsToldBeforeAndLeavesTheRest) {
   EXPECT_FALSE(FlightWriter(output, NewFlight{midnight}, {}).can_copy("PSFD")) << "there is no input";
 }
 
+/// HDF5 has attributes that netCDF does not write, as a text for a missing number, and filters that are not
+/// installed everywhere.
+TEST_F(FlightWriterTest, WhatOnlyHdf5AllowsIsToldWithWhatToDo) {
+  const Flight flight(PCOR_SOURCE_DIR "/tests/fuzz/seeds/flight/odd_hdf5.nc");
+  FlightWriter writer(output, flight, {});
+  EXPECT_THAT(message_of<Error>([&] { writer.copy("PSFD"); }),
+              AllOf(HasSubstr("the attribute _FillValue of PSFD cannot be copied"),
+                    HasSubstr("ncatted -a _FillValue,PSFD,d,,")));
+  std::vector<double> values(flight.records());
+  EXPECT_THAT(message_of<Error>([&] {
+                flight.read_at_rate(1, "PACKED", {0, flight.records()}, {}, values.data());
+              }),
+              AllOf(HasSubstr("cannot read PACKED"), HasSubstr("install the plug-in of HDF5")));
+}
+
 TEST_F(FlightWriterTest, FlagsMustBeWholeNumbers) {
   NewFlight start{midnight};
   FlightWriter writer(output, start, {});
