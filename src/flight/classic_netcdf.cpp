@@ -46,7 +46,7 @@ class Header {
     return sound_ ? sizes[type] : 0;
   }
 
-  // The netCDF library writes none that is longer, and copies one that is beyond the room for it.
+  // The netCDF library writes no longer one, and would copy it beyond the room that it has.
   void skip_name() {
     constexpr std::uint64_t longest = 256;
     const std::uint64_t length = count();

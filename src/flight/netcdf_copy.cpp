@@ -4,7 +4,6 @@
 #include <netcdf.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include <pcor/units/units.hpp>
 #include <pcor/words/error.hpp>
@@ -16,6 +15,10 @@ namespace {
 /// How the names of attributes begin in which this program says what a file was made of: they are not true
 /// of the next one.
 constexpr const char* own_attributes = "pcor_";
+
+/// Numbers and letters. Texts are not: what the library calls so may be any text of a fixed length in HDF5,
+/// or a long double, and it writes more bytes of it to where they are read than it says that it has.
+bool is_copied(int type) { return type < NC_STRING; }
 
 // Where in a copied variable the records of a block are.
 struct Slab {
@@ -37,14 +40,22 @@ void NetcdfCopy::copy_global_attributes() const {
 }
 
 void NetcdfCopy::copy_attribute(int from, int to, const std::string& name, int type_of_variable) const {
-  // What HDF5 may hold and netCDF does not write is a matter of the input.
+  // What a file may hold and netCDF does not write is a matter of the input.
   const auto check = [&](int status) {
-    if (status == NC_EBADNAME || status == NC_EBADTYPE || status == NC_EINVAL)
-      source_.refuse_attribute(from, name, "cannot be copied (" + netcdf_reason(status) + ")");
-    output_.check(status);
+    switch (status) {
+      case NC_EBADNAME:
+      case NC_EBADTYPE:
+      case NC_ECHAR:
+      case NC_EINVAL:
+      case NC_ERANGE:
+      case NC_ESTRICTNC3:
+        source_.refuse_attribute(from, name, "cannot be copied (" + netcdf_reason(status) + ")");
+      default:
+        output_.check(status);
+    }
   };
   nc_type type = NC_NAT;
-  check(nc_inq_atttype(source_.id(), from, name.c_str(), &type));
+  source_.check(nc_inq_atttype(source_.id(), from, name.c_str(), &type), "cannot read the attribute " + name);
   if (type > NC_STRING) return;  // of the file's own making
   if (type == NC_CHAR) {
     const std::string text = source_.text_attribute(from, name);
@@ -65,7 +76,7 @@ void NetcdfCopy::copy_attribute(int from, int to, const std::string& name, int t
 
 bool NetcdfCopy::can_copy(const std::string& name) const {
   const int variable = *source_.find_variable(name);
-  if (source_.type_of(variable) > NC_STRING) return false;
+  if (!is_copied(source_.type_of(variable))) return false;
   const std::vector<int> shape = source_.dimensions_of(variable);
   for (std::size_t i = 0; i < shape.size(); ++i) {
     const bool fits =
@@ -83,9 +94,11 @@ void NetcdfCopy::define(const std::string& name) {
   entry.from = *source_.find_variable(name);
   entry.type = source_.type_of(entry.from);
   source_.fit_chunk_cache(entry.from);
-  if (entry.type > NC_STRING)
-    throw Error(fmt::format("{}: {} has a type of its own making, which cannot be copied; leave it out",
-                            shown, name));
+  if (!is_copied(entry.type))
+    throw Error(
+        fmt::format("{}: {} holds texts or has a type of its own making, which cannot be copied; "
+                    "leave it out",
+                    shown, name));
   std::vector<int> shape;
   for (const int each : source_.dimensions_of(entry.from)) {
     const bool time = each == time_dimension_;
@@ -129,15 +142,9 @@ void NetcdfCopy::read(const Copied& variable, RecordBlock block, char* buffer) c
   source_.require_unchanged();
 }
 
-void NetcdfCopy::write(const Copied& variable, RecordBlock block, char* buffer) const {
+void NetcdfCopy::write(const Copied& variable, RecordBlock block, const char* buffer) const {
   const Slab slab(variable.shape, variable.over_time, block);
-  const int status = nc_put_vara(output_.id(), variable.to, slab.start.data(), slab.count.data(), buffer);
-  if (variable.type == NC_STRING) {
-    std::vector<char*> strings(elements(slab.count));
-    std::memcpy(strings.data(), buffer, strings.size() * sizeof(char*));
-    nc_free_string(strings.size(), strings.data());
-  }
-  output_.check(status);
+  output_.check(nc_put_vara(output_.id(), variable.to, slab.start.data(), slab.count.data(), buffer));
 }
 
 // A classic file with an unlimited Time has the records one after the other.

@@ -38,7 +38,7 @@ class NetcdfCopy {
   void copy_compression(const Copied& variable) const;
   std::size_t record_bytes(const Copied& variable) const;
   void read(const Copied& variable, RecordBlock block, char* buffer) const;
-  void write(const Copied& variable, RecordBlock block, char* buffer) const;
+  void write(const Copied& variable, RecordBlock block, const char* buffer) const;
   bool source_has_records() const;
 
   const NetcdfFile& source_;

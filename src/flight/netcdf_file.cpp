@@ -4,6 +4,7 @@
 #include <netcdf.h>
 #include <strings.h>
 #include <pcor/words/error.hpp>
+#include <pcor/words/shell_word.hpp>
 
 #include <algorithm>
 #include <cerrno>
@@ -114,8 +115,9 @@ ClassicLayout checked_layout_of_classic(const std::filesystem::path& path) {
   return *layout;
 }
 
-/// Room for any name, as the library copies all of one: HDF5 keeps the length of an attribute's in two bytes.
-/// Names in a classic file are looked at before (`layout_of_classic`).
+/// Room for any name, as the library copies all of one: HDF5 keeps the length of an attribute's in two bytes,
+/// and those of variables and dimensions the library has cut off itself. Names in a classic file are looked
+/// at before (`layout_of_classic`).
 constexpr std::size_t room_for_name = std::size_t{1} << 16;
 
 const char* advice_to_reader(int status) {
@@ -124,10 +126,10 @@ const char* advice_to_reader(int status) {
       return "; take away what is neither text nor a list of numbers, as a table, or fetch the file again "
              "from "
              "its source";
-    case NC_EFILTER:
     case NC_ENOFILTER:
-      return "; install the plug-in of HDF5 for the filter that it is compressed with, or write the file "
-             "without it where there is one, as nccopy -F none does";
+      return "; install the plug-in of HDF5 for the filter that it is compressed with, or on a machine that "
+             "has "
+             "it write the file anew with nccopy -F none, or fetch the file again from its source";
     default:
       return "; fetch the file again from its source";
   }
@@ -214,8 +216,7 @@ void NetcdfFile::check(int status, const std::string& doing) const {
   if (use_ == Use::reading) require_unchanged();
   std::string message = path_.string() + ": " + doing + ": " + netcdf_reason(status);
   if (use_ == Use::reading) throw Error(Error::Code::file, message + advice_to_reader(status));
-  if (status == NC_EBADNAME)
-    throw Error(Error::Code::output, message + "; rename what is called so in the input, or copy less of it");
+  if (can_name_nothing(status)) throw Error(Error::Code::output, message + "; give it another name");
   std::error_code code;
   const auto space = std::filesystem::space(std::filesystem::absolute(path_).parent_path(), code);
   constexpr std::uintmax_t little = 1 << 20;
@@ -421,11 +422,14 @@ std::vector<double> NetcdfFile::missing_values(int variable) const {
 }
 
 void NetcdfFile::refuse_attribute(int variable, const std::string& name, const std::string& why) const {
-  const std::string of = variable == NC_GLOBAL ? "global" : variable_name(variable);
-  throw Error(Error::Code::variable,
-              fmt::format("{}: the attribute {} of {} {}; correct it, or take it away with ncatted -a "
-                          "{},{},d,, {}",
-                          path_.string(), name, of, why, name, of, path_.string()));
+  const bool is_global = variable == NC_GLOBAL;
+  const std::string of = is_global ? "global" : variable_name(variable);
+  throw Error(
+      Error::Code::variable,
+      fmt::format("{}: the attribute {} of {} {}; correct it, or take it away with ncatted -a {} {}, or "
+                  "with h5py where that cannot write the file",
+                  path_.string(), name, is_global ? "the file" : of, why,
+                  shell_word(fmt::format("{},{},d,,", name, of)), path_.string()));
 }
 
 std::array<double, 2> NetcdfFile::valid_range(int variable) const {

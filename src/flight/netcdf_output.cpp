@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include <pcor/words/error.hpp>
+#include "words/quoting.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -65,7 +66,9 @@ int NetcdfOutput::dimension(const std::string& name, std::size_t length) {
                             file_.path().string(), name, length,
                             file_.dimension_length(dimensions_.at(name))));
   const auto [place, is_new] = dimensions_.emplace(name, 0);
-  if (is_new) check(nc_def_dim(id(), name.c_str(), length, &place->second));
+  if (is_new)
+    file_.check(nc_def_dim(id(), name.c_str(), length, &place->second),
+                "cannot have a dimension called " + in_quotes(name));
   return place->second;
 }
 
@@ -76,8 +79,9 @@ std::vector<int> NetcdfOutput::dimensions_of_series(std::size_t rate) {
 
 int NetcdfOutput::add_variable(const std::string& name, int type, const std::vector<int>& dimensions) {
   int variable = 0;
-  check(nc_def_var(id(), name.c_str(), type, static_cast<int>(dimensions.size()), dimensions.data(),
-                   &variable));
+  file_.check(
+      nc_def_var(id(), name.c_str(), type, static_cast<int>(dimensions.size()), dimensions.data(), &variable),
+      "cannot have a variable called " + in_quotes(name));
   const bool over_time = !dimensions.empty() && dimensions.front() == time_dimension_;
   if (is_hdf5_ && over_time) store_in_chunks(variable, type, dimensions);
   return variable;

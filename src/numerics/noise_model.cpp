@@ -36,6 +36,7 @@ DriftShapes drift_shapes(const Binning& bins) {
   const double length = bins.time().back() - begin;
   const auto by_period = static_cast<std::size_t>(2.0 * length / shortest_period);
   const Eigen::Index count = as_index(std::min({most_shapes, by_period, bins.size() / 15}));
+  if (count == 0) return shapes;
   const Eigen::Map<const Eigen::ArrayXd> time(bins.time().data(), as_index(bins.size()));
   const Eigen::ArrayXd first = (pi * (time - begin) / length).cos();
   // Chebyshev's recursion from one cosine to the next, exact to 1e-12 up to the last.

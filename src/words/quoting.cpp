@@ -22,9 +22,19 @@ std::size_t bytes_of_letter(std::string_view text) {
   return bytes;
 }
 
+// Whether it begins a new line (U+2028, U+2029) or has letters shown in another order than they stand in
+// (U+200E, U+200F, U+202A to U+202E, U+2066 to U+2069).
+bool is_layout(std::string_view letter) {
+  if (letter.size() != 3) return false;
+  const unsigned last = code_of(letter[2]);
+  const std::string_view block = letter.substr(0, 2);
+  return (block == "\xe2\x80" && (last == 0x8e || last == 0x8f || (last >= 0xa8 && last <= 0xae))) ||
+         (block == "\xe2\x81" && last >= 0xa6 && last <= 0xa9);
+}
+
 bool is_control(std::string_view letter) {
   const unsigned first = code_of(letter.front());
-  return first < 0x20 || first == 0x7f || (first == 0xc2 && code_of(letter[1]) < 0xa0);
+  return first < 0x20 || first == 0x7f || (first == 0xc2 && code_of(letter[1]) < 0xa0) || is_layout(letter);
 }
 
 // Calls `visit` with every letter, and whether it can be shown; a byte that begins none is one by itself.

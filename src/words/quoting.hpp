@@ -11,8 +11,9 @@ namespace pcor::internal {
 
 using Names = std::vector<std::string>;
 
-/// A message is one line, whatever is quoted in it: control characters, which a terminal may obey, and bytes
-/// that are no UTF-8 become \x1b and the like.
+/// A message is one line, read as it stands, whatever is quoted in it: control characters, which a terminal
+/// may obey, those of Unicode that begin a line or turn the direction of writing, and bytes that are no UTF-8
+/// become \x1b and the like.
 std::string one_line(std::string_view text);
 
 /// The first letters of a text; where it has more than `most`, an ellipsis and how many it has.

@@ -12,8 +12,7 @@ namespace {
 
 constexpr std::size_t most_samples = 1 << 20;
 
-/// A file that holds these bytes, in place of those before. It has a name of its own, for the HDF5 library
-/// opens none that has lost it.
+/// A file that holds these bytes, in place of those before. The HDF5 library opens none without a name.
 std::filesystem::path file_of(const std::uint8_t* bytes, std::size_t size) {
   static const pcor::test::TemporaryDirectory folder;
   std::ofstream file(folder / "flight.nc", std::ios::binary);

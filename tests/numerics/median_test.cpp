@@ -26,7 +26,7 @@ TEST(Median, IsTheUpperOfTheMiddleTwo) {
 TEST(Median, OfManyValuesIsThatOfTheirOrder) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
-  for (const std::size_t count : {4095U, 4096U, 4097U, 10000U, 100001U}) {
+  for (const std::size_t count : {99U, 100U, 101U, 10000U, 100001U}) {
     std::vector<double> values(count);
     for (double& value : values) value = normal(random);
     EXPECT_EQ(median(values), by_order(values)) << count;

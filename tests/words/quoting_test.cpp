@@ -14,6 +14,9 @@ TEST(OneLine, ShowsWhatATerminalWouldObey) {
             "\\xc2\\x9b31m")
       << "an escape sequence of one letter";
   EXPECT_EQ(one_line(std::string("a\0b", 3)), "a\\x00b");
+  EXPECT_EQ(one_line("\u2028a\u202eb\u2066c\u200f"),
+            "\\xe2\\x80\\xa8a\\xe2\\x80\\xaeb\\xe2\\x81\\xa6c\\xe2\\x80\\x8f");
+  EXPECT_EQ(one_line("\u2013\u2026\u2032\u2070"), "\u2013\u2026\u2032\u2070");
 }
 
 TEST(OneLine, KeepsLettersWhole) {

@@ -100,9 +100,10 @@ class FlightWriter {
   /// @throws Error if there is no input, no such variable, the name is taken, or it is not one to copy.
   void copy(const std::string& name);
 
-  /// Whether the input has a variable of this name that is one to copy: not if its type is one that the file
-  /// makes itself (compound, enum, opaque, variable length), if Time is not the first of its dimensions, or
-  /// if one of them is in the output with another length.
+  /// Whether the input has a variable of this name that is one to copy: not if it holds texts, of more than
+  /// one letter each, if its type is one that the file makes itself (compound, enum, opaque, variable
+  /// length), if Time is not the first of its dimensions, or if one of them is in the output with another
+  /// length.
   bool can_copy(const std::string& name) const;
 
   /// Whether a name is taken in the output.
