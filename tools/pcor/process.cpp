@@ -414,7 +414,8 @@ std::function<void()> add_process(CLI::App& program) {
       ->check(CLI::IsMember({"total", "systematic", "random", "none"}));
   command->add_option("--suffix", options->suffix, "add S to the names of the derived variables")
       ->type_name("S");
-  command->add_flag("--all", options->copy_all, "copy every variable of the input");
+  command->add_flag("--all", options->copy_all,
+                    "copy every variable of the input but texts, and say which these are");
   command->add_flag("--hydrostatic", options->hydrostatic,
                     "write HYDSTEP, the change of hydrostatic height per kelvin from sample to sample");
   add_common_options(*command, options->common);

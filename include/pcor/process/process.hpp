@@ -21,7 +21,8 @@ enum class UncertaintyPart { total_if_stated, total, systematic, random, none };
 /// How a flight is processed.
 struct ProcessOptions {
   CorrectWith correct_with = CorrectWith::model;
-  bool copy_all = false;  ///< copy every variable of the input, not only coordinates and what was used
+  /// Copy every variable of the input but texts, not only coordinates and what was used.
+  bool copy_all = false;
   /// Write the steps of hydrostatic height, `HYDSTEP`, and copy what a fit of temperature needs besides.
   bool hydrostatic = false;
   UncertaintyPart uncertainty = UncertaintyPart::total_if_stated;
