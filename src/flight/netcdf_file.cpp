@@ -124,12 +124,10 @@ const char* advice_to_reader(int status) {
   switch (status) {
     case NC_EATTMETA:
       return "; take away what is neither text nor a list of numbers, as a table, or fetch the file again "
-             "from "
-             "its source";
+             "from its source";
     case NC_ENOFILTER:
       return "; install the plug-in of HDF5 for the filter that it is compressed with, or on a machine that "
-             "has "
-             "it write the file anew with nccopy -F none, or fetch the file again from its source";
+             "has it write the file anew with nccopy -F none, or fetch the file again from its source";
     default:
       return "; fetch the file again from its source";
   }
@@ -429,7 +427,7 @@ void NetcdfFile::refuse_attribute(int variable, const std::string& name, const s
       fmt::format("{}: the attribute {} of {} {}; correct it, or take it away with ncatted -a {} {}, or "
                   "with h5py where that cannot write the file",
                   path_.string(), name, is_global ? "the file" : of, why,
-                  shell_word(fmt::format("{},{},d,,", name, of)), path_.string()));
+                  shell_word(fmt::format("{},{},d,,", name, of)), shell_word(path_.string())));
 }
 
 std::array<double, 2> NetcdfFile::valid_range(int variable) const {

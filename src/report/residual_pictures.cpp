@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "numerics/median.hpp"
 #include "numerics/octave_spectrum.hpp"
 #include "report/columns.hpp"
 #include "report/present_columns.hpp"
@@ -24,10 +25,7 @@ double step_of(const Report& report) {
   for (std::size_t i = 1; i < report.time.size(); ++i) {
     if (report.time[i] > report.time[i - 1]) steps.push_back(report.time[i] - report.time[i - 1]);
   }
-  if (steps.empty()) return 0.0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return steps.empty() ? 0.0 : median(std::move(steps));
 }
 
 }  // namespace
