@@ -161,12 +161,12 @@ void run(const Arguments& arguments) {
   pcor::RefitOptions options;
   options.loss = pcor::Loss::soft_l1;
   options.threads = arguments.threads;
-  options.memory = arguments.memory;
+  const pcor::FlightSet set(flights, {{}, &pcor::alone(), arguments.memory});
   std::size_t passes = 0;
   options.progress = [&passes](std::size_t, std::size_t) { ++passes; };
 
   const auto begin = std::chrono::steady_clock::now();
-  const pcor::RefitResult result = pcor::refit(flights, model, references, options);
+  const pcor::RefitResult result = pcor::refit(set, model, references, options);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
 
   std::printf("{\"samples\": %zu, \"flights\": %zu, \"seconds\": %.6f, \"passes\": %zu, ", result.samples,

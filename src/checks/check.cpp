@@ -6,11 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <pcor/flight/same_aircraft.hpp>
 #include <pcor/words/error.hpp>
 #include "checks/checks.hpp"
 #include "checks/flown.hpp"
-#include "flight/aircraft_of_flights.hpp"
 #include "flight/trouble_with_values.hpp"
 #include "residuals/packed_residuals.hpp"
 #include "roles/recorded_model.hpp"
@@ -73,16 +71,18 @@ MeasuredPair measured(std::string name, const FlightAir& air) {
   return {std::move(name), air.measured_static, air.measured_dynamic};
 }
 
-CheckedFlight checked(const Flight& flight, const ModelFile& model, const CheckOptions& options) {
+CheckedFlight checked(const FlightSet& flights, std::size_t number, const ModelFile& model,
+                      const CheckOptions& options) {
   CheckedFlight result;
-  result.air = read_flight_air(flight, model, options.mask);
+  result.air = read_flight_air(flights, number, model, options.mask);
   const PressurePair of_model = pair_of(model);
-  const Systems systems = systems_of(flight, of_model);
+  const Systems systems = systems_of(flights[number], of_model);
   if (systems.own) {
     result.measured.push_back(
         same(*systems.own, of_model)
             ? measured(of_model.name(), result.air)
-            : measured(systems.own->name(), read_flight_air(flight, model_of(*systems.own), options.mask)));
+            : measured(systems.own->name(),
+                       read_flight_air(flights, number, model_of(*systems.own), options.mask)));
   }
   result.second_corrected = options.second.has_value();
   std::optional<ModelFile> second = options.second;
@@ -94,7 +94,7 @@ CheckedFlight checked(const Flight& flight, const ModelFile& model, const CheckO
                     "other pressures",
                     second->model.name, of_model.name()));
   }
-  result.second = read_flight_air(flight, *second, options.mask);
+  result.second = read_flight_air(flights, number, *second, options.mask);
   result.second_name = pair_of(*second).name();
   if (!result.measured.empty()) result.measured.push_back(measured(result.second_name, *result.second));
   return result;
@@ -113,9 +113,9 @@ struct FlightPart {
   }
 };
 
-FlightPart part_of(const std::filesystem::path& path, const std::optional<ModelFile>& model,
+FlightPart part_of(const FlightSet& flights, std::size_t number, const std::optional<ModelFile>& model,
                    const CheckOptions& options) {
-  const Flight flight(path, options.time_stamp);
+  const Flight& flight = flights[number];
   const std::optional<ModelFile> its_model = model ? model : recorded_model(flight);
   FlightPart part;
   part.unusable = its_model ? without_values(flight, *its_model)
@@ -123,10 +123,10 @@ FlightPart part_of(const std::filesystem::path& path, const std::optional<ModelF
                                   "{}: there are no static and dynamic pressures with values under the "
                                   "usual names (PSXC and QCXC, PSFD and QCF); name them in the "
                                   "[variables] of a model, -m",
-                                  path.string());
+                                  flight.path().string());
   if (!part.unusable.empty()) return part;
   part.model = its_model->model.name;
-  part.flight = checked(flight, *its_model, options);
+  part.flight = checked(flights, number, *its_model, options);
   part.notes = part.flight->air.notes;
   if (!model && its_model->variables.count(Quantity::recovery_temperature) > 0) {
     part.notes.push_back(fmt::format(
@@ -175,24 +175,23 @@ std::string_view name_of(CheckVerdict verdict) {
   return "";
 }
 
-Checks check(const std::vector<std::filesystem::path>& flights, const std::optional<ModelFile>& model,
-             const CheckOptions& options) {
+Checks check(const FlightSet& flights, const std::optional<ModelFile>& model, const CheckOptions& options) {
   if (flights.empty()) throw Error("nothing to check; give at least one flight");
-  require_each_once(flights);
+  flights.require_each_once();
   if (options.second && options.second->variables.count(Quantity::static_pressure) == 0) {
     throw Error(Error::Code::model,
                 fmt::format("model '{}': the model of a second system has to name its pressures; add "
                             "static_pressure and dynamic_pressure to [variables]",
                             options.second->model.name));
   }
-  const FlightShare share = share_of_flights(*options.team, flights);
-  require_one_aircraft(aircraft_of_flights(flights, share, options.time_stamp));
+  flights.require_one_aircraft();
   std::size_t done = 0;
-  auto parts = share.of_each_flight<FlightPart>([&](std::size_t number) {
-    FlightPart part = part_of(flights[number], model, options);
-    if (options.progress) options.progress(++done, share.own());
+  auto parts = flights.share().of_each_flight<FlightPart>([&](std::size_t number) {
+    FlightPart part = part_of(flights, number, model, options);
+    if (options.progress) options.progress(++done, flights.share().own());
     return part;
   });
+  flights.require_unchanged();
   Checks checks;
   CheckedFlights read;
   std::vector<std::string> unusable;

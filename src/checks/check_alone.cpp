@@ -23,15 +23,13 @@ std::vector<CheckInShort> in_short(const Checks& checks) {
   return all;
 }
 
-std::vector<std::vector<CheckInShort>> check_each_alone(const std::vector<std::filesystem::path>& flights,
+std::vector<std::vector<CheckInShort>> check_each_alone(const FlightSet& flights,
                                                         const std::optional<ModelFile>& model,
                                                         const CheckOptions& options) {
   CheckOptions own = options;
-  own.team = &alone();
   own.progress = nullptr;
-  return share_of_flights(*options.team, flights)
-      .of_each_flight<std::vector<CheckInShort>>(
-          [&](std::size_t number) { return in_short(check({flights[number]}, model, own)); });
+  return flights.share().of_each_flight<std::vector<CheckInShort>>(
+      [&](std::size_t number) { return in_short(check(flights.only(number), model, own)); });
 }
 
 }  // namespace pcor

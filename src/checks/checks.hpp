@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <pcor/checks/check.hpp>
-#include "residuals/flight_air.hpp"
+#include "campaign/flight_air.hpp"
 
 namespace pcor::internal {
 

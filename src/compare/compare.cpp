@@ -10,10 +10,8 @@
 #include <optional>
 
 #include <pcor/flight/flight_writer.hpp>
-#include <pcor/flight/same_aircraft.hpp>
 #include <pcor/words/error.hpp>
 
-#include "flight/aircraft_of_flights.hpp"
 #include "numerics/missing.hpp"
 #include "report/shown_flights.hpp"
 #include "residuals/flight_statistics.hpp"
@@ -248,13 +246,13 @@ std::vector<Field> fields_of(const std::vector<Contender>& contenders) {
 }
 
 /// The residuals of models to one reference on one flight, where all of them have one.
-FlightResiduals residuals_on(const Flight& flight, const std::vector<Pairing>& pairings,
-                             const MaskOptions& options, std::vector<std::string>& notes) {
+FlightResiduals residuals_on(const FlightSet& flights, std::size_t number,
+                             const std::vector<Pairing>& pairings, const MaskOptions& options,
+                             std::vector<std::string>& notes) {
   FlightResiduals result;
   for (const auto& [contender, reference] : pairings) {
     const ModelFile& model = contender.model;
-    const auto samples =
-        std::make_shared<const FlightSamples>(read_samples(flight, model, reference, options));
+    const auto samples = flights.samples(number, model, reference, options);
     const Residuals residuals(samples, model, reference, options);
     const double* const parameters = residuals.parameters().data();
     result.values.push_back(residuals.values(parameters));
@@ -334,22 +332,20 @@ std::vector<std::size_t> to_show(const std::vector<FlightPart>& parts, std::size
 }
 
 /// Holds contenders against a reference. Without samples there are no models in the result.
-Comparison compare_with(const std::vector<Pairing>& pairings,
-                        const std::vector<std::filesystem::path>& flights, const FlightShare& share,
+Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& flights,
                         const CompareOptions& options, const std::function<void()>& tell) {
   const Reference& first = pairings.front().reference;
   Comparison result;
   result.reference = first.description();
   result.is_static_pressure = first.is_static_pressure();
   const auto read = [&](std::size_t number, bool with_series) {
-    const Flight flight(flights[number], options.time_stamp);
     std::vector<std::string> notes;
-    FlightPart part = part_of(residuals_on(flight, pairings, options.mask, notes), with_series);
+    FlightPart part = part_of(residuals_on(flights, number, pairings, options.mask, notes), with_series);
     part.notes = std::move(notes);
     return part;
   };
   const bool keeps_all = flights.size() <= options.most_series;
-  auto parts = share.of_each_flight<FlightPart>([&](std::size_t number) {
+  auto parts = flights.share().of_each_flight<FlightPart>([&](std::size_t number) {
     FlightPart part = read(number, keeps_all);
     tell();
     return part;
@@ -381,7 +377,7 @@ Comparison compare_with(const std::vector<Pairing>& pairings,
   if (total_pressures.samples > 0) result.total_pressure = ordinary_fit(total_pressures);
   if (keeps_all) return result;
   const std::vector<std::size_t> shown = to_show(parts, options.most_series);
-  for (FlightPart& part : share.of_entries(shown).of_each_flight<FlightPart>(
+  for (FlightPart& part : flights.share().of_entries(shown).of_each_flight<FlightPart>(
            [&](std::size_t k) { return read(shown[k], true); }))
     result.flights.push_back(std::move(*part.series));
   return result;
@@ -389,28 +385,27 @@ Comparison compare_with(const std::vector<Pairing>& pairings,
 
 }  // namespace
 
-Comparison compare(const std::vector<std::filesystem::path>& flights,
-                   const std::vector<Contender>& contenders, const CompareOptions& options) {
+Comparison compare(const FlightSet& flights, const std::vector<Contender>& contenders,
+                   const CompareOptions& options) {
   if (flights.empty() || contenders.empty())
     throw Error("nothing to compare; give at least one flight and one model");
   for (const Contender& contender : contenders) first_of(contender.references);
   const std::vector<Field> fields = fields_of(contenders);
-  const FlightShare share = share_of_flights(*options.team, flights);
-  require_one_aircraft(aircraft_of_flights(flights, share, options.time_stamp));
+  flights.require_one_aircraft();
   const auto tell = [&, done = std::size_t{0}]() mutable {
     ++done;
-    if (options.progress) options.progress(done, fields.size() * share.own());
+    if (options.progress) options.progress(done, fields.size() * flights.share().own());
   };
   const std::function<void()> progress = tell;
-  Comparison result = compare_with(fields.front().pairings, flights, share, options, progress);
+  Comparison result = compare_with(fields.front().pairings, flights, options, progress);
   if (result.masks[0] == 0) {
     throw Error(
         fmt::format("{}: no sample is left to compare: {}; see the variables of the model and "
                     "--min-airspeed, --max-flaps, --exclude",
-                    flights.size() == 1 ? flights.front().string() : "the flights", mask_text(result.masks)));
+                    flights.size() == 1 ? flights.path(0).string() : "the flights", mask_text(result.masks)));
   }
   for (auto field = fields.begin() + 1; field != fields.end(); ++field) {
-    Comparison further = compare_with(field->pairings, flights, share, options, progress);
+    Comparison further = compare_with(field->pairings, flights, options, progress);
     if (further.masks[0] == 0) {
       result.notes.push_back(fmt::format("no sample is left to compare with the {}: {}", further.reference,
                                          mask_text(further.masks)));
@@ -419,19 +414,19 @@ Comparison compare(const std::vector<std::filesystem::path>& flights,
     result.notes.insert(result.notes.end(), further.notes.begin(), further.notes.end());
     result.further.push_back(std::move(further));
   }
+  flights.require_unchanged();
   std::sort(result.notes.begin(), result.notes.end());
   result.notes.erase(std::unique(result.notes.begin(), result.notes.end()), result.notes.end());
   return result;
 }
 
-void write_residuals(const Comparison& comparison, std::size_t flight, const std::filesystem::path& input,
+void write_residuals(const Comparison& comparison, std::size_t number, const Flight& input,
                      const std::filesystem::path& output, const std::string& history) {
-  const FlightResiduals& residuals = comparison.flights.at(flight);
-  const Flight source(input);
+  const FlightResiduals& residuals = comparison.flights.at(number);
   FileDescription description;
   description.history = history;
   description.title = "Residuals of pressure corrections against " + comparison.reference;
-  FlightWriter writer(output, source, description);
+  FlightWriter writer(output, input, description);
   std::vector<std::pair<std::size_t, std::vector<double>>> columns;
   const auto define = [&](const std::string& name, const std::string& long_name, std::vector<double> values) {
     OutputVariable variable;
@@ -484,7 +479,7 @@ void write_residuals(const Comparison& comparison, std::size_t flight, const std
     regimes.push_back(static_cast<double>(set.to_ulong()));
   flags("REGIME", "Flight regimes and manoeuvres", std::move(regime_flags), std::move(regimes));
   const RecordBlock all{0, residuals.samples->time.size()};
-  for (const auto& [number, values] : columns) writer.write(number, all, values.data());
+  for (const auto& [variable, values] : columns) writer.write(variable, all, values.data());
   writer.finish();
 }
 

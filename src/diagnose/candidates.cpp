@@ -15,6 +15,7 @@
 #include "residuals/moving_columns.hpp"
 #include "roles/model_inputs.hpp"
 #include "roles/recorded_series.hpp"
+#include "team/flight_share.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -25,14 +26,14 @@ bool has_effect(const ModelFile& model, std::string_view id) {
 }
 
 /// The aircraft family whose names a model uses on some flights.
-const AircraftFamily& family_of(const ModelFile& file, const FlightFiles& flights) {
+const AircraftFamily& family_of(const ModelFile& file, const FlightSet& flights) {
   if (!file.roles_from.empty()) return family_named(file.roles_from);
-  return flights.count() == 0 ? aircraft_families().front() : family_named(flights.outlines().front().family);
+  return flights.size() == 0 ? aircraft_families().front() : family_named(flights.outlines().front().family);
 }
 
 /// Names the usual variables of the roles that the model leaves open, where every flight records them in a
 /// unit that fits. The flow angles stay as they are where the model computes them from the radome.
-void name_usual_variables(ModelFile& file, const FlightFiles& flights) {
+void name_usual_variables(ModelFile& file, const FlightSet& flights) {
   const AircraftFamily& family = family_of(file, flights);
   struct Usual {
     Quantity role;
@@ -131,7 +132,7 @@ std::string trouble_with(const Flight& flight, const std::string& variable) {
 }
 
 /// Of a formula: the variable that some flight lacks; empty where there is none.
-std::string missing_variable(const ModelEffect& effect, const FlightFiles& flights) {
+std::string missing_variable(const ModelEffect& effect, const FlightSet& flights) {
   const auto formula = Formula::parse(effect.formula, effect.parameter_names, nullptr);
   if (!formula) return "";
   for (const std::string& name : formula->variables()) {
@@ -224,7 +225,7 @@ std::vector<BaseCoefficient> base_of(const ModelFile& model) {
 
 /// Everything that the own system may have, a system that it is held against may have too. One residual of
 /// both knows their difference alone.
-void add_those_of_the_references(CandidateSet& set, const References& references, const FlightFiles& flights,
+void add_those_of_the_references(CandidateSet& set, const References& references, const FlightSet& flights,
                                  const std::vector<double>& dates) {
   for (std::size_t r = 0; r < references.size(); ++r) {
     const ModelFile* const model = references[r]->model();
@@ -295,7 +296,7 @@ std::vector<std::size_t> free_parameters(const ModelFile& model) {
 }
 
 CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffect>& formulas,
-                             const FlightFiles& flights, const References& references,
+                             const FlightSet& flights, const References& references,
                              const std::vector<double>& dates) {
   CandidateSet set;
   set.extended = model;

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include <pcor/campaign/flight_set.hpp>
 #include <pcor/diagnose/diagnose.hpp>
 #include <pcor/laws/model_file.hpp>
 #include <pcor/residuals/reference.hpp>
-#include "diagnose/flight_files.hpp"
 
 namespace pcor::internal {
 
@@ -74,7 +74,7 @@ struct CandidateSet {
 /// flight lacks is not testable, and told so. @throws Error if the model cannot be used.
 /// @param dates on which a step is tried, as the role date has them
 CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffect>& formulas,
-                             const FlightFiles& flights, const References& references,
+                             const FlightSet& flights, const References& references,
                              const std::vector<double>& dates = {});
 
 /// The places among all parameters of a model of those that are fitted.

@@ -9,7 +9,6 @@
 #include <set>
 
 #include <pcor/effects/catalogue.hpp>
-#include <pcor/flight/same_aircraft.hpp>
 #include <pcor/words/error.hpp>
 #include "diagnose/advice.hpp"
 #include "diagnose/analysis.hpp"
@@ -258,7 +257,7 @@ struct SearchedDiagnosis {
 };
 
 /// @param dates on which a step is tried
-SearchedDiagnosis diagnosis_with(const FlightFiles& files, const ModelFile& model,
+SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelFile& model,
                                  const References& all_references, const DiagnoseOptions& options,
                                  const std::vector<double>& dates) {
   SearchedDiagnosis result;
@@ -266,7 +265,7 @@ SearchedDiagnosis diagnosis_with(const FlightFiles& files, const ModelFile& mode
   const References references = usable_references(all_references, diagnosis.notes);
   diagnosis.reference = description_of(references);
   CandidateSet set = find_candidates(model, options.formulas, files, references, dates);
-  TeamColumns columns = columns_of_flights(files, files.count(), model, set, options, diagnosis.notes);
+  TeamColumns columns = columns_of_flights(files, files.size(), model, set, options, diagnosis.notes);
   diagnosis.masks = count_masks(columns);
   leave_out_empty(columns);
   add_statistics(columns, options.training_share, diagnosis);
@@ -374,18 +373,15 @@ void judge_held_out(Diagnosis& diagnosis) {
   }
 }
 
-Diagnosis diagnose(const std::vector<std::filesystem::path>& paths, const ModelFile& model,
-                   const References& all_references, const DiagnoseOptions& options) {
-  if (paths.empty()) throw Error("nothing to diagnose; give at least one flight");
-  require_each_once(paths);
-  const FlightFiles files(*options.team, paths, options.time_stamp);
-  std::vector<std::pair<std::string, std::string>> aircraft;
-  for (std::size_t f = 0; f < paths.size(); ++f)
-    aircraft.emplace_back(paths[f].filename().string(), files.outlines()[f].aircraft);
-  require_one_aircraft(aircraft);
-  StepDates dates(files);
+Diagnosis diagnose(const FlightSet& flights, const ModelFile& model, const References& all_references,
+                   const DiagnoseOptions& options) {
+  if (flights.empty()) throw Error("nothing to diagnose; give at least one flight");
+  flights.require_each_once();
+  flights.require_one_aircraft();
+  StepDates dates(flights);
   for (;;) {
-    SearchedDiagnosis searched = diagnosis_with(files, model, all_references, options, dates.tried());
+    SearchedDiagnosis searched = diagnosis_with(flights, model, all_references, options, dates.tried());
+    flights.require_unchanged();
     if (!dates.refine(searched.found)) return std::move(searched.diagnosis);
   }
 }

@@ -134,29 +134,26 @@ TeamColumns columns_of_entries(const FlightShare& share,
   return columns;
 }
 
-TeamColumns columns_of_flights(const FlightFiles& files, std::size_t count, const ModelFile& model,
+TeamColumns columns_of_flights(const FlightSet& files, std::size_t count, const ModelFile& model,
                                const CandidateSet& set, const DiagnoseOptions& options,
                                std::vector<std::string>& notes) {
   std::vector<std::size_t> file_of_each;
   for (std::size_t r = 0; r < set.references.size(); ++r) {
     for (std::size_t file = 0; file < count; ++file) file_of_each.push_back(file);
   }
-  std::vector<std::shared_ptr<const FlightSamples>> first(count);  // with values of the first reference
   std::size_t done = 0;
   TeamColumns columns = columns_of_entries(files.share().of_entries(file_of_each), [&](std::size_t entry) {
     const std::size_t file = file_of_each[entry];
     const std::size_t r = entry / count;
-    auto samples = std::make_shared<FlightSamples>(
-        r == 0 ? read_samples(files[file], set.extended, *set.references[0], options.mask) : *first[file]);
-    if (r == 0) {
-      first[file] = samples;
-    } else {
-      samples->notes.clear();
-      samples->reference = set.references[r]->read(files[file], samples->time, samples->notes);
-      mark_frozen(*samples, &FlightSamples::reference, options.mask.least_airspeed);
+    auto samples = files.samples(file, set.extended, *set.references[0], options.mask);
+    if (r > 0) {
+      auto further = std::make_shared<FlightSamples>(*samples);
+      further->notes.clear();
+      further->reference = set.references[r]->read(files[file], further->time, further->notes);
+      mark_frozen(*further, &FlightSamples::reference, options.mask.least_airspeed);
+      samples = std::move(further);
     }
-    FlightColumns found =
-        find_columns(std::move(samples), model, set, r, options.mask, options.training_share);
+    FlightColumns found = find_columns(samples, model, set, r, options.mask, options.training_share);
     found.file = file;
     if (r == 0 && options.progress) options.progress(++done, files.share().own());
     return found;

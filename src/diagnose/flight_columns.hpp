@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include <pcor/campaign/flight_set.hpp>
 #include <pcor/diagnose/diagnose.hpp>
 #include "diagnose/candidates.hpp"
 #include "diagnose/columns.hpp"
-#include "diagnose/flight_files.hpp"
 #include "diagnose/search.hpp"
 
 namespace pcor::internal {
@@ -32,7 +32,7 @@ TeamColumns columns_of_entries(const FlightShare& share,
 
 /// The columns of the first `count` flights against each of the set's references.
 /// @param notes get what a user should know of the flights
-TeamColumns columns_of_flights(const FlightFiles& files, std::size_t count, const ModelFile& model,
+TeamColumns columns_of_flights(const FlightSet& files, std::size_t count, const ModelFile& model,
                                const CandidateSet& set, const DiagnoseOptions& options,
                                std::vector<std::string>& notes);
 

@@ -22,11 +22,11 @@ void add_some(std::vector<double>& tried, std::vector<double>::const_iterator fi
   for (std::ptrdiff_t k = 0; k < some; ++k) tried.push_back(first[(2 * k + 1) * count / (2 * some)]);
 }
 
-std::vector<double> begins_of(const FlightFiles& flights) {
+std::vector<double> begins_of(const FlightSet& flights) {
   const UnitConversion to_date =
       UnitConversion::between("seconds since 1970-01-01", std::string(facts_of(Quantity::date).unit), {});
   std::vector<double> begins;
-  for (const FileOutline& file : flights.outlines()) begins.push_back(to_date(file.begin));
+  for (const FlightOutline& file : flights.outlines()) begins.push_back(to_date(file.begin));
   return begins;
 }
 
@@ -50,7 +50,7 @@ StepDates::StepDates(std::vector<double> begins) : begins_(std::move(begins)) {
   put_in_order(tried_);
 }
 
-StepDates::StepDates(const FlightFiles& flights) : StepDates(begins_of(flights)) {}
+StepDates::StepDates(const FlightSet& flights) : StepDates(begins_of(flights)) {}
 
 bool StepDates::refine(const std::vector<Finding>& findings) {
   std::vector<ModelEffect> effects;

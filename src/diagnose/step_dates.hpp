@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include <pcor/campaign/flight_set.hpp>
 #include <pcor/diagnose/diagnose.hpp>
-#include "diagnose/flight_files.hpp"
 
 namespace pcor::internal {
 
@@ -12,7 +12,7 @@ namespace pcor::internal {
 /// them, closer to each other at both ends, and where a step is found, those around it.
 class StepDates {
  public:
-  explicit StepDates(const FlightFiles& flights);
+  explicit StepDates(const FlightSet& flights);
   explicit StepDates(std::vector<double> begins);
 
   /// Those to be tried now, ascending.

@@ -8,6 +8,7 @@
 
 #include <pcor/physics/constants.hpp>
 #include "numerics/missing.hpp"
+#include "team/flight_share.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -208,7 +209,7 @@ std::vector<TestedVariable> flown_variables(const std::vector<FlightColumns>& fl
   return result;
 }
 
-std::vector<TestedVariable> recorded_variables(const FlightFiles& files,
+std::vector<TestedVariable> recorded_variables(const FlightSet& files,
                                                const std::vector<FlightColumns>& flights,
                                                const std::set<std::string>& without) {
   const std::vector<Described> of_first =
@@ -229,7 +230,7 @@ std::vector<TestedVariable> recorded_variables(const FlightFiles& files,
     if (std::all_of(has.begin(), has.end(), [k](const std::vector<bool>& of_file) { return of_file[k]; }))
       everywhere.push_back(of_first[k]);
   }
-  std::vector<std::vector<Values>> values(everywhere.size(), std::vector<Values>(files.count()));
+  std::vector<std::vector<Values>> values(everywhere.size(), std::vector<Values>(files.size()));
   const auto seen = files.share().of_each_flight<std::vector<Seen>>([&](std::size_t number) {
     const Flight& file = files[number];
     std::vector<Seen> of_file(everywhere.size());

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <pcor/campaign/flight_set.hpp>
 #include "diagnose/columns.hpp"
-#include "diagnose/flight_files.hpp"
 
 namespace pcor::internal {
 
@@ -37,7 +37,7 @@ std::vector<TestedVariable> flown_variables(const std::vector<FlightColumns>& fl
 /// Of a variable with several samples a record the mean is taken (of an angle on the circle). What has a
 /// value in every so many records only is interpolated in between, an angle held.
 /// @param files of which each of `flights` is a part; @param without names that are left out
-std::vector<TestedVariable> recorded_variables(const FlightFiles& files,
+std::vector<TestedVariable> recorded_variables(const FlightSet& files,
                                                const std::vector<FlightColumns>& flights,
                                                const std::set<std::string>& without);
 

@@ -28,10 +28,10 @@ constexpr double least_drift_gain = 30.0;
 /// Of the noise: drift below it adds less than half a percent to the rms of the residual.
 constexpr double least_drift = 0.1;
 
-std::set<std::string> left_out(const FlightFiles& files, const ModelFile& model, const Reference& reference,
+std::set<std::string> left_out(const FlightSet& files, const ModelFile& model, const Reference& reference,
                                const DiagnoseOptions& options) {
   std::set<std::string> names(options.not_variables.begin(), options.not_variables.end());
-  for (const FileOutline& file : files.outlines()) names.insert(file.time_variable);
+  for (const FlightOutline& file : files.outlines()) names.insert(file.time_variable);
   names.insert({"Time", "time", "time_offset", "base_time"});
   const auto is_read_by_model = [&model](const std::string& variable) {
     return std::any_of(model.variables.begin(), model.variables.end(),
@@ -129,7 +129,7 @@ std::vector<std::vector<double>> residuals_after(const Analysis& analysis,
 }
 
 /// The variables that the first file says are computed from any of `sensors`.
-std::vector<std::string> computed_variables(const FlightFiles& files, const std::set<std::string>& sensors) {
+std::vector<std::string> computed_variables(const FlightSet& files, const std::set<std::string>& sensors) {
   return files.share()
       .of_each_flight<std::vector<std::string>>([&](std::size_t number) {
         if (number > 0) return std::vector<std::string>();
@@ -140,7 +140,7 @@ std::vector<std::string> computed_variables(const FlightFiles& files, const std:
 }
 
 /// The variables that structure may go with; those that are no causes are named in `found`.
-std::vector<TestedVariable> variables_to_test(const Analysis& analysis, const FlightFiles& files,
+std::vector<TestedVariable> variables_to_test(const Analysis& analysis, const FlightSet& files,
                                               const ModelFile& model, const Reference& reference,
                                               const DiagnoseOptions& options,
                                               const std::vector<std::vector<double>>& after,
@@ -378,7 +378,7 @@ std::vector<FlightStep> steps_between(const Analysis& analysis, const std::vecto
 
 }  // namespace
 
-UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightFiles& files,
+UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightSet& files,
                                       const ModelFile& model, const References& references,
                                       const std::set<std::string>& inputs, const DiagnoseOptions& options,
                                       double residual_rms, double noise_rms) {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include <pcor/campaign/flight_set.hpp>
 #include <pcor/diagnose/diagnose.hpp>
 #include "diagnose/analysis.hpp"
-#include "diagnose/flight_files.hpp"
 
 namespace pcor::internal {
 
@@ -25,7 +25,7 @@ struct UnexplainedStructure {
 ///
 /// @param references in the order of the analysis
 /// @param residual_rms and @param noise_rms after the chosen effects, hPa
-UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightFiles& files,
+UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightSet& files,
                                       const ModelFile& model, const References& references,
                                       const std::set<std::string>& inputs, const DiagnoseOptions& options,
                                       double residual_rms, double noise_rms);

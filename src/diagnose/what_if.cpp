@@ -61,7 +61,7 @@ std::size_t place_of(const std::vector<Candidate>& candidates, const WhatIfCandi
 }
 
 /// The dates of steps that are wanted; without one any date.
-std::vector<double> dates_for(const std::vector<WhatIfCandidate>& wanted, const FlightFiles& files) {
+std::vector<double> dates_for(const std::vector<WhatIfCandidate>& wanted, const FlightSet& files) {
   std::vector<ModelEffect> effects;
   for (const WhatIfCandidate& each : wanted) {
     if (each.effect) effects.push_back(*each.effect);
@@ -122,12 +122,12 @@ FlightColumns held_out(FlightColumns all, double used_share) {
 
 /// The columns of samples that took no part: of the files behind the first, which are fitted, and of the
 /// later parts of fitted flights.
-TeamColumns held_out_columns(const FlightFiles& files, std::size_t fitted, const TeamColumns& columns,
+TeamColumns held_out_columns(const FlightSet& files, std::size_t fitted, const TeamColumns& columns,
                              const ModelFile& model, const CandidateSet& set, const WhatIfOptions& options) {
   const MaskOptions& mask = options.diagnose.mask;
   const double share = options.diagnose.training_share;
   std::vector<std::size_t> file_of_each;
-  for (std::size_t file = fitted; file < files.count(); ++file) file_of_each.push_back(file);
+  for (std::size_t file = fitted; file < files.size(); ++file) file_of_each.push_back(file);
   const std::size_t whole = file_of_each.size();
   if (share < 1.0) {
     for (const FlightColumns& flight : columns.flights) {
@@ -138,8 +138,7 @@ TeamColumns held_out_columns(const FlightFiles& files, std::size_t fitted, const
     const std::size_t file = file_of_each[entry];
     // The fitted flights against the first reference come first.
     std::shared_ptr<const FlightSamples> samples =
-        entry < whole ? std::make_shared<FlightSamples>(
-                            read_samples(files[file], set.extended, *set.references[0], mask))
+        entry < whole ? files.samples(file, set.extended, *set.references[0], mask)
                       : columns.flights[entry - whole].samples;
     FlightColumns later =
         held_out(find_columns(samples, model, set, 0, mask, 1.0), entry < whole ? 0.0 : share);
@@ -358,12 +357,9 @@ std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
   return candidates;
 }
 
-WhatIf what_if(const std::vector<std::filesystem::path>& paths, const ModelFile& model,
-               const References& all_references, const std::vector<WhatIfCandidate>& wanted,
-               const WhatIfOptions& options) {
-  std::vector<std::filesystem::path> all_paths = paths;
-  all_paths.insert(all_paths.end(), options.holdout.begin(), options.holdout.end());
-  const FlightFiles files(*options.diagnose.team, all_paths, options.diagnose.time_stamp);
+WhatIf what_if(const FlightSet& flights, const ModelFile& model, const References& all_references,
+               const std::vector<WhatIfCandidate>& wanted, const WhatIfOptions& options) {
+  const FlightSet files = flights.with(options.holdout);
   std::vector<std::string> notes;  // the diagnosis tells them
   std::vector<ModelEffect> formulas = options.diagnose.formulas;
   for (const WhatIfCandidate& each : wanted) {
@@ -375,11 +371,11 @@ WhatIf what_if(const std::vector<std::filesystem::path>& paths, const ModelFile&
                                      dates_for(wanted, files));
   keep(set, wanted);
   const MaskOptions& mask = options.diagnose.mask;
-  TeamColumns columns = columns_of_flights(files, paths.size(), model, set, options.diagnose, notes);
+  TeamColumns columns = columns_of_flights(files, flights.size(), model, set, options.diagnose, notes);
   leave_out_empty(columns);
   if (columns.flights.empty()) throw Error("no sample is left to try effects on");
   drop_untestable(set, columns);
-  TeamColumns others = held_out_columns(files, paths.size(), columns, model, set, options);
+  TeamColumns others = held_out_columns(files, flights.size(), columns, model, set, options);
   CandidateSet ordered = set;
   const std::vector<WhatIfCandidate> found = put_in_order(ordered, columns, wanted);
   put_in_order(set, others, wanted);
@@ -433,12 +429,13 @@ WhatIf what_if(const std::vector<std::filesystem::path>& paths, const ModelFile&
   if (fit.held_out().count > 0.0) panel.held_out = as_sums(fit.held_out());
   const auto is_shown = [&](std::size_t file) {
     const auto& wanted_flights = options.diagnose.series_of;
-    return !wanted_flights || file >= paths.size() ||
+    return !wanted_flights || file >= flights.size() ||
            std::find(wanted_flights->begin(), wanted_flights->end(), file) != wanted_flights->end();
   };
   for (const FlightColumns& flight : shown(fit.flights(), is_shown))
     result.flights.push_back({flight.samples, by_records(flight)});
   for (const FlightColumns& flight : shown(fit.others(), is_shown)) add_held_out(result.flights, flight);
+  files.require_unchanged();
   panel.separations = separations_of(fit, ordered, model, mask);
   return result;
 }

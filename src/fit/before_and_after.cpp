@@ -67,11 +67,9 @@ Compared compared(const Residuals& residuals, const FitTask& task, const Eigen::
 
 /// The flights that are held out.
 std::vector<Compared> held_out(const FitTask& task, const Eigen::VectorXd& values) {
-  const std::vector<std::filesystem::path>& paths = task.options.holdout;
-  return share_of_flights(*task.options.team, paths).of_each_flight<Compared>([&](std::size_t number) {
-    const Flight file(paths[number], task.options.time_stamp);
-    const auto samples = std::make_shared<const FlightSamples>(
-        read_samples(file, task.model, task.reference, task.options.mask));
+  const FlightSet& flights = task.options.holdout;
+  return flights.share().of_each_flight<Compared>([&](std::size_t number) {
+    const auto samples = flights.samples(number, task.model, task.reference, task.options.mask);
     return compared(Residuals(samples, task.model, task.reference, task.options.mask), task, values, 0.0);
   });
 }

@@ -17,13 +17,14 @@
 namespace pcor::internal {
 namespace {
 
-/// Of a flight that is kept; of two static systems its samples are kept twice.
-std::size_t bytes_of(const FlightSamples& samples, const Reference& reference) {
+/// Values that a flight keeps beside the samples of the set: copies of them at common pressures, or with
+/// columns that follow coefficients.
+std::size_t samples_kept_by_a_fit(const FlightSamples& samples, const Reference& reference) {
   const ModelSamples& model = samples.model;
   const std::size_t columns =
       model.columns.size() + model.moving.size() + samples.reference.columns.size() + 12;
-  const std::size_t copies = reference.model() != nullptr ? 2 : 1;
-  return copies * (columns * samples.time.size() + model.along_beam.values.size()) * sizeof(double);
+  const std::size_t copies = (reference.model() != nullptr ? 1 : 0) + (model.moving.empty() ? 0 : 1);
+  return copies * (columns * samples.time.size() + model.along_beam.values.size());
 }
 
 struct FlightCounts {
@@ -53,8 +54,8 @@ std::uint64_t digest_of(const Eigen::VectorXd& parameters) {
   return digest_of(std::string_view(bytes, static_cast<std::size_t>(parameters.size()) * sizeof(double)));
 }
 
-FitFlights::FitFlights(std::vector<FlightSource> sources, const FitTask& task, FitSetup setup)
-    : sources_(std::move(sources)), task_(task), setup_(std::move(setup)), cache_(sources_.size()) {
+FitFlights::FitFlights(const FitTask& task, FitSetup setup)
+    : task_(task), setup_(std::move(setup)), cache_(task.flights.size()) {
   const auto counts = of_each([](std::size_t, FitFlight& fit) {
     const std::vector<double>& time = fit.bins().time();
     return FlightCounts{fit.kept().size(),
@@ -76,10 +77,12 @@ FitFlights::FitFlights(std::vector<FlightSource> sources, const FitTask& task, F
   for_noise_ = flights_for_noise(binned);
   if (!setup_.regimes.empty()) return;
   for (const FitTask& with : task_.further) {
-    further_.push_back(std::make_unique<FitFlights>(sources_, with, setup_));
+    further_.push_back(std::make_unique<FitFlights>(with, setup_));
     if (further_.back()->sees_parameters()) seeing_.push_back(further_.back().get());
   }
 }
+
+FitFlights::~FitFlights() { task_.flights.release(cached_bytes_); }
 
 /// Whether any derivative is not zero, and the bins are enough to find the noise.
 bool FitFlights::sees_parameters() {
@@ -111,24 +114,20 @@ bool FitFlights::has_moving_columns() const {
 
 std::shared_ptr<const FlightSamples> FitFlights::samples_of(std::size_t number) const {
   if (cache_[number]) return nullptr;
-  if (sources_[number].samples) return sources_[number].samples;
-  const Flight file(sources_[number].path, task_.options.time_stamp);
-  return std::make_shared<const FlightSamples>(
-      read_samples(file, task_.model, task_.reference, task_.options.mask));
+  return task_.flights.samples(number, task_.model, task_.reference, task_.options.mask);
 }
 
 std::shared_ptr<FitFlight> FitFlights::made(std::size_t number,
                                             std::shared_ptr<const FlightSamples> samples) {
   if (cache_[number]) return cache_[number];
-  const bool is_given = sources_[number].samples != nullptr && samples->model.moving.empty();
-  const std::size_t own_bytes = is_given ? 0 : bytes_of(*samples, task_.reference);
+  const std::size_t own_samples = samples_kept_by_a_fit(*samples, task_.reference);
   auto fit = std::make_shared<FitFlight>(std::move(samples), task_, setup_);
   fit->prepare(prepared_parameters_.size() > 0 ? prepared_parameters_ : setup_.values);
   if (noise_) fit->set_noise(*noise_, number);
   const std::size_t columns = 2 * (setup_.wanted.size() + 1) + fit->offsets();
-  const std::size_t bytes = own_bytes + (columns * fit->bins().size() + fit->kept().size()) * sizeof(double);
-  const std::lock_guard lock(counting_);
-  if (cached_bytes_ + bytes <= task_.options.memory) {
+  const std::size_t bytes =
+      (own_samples + columns * fit->bins().size() + fit->kept().size()) * sizeof(double);
+  if (task_.flights.reserve(bytes)) {
     cached_bytes_ += bytes;
     cache_[number] = fit;
   }
@@ -154,7 +153,7 @@ void FitFlights::visit_those(const std::function<bool(std::size_t)>& chosen,
     visit(number, *made(number, std::move(samples)));
   };
   for (std::size_t number = 0; number < count(); ++number) {
-    if (!task_.share.owns(number) || !chosen(number)) continue;
+    if (!task_.flights.share().owns(number) || !chosen(number)) continue;
     std::shared_ptr<const FlightSamples> samples;
     try {
       samples = samples_of(number);
@@ -234,7 +233,7 @@ void FitFlights::prepare(const Eigen::VectorXd& parameters) {
   prepared_parameters_ = parameters;
   for (FitFlights* const other : seeing_) other->prepare(parameters);
   const auto is_kept = [this](std::size_t number) { return cache_[number] != nullptr; };
-  task_.share.attempt([&] {
+  task_.flights.share().attempt([&] {
     visit_those(is_kept, [&](std::size_t number, FitFlight& fit) {
       fit.prepare(parameters);
       if (noise_) fit.set_noise(*noise_, number);
@@ -247,7 +246,7 @@ void FitFlights::measure_noise(const Eigen::VectorXd& parameters, bool drift) {
   if (!shares_noise_) noise_.reset();  // what is found anew need not be applied before
   prepare(parameters);
   if (shares_noise_) return;
-  const auto some = task_.share.on_each_flight<BinnedRows>(
+  const auto some = task_.flights.share().on_each_flight<BinnedRows>(
       [&](std::vector<BinnedRows>& parts) {
         visit_those(
             [this](std::size_t number) {
@@ -271,7 +270,7 @@ void FitFlights::measure_noise(const Eigen::VectorXd& parameters, bool drift) {
       drift ? find_noise(bins, columns, residuals, task_.threads()).model : estimate_noise(bins, residuals);
   found->shared.level.clear();
   found->levels.resize(count());
-  task_.share.attempt([&] {
+  task_.flights.share().attempt([&] {
     visit([&](std::size_t number, FitFlight& fit) {
       found->levels[number] = noise_levels(fit.bins(), fit.rows(parameters).rightCols(1), found->shared);
       if (cache_[number]) fit.set_noise(*found, number);
@@ -291,7 +290,7 @@ double FitFlights::deviation(const Eigen::VectorXd& parameters) {
   std::vector<double> own;
   for (FitFlights* const each : joint()) {
     std::vector<Eigen::VectorXd> innovations(count());
-    task_.share.attempt([&] {
+    task_.flights.share().attempt([&] {
       each->visit([&](std::size_t number, FitFlight& fit) {
         innovations[number] = fit.white_rows(parameters, {}).rightCols(1);
       });
@@ -299,7 +298,7 @@ double FitFlights::deviation(const Eigen::VectorXd& parameters) {
     for (const Eigen::VectorXd& flight : innovations)
       own.insert(own.end(), flight.data(), flight.data() + flight.size());
   }
-  return deviation_of_median * median_of_absolute_values(task_.share.team(), std::move(own));
+  return deviation_of_median * median_of_absolute_values(task_.flights.share().team(), std::move(own));
 }
 
 }  // namespace pcor::internal

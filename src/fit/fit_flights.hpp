@@ -2,12 +2,11 @@
 
 #include <Eigen/Dense>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -25,12 +24,6 @@ namespace pcor::internal {
 
 /// Passes over a flight take so many samples at a time, which fit into the processor's cache.
 inline constexpr std::size_t samples_per_chunk = 1024;
-
-/// Where a flight of a fit comes from: a file, or memory.
-struct FlightSource {
-  std::filesystem::path path{};
-  std::shared_ptr<const FlightSamples> samples{};
-};
 
 /// What a stage of a fit takes from the flights.
 struct FitSetup {
@@ -180,7 +173,8 @@ struct Reduction {
 /// threads or members.
 class FitFlights {
  public:
-  FitFlights(std::vector<FlightSource> sources, const FitTask& task, FitSetup setup);
+  FitFlights(const FitTask& task, FitSetup setup);
+  ~FitFlights();
   FitFlights(const FitFlights&) = delete;
   FitFlights& operator=(const FitFlights&) = delete;
 
@@ -201,13 +195,7 @@ class FitFlights {
   /// True where columns hang on a coefficient, and a first solution from far off is none yet.
   bool has_moving_columns() const;
 
-  std::size_t count() const { return sources_.size(); }
-
-  /// What a flight is called.
-  std::string name(std::size_t number) const {
-    const FlightSource& source = sources_[number];
-    return source.samples ? source.samples->name : source.path.string();
-  }
+  std::size_t count() const { return task_.flights.size(); }
 
   /// For each of the parameters whether the residual is linear in it.
   const std::vector<bool>& is_linear() const { return linear_; }
@@ -224,7 +212,7 @@ class FitFlights {
   template <class Make>
   auto of_each(const Make& make, const Eigen::VectorXd& parameters = {}) {
     using Part = std::decay_t<decltype(make(std::size_t{}, std::declval<FitFlight&>()))>;
-    return task_.share.on_each_flight<Part>(
+    return task_.flights.share().on_each_flight<Part>(
         [&](std::vector<Part>& parts) {
           visit([&](std::size_t number, FitFlight& fit) { parts[number] = make(number, fit); });
         },
@@ -270,12 +258,10 @@ class FitFlights {
   std::shared_ptr<const FlightSamples> samples_of(std::size_t number) const;
   std::shared_ptr<FitFlight> made(std::size_t number, std::shared_ptr<const FlightSamples> samples);
 
-  std::vector<FlightSource> sources_;
   const FitTask& task_;
   const FitSetup setup_;  // the flights in the cache point to it
   std::vector<std::shared_ptr<FitFlight>> cache_;
-  std::mutex counting_;
-  std::size_t cached_bytes_ = 0;
+  std::atomic<std::size_t> cached_bytes_{0};
   std::vector<bool> linear_;
   std::size_t samples_ = 0;
   std::size_t offsets_ = 0;

@@ -15,7 +15,7 @@ struct FitTask {
   const ModelFile& model;
   const Reference& reference;
   const RefitOptions& options;
-  const FlightShare& share;
+  const FlightSet& flights;
   std::vector<FitParameter> parameters;
   Eigen::VectorXd start;  ///< their values in the files
   Eigen::MatrixXd doubt;  ///< the covariance of these values as the files state it; zero where they do not
@@ -27,7 +27,7 @@ struct FitTask {
   bool shares_system = true;
 
   /// Flights at a time, in one process.
-  std::size_t threads() const { return Workers(*options.team, options.threads).threads; }
+  std::size_t threads() const { return Workers(flights.team(), options.threads).threads; }
 
   bool uses_prior() const { return options.use_prior || options.fit_reference; }
 };

@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include <pcor/flight/flight.hpp>
-#include <pcor/words/utc.hpp>
-
 namespace pcor::internal {
 namespace {
 
@@ -29,23 +26,6 @@ Provenance entry_of(const ModelFile& model) {
 }
 
 }  // namespace
-
-std::string flight_text(const std::filesystem::path& path) {
-  const Flight flight(path);
-  std::string text;
-  for (const std::string& part : {flight.project(), flight.flight_number()}) {
-    if (!part.empty()) text += part + " ";
-  }
-  return (text.empty() ? path.filename().string() + " " : text) + utc_text(flight.time().first, "%Y-%m-%d");
-}
-
-std::string flights_text(const std::string& first, std::size_t count) {
-  return count == 1 ? first : fmt::format("{} and {} more", first, count - 1);
-}
-
-std::string flights_text(const std::vector<std::filesystem::path>& flights) {
-  return flights.empty() ? "no flight" : flights_text(flight_text(flights.front()), flights.size());
-}
 
 std::string unfitted_name(const ModelFile& model) {
   const std::string& name = model.model.name;

@@ -1,21 +1,10 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
-#include <vector>
 
 #include <pcor/laws/model_file.hpp>
 
 namespace pcor::internal {
-
-/// What a flight is called: its project, number and date; the name of its file where it does not say.
-/// @throws Error if it cannot be read
-std::string flight_text(const std::filesystem::path& flight);
-
-/// Several flights in a few words: "GOTEX rf06 2004-02-18 and 2 more".
-/// @param first of them, as `flight_text` has it @param count how many they are
-std::string flights_text(const std::string& first, std::size_t count);
-std::string flights_text(const std::vector<std::filesystem::path>& flights);
 
 /// The name that a model had before it was fitted.
 std::string unfitted_name(const ModelFile& model);

@@ -7,7 +7,6 @@
 #include <numeric>
 #include <utility>
 
-#include <pcor/flight/same_aircraft.hpp>
 #include <pcor/words/error.hpp>
 #include "fit/before_and_after.hpp"
 #include "fit/fit_covariance.hpp"
@@ -18,7 +17,6 @@
 #include "fit/prior.hpp"
 #include "fit/solver.hpp"
 #include "fit/warnings.hpp"
-#include "flight/aircraft_of_flights.hpp"
 #include "numerics/missing.hpp"
 
 namespace pcor {
@@ -29,11 +27,13 @@ namespace {
 
 constexpr std::size_t passes_expected = 40;
 
-using Sources = std::vector<FlightSource>;
-
-void require_sense(const Sources& sources, const Reference& reference, const RefitOptions& options) {
-  if (sources.empty()) throw Error("no flight to fit; give at least one");
-  if (options.fit_reference && reference.model() == nullptr) {
+void require_sense(const FlightSet& flights, const References& references, const RefitOptions& options) {
+  if (flights.empty()) throw Error("no flight to fit; give at least one");
+  const bool is_in_memory = flights.path(0).empty();
+  if (is_in_memory && references.size() > 1)
+    throw Error(
+        "samples in memory hold what one reference reads; give one reference, or the paths of the flights");
+  if (options.fit_reference && first_of(references).model() == nullptr) {
     throw Error(
         "only a static system can be fitted together with the model, and it is the first of the references; "
         "give --reference static:OTHER.toml");
@@ -41,37 +41,9 @@ void require_sense(const Sources& sources, const Reference& reference, const Ref
   if (!(options.training_share > 0.0 && options.training_share <= 1.0)) {
     throw Error("the share of samples that is fitted has to be above 0 and at most 1");
   }
-}
-
-/// All flights are of one aircraft, those that are held out too, and none is given twice.
-void require_one_kind(const Sources& sources, const FlightShare& share, const RefitOptions& options) {
-  std::vector<std::filesystem::path> paths = options.holdout;
-  for (const FlightSource& source : sources) {
-    if (!source.samples) paths.push_back(source.path);
-  }
-  require_each_once(paths);
-  using OfAircraft = std::pair<std::string, std::string>;
-  std::vector<OfAircraft> aircraft = share.of_each_flight<OfAircraft>([&](std::size_t number) {
-    const auto& [path, samples] = sources[number];
-    return samples ? OfAircraft(samples->name, samples->aircraft)
-                   : OfAircraft(path.filename().string(), Flight(path, options.time_stamp).aircraft());
-  });
-  const FlightShare held_out = share_of_flights(*options.team, options.holdout);
-  for (OfAircraft& each : aircraft_of_flights(options.holdout, held_out, options.time_stamp))
-    aircraft.push_back(std::move(each));
-  require_one_aircraft(aircraft);
-}
-
-FlightShare share_of(const Sources& sources, Team& team) {
-  std::vector<std::filesystem::path> paths;
-  for (const FlightSource& source : sources) paths.push_back(source.path);
-  return share_of_flights(team, paths);
-}
-
-/// What the flights of a fit are called, from files or memory.
-std::string text_of(const Sources& sources) {
-  const auto& [path, samples] = sources.front();
-  return flights_text(samples ? samples->name : flight_text(path), sources.size());
+  const FlightSet all = flights.with(options.holdout);
+  all.require_each_once();
+  all.require_one_aircraft();
 }
 
 /// Whether two references are of one system, and have its law.
@@ -81,9 +53,9 @@ bool share_system(const Reference& a, const Reference& b) {
 }
 
 FitTask task_of(const ModelFile& model, const References& references, const RefitOptions& options,
-                const FlightShare& share) {
+                const FlightSet& flights) {
   const Reference& reference = first_of(references);
-  FitTask task{model, reference, options, share, fit_parameters(model, reference, options), {}, {}, {}};
+  FitTask task{model, reference, options, flights, fit_parameters(model, reference, options), {}, {}, {}};
   task.doubt = stated_covariance(model, reference);
   task.start.resize(as_index(task.parameters.size()));
   for (std::size_t p = 0; p < task.parameters.size(); ++p) task.start[as_index(p)] = task.parameters[p].start;
@@ -92,7 +64,7 @@ FitTask task_of(const ModelFile& model, const References& references, const Refi
     if (progress) progress(std::min(passes, passes_expected - 1), passes_expected);
   };
   for (std::size_t i = 1; i < references.size(); ++i) {
-    FitTask with{model, *references[i], options, share, task.parameters, task.start, task.doubt, [] {}};
+    FitTask with{model, *references[i], options, flights, task.parameters, task.start, task.doubt, [] {}};
     with.shares_system = share_system(reference, *references[i]);
     task.further.push_back(std::move(with));
   }
@@ -113,15 +85,14 @@ struct Fitted {
 
 /// Solves stage after stage, again and again, until no coefficient moves by a hundredth of what the flights
 /// leave open. The noise is that of all samples.
-void repeat_stages(Fitted& fitted, const Sources& sources, const FitTask& task,
-                   const std::vector<std::vector<std::size_t>>& stages) {
+void repeat_stages(Fitted& fitted, const FitTask& task, const std::vector<std::vector<std::size_t>>& stages) {
   constexpr int most_rounds = 50;
   Solution& solution = fitted.solution;
   for (std::size_t s = 0; s < stages.size(); ++s) {
     const bool last = s + 1 == stages.size();
     FitSetup setup{solution.values, stages[s]};
     if (!last) setup.regimes = task.options.stages[s].regimes;
-    fitted.own.push_back(std::make_unique<FitFlights>(sources, task, std::move(setup)));
+    fitted.own.push_back(std::make_unique<FitFlights>(task, std::move(setup)));
     fitted.equations.push_back({fitted.own.back().get(), stages[s], {}});
   }
   fitted.stands_still = false;
@@ -155,7 +126,7 @@ void repeat_stages(Fitted& fitted, const Sources& sources, const FitTask& task,
   }
 }
 
-Fitted fit_in_stages(const Sources& sources, const FitTask& task) {
+Fitted fit_in_stages(const FitTask& task) {
   const std::vector<std::vector<std::size_t>> stages =
       fit_stages(task.parameters, task.options.stages, task.model.model.name);
   Fitted fitted;
@@ -169,10 +140,10 @@ Fitted fit_in_stages(const Sources& sources, const FitTask& task) {
   }
   Solution& solution = fitted.solution;
   solution.values = task.start;
-  fitted.flights = std::make_unique<FitFlights>(sources, task, FitSetup{solution.values, fitted.parameters});
+  fitted.flights = std::make_unique<FitFlights>(task, FitSetup{solution.values, fitted.parameters});
   solution = solve(*fitted.flights, std::move(solution));
   if (stages.size() > 1) {
-    repeat_stages(fitted, sources, task, stages);
+    repeat_stages(fitted, task, stages);
     // What comes now, errors, what can be told apart, and what each effect does, is of all samples.
     fitted.flights->measure_noise(solution.values, task.options.drift);
     solution.deviation = fitted.flights->deviation(solution.values);
@@ -250,17 +221,11 @@ Reduction unweighted(FitFlights& flights, const Eigen::VectorXd& values) {
   return result;
 }
 
-RefitResult fit(const Sources& sources, const ModelFile& model, const References& references,
+RefitResult fit(const FlightSet& fitted_flights, const ModelFile& model, const References& references,
                 const RefitOptions& options) {
   const Reference& reference = first_of(references);
-  require_sense(sources, reference, options);
-  const FlightShare share = share_of(sources, *options.team);
-  require_one_kind(sources, share, options);
-  const std::string fitted_flights = text_of(sources);  // while nothing is lost where one cannot be read
-  RefitOptions shared = options;
-  shared.memory /= references.size() * (1 + options.stages.size());  // each keeps samples of its own
-  const FitTask task = task_of(model, references, shared, share);
-  const Fitted fitted = fit_in_stages(sources, task);
+  const FitTask task = task_of(model, references, options, fitted_flights);
+  const Fitted fitted = fit_in_stages(task);
   const Solution& solution = fitted.solution;
   FitFlights& flights = *fitted.flights;
 
@@ -297,25 +262,30 @@ RefitResult fit(const Sources& sources, const ModelFile& model, const References
   result.worse = why_worse(result, before.rms_of(before.bulk_squares));
   result.warnings = fit_warnings(flights, result, solution.values, sums.rms_of(squares.least()));
   result.notes = notes_of(result, task, fitted, covariance.matrix, compared);
-  result.model = fitted_model(model, 0, result, options.loss, fitted_flights);
+  result.model = fitted_model(model, 0, result, options.loss, fitted_flights.title());
   if (options.fit_reference) {
     const auto own = std::accumulate(
         model.model.effects.begin(), model.model.effects.end(), std::size_t{0},
         [](std::size_t sum, const ModelEffect& effect) { return sum + effect.parameters.size(); });
-    result.reference = fitted_model(*reference.model(), own, result, options.loss, fitted_flights);
+    result.reference = fitted_model(*reference.model(), own, result, options.loss, fitted_flights.title());
   }
   return result;
 }
 
-/// A fit that takes slow changes for drift, and where that leaves more than the coefficients of the file do,
-/// one that follows them: then they are what the model lacks.
-RefitResult fit_with_or_without_drift(const Sources& sources, const ModelFile& model,
-                                      const References& references, const RefitOptions& options) {
-  RefitResult result = fit(sources, model, references, options);
+}  // namespace
+
+/// Slow changes count as drift of the sensors; where that leaves more than the coefficients of the file do,
+/// the fit follows them: then they are what the model lacks.
+RefitResult refit(const FlightSet& flights, const ModelFile& model, const References& references,
+                  const RefitOptions& options) {
+  require_sense(flights, references, options);
+  RefitResult result = fit(flights, model, references, options);
+  flights.with(options.holdout).require_unchanged();
   if (result.worse.empty() || !options.drift || !(result.drift_rms > 0.0)) return result;
   RefitOptions following = options;
   following.drift = false;
-  RefitResult other = fit(sources, model, references, following);
+  RefitResult other = fit(flights, model, references, following);
+  flights.with(options.holdout).require_unchanged();
   if (!other.worse.empty()) return result;
   other.warnings.insert(
       other.warnings.begin(),
@@ -325,23 +295,6 @@ RefitResult fit_with_or_without_drift(const Sources& sources, const ModelFile& m
           "diagnose tells what",
           result.drift_rms));
   return other;
-}
-
-}  // namespace
-
-RefitResult refit(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
-                  const References& references, const RefitOptions& options) {
-  Sources sources;
-  for (const std::filesystem::path& path : flights) sources.push_back({path, nullptr});
-  return fit_with_or_without_drift(sources, model, references, options);
-}
-
-RefitResult refit(const std::vector<std::shared_ptr<const FlightSamples>>& flights, const ModelFile& model,
-                  const References& references, const RefitOptions& options) {
-  Sources sources;
-  for (const std::shared_ptr<const FlightSamples>& samples : flights) sources.push_back({{}, samples});
-  first_of(references);
-  return fit_with_or_without_drift(sources, model, {references.front()}, options);
 }
 
 }  // namespace pcor

@@ -14,21 +14,19 @@ void serialize(Archive& archive, FittedParameter& parameter) {
           parameter.jackknife_error, parameter.fitted, parameter.at_bound, parameter.stage);
 }
 
-std::vector<std::vector<FittedParameter>> refit_each_alone(const std::vector<std::filesystem::path>& flights,
-                                                           const ModelFile& model,
+std::vector<std::vector<FittedParameter>> refit_each_alone(const FlightSet& flights, const ModelFile& model,
                                                            const References& references,
                                                            const RefitOptions& options) {
-  const FlightShare share = share_of_flights(*options.team, flights);
+  const FlightShare& share = flights.share();
   RefitOptions own = options;
-  own.team = &alone();
-  own.threads = Workers(*options.team, options.threads).threads;
-  own.holdout.clear();
+  own.threads = Workers(flights.team(), options.threads).threads;
+  own.holdout = {};
   own.progress = nullptr;
   std::size_t done = 0;
   return share.of_each_flight<std::vector<FittedParameter>>([&](std::size_t number) {
     std::vector<FittedParameter> found;
     try {
-      found = refit(std::vector{flights[number]}, model, references, own).parameters;
+      found = refit(flights.only(number), model, references, own).parameters;
     } catch (const Error& error) {
       if (error.code() == Error::Code::file) throw;
     }

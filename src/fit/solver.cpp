@@ -35,7 +35,7 @@ void require_samples(const FitFlights& flights) {
     throw Error(fmt::format(
         "{}: no sample is left for the fit: {}; see the variables of the model and --min-airspeed, "
         "--max-flaps, --exclude",
-        flights.count() == 1 ? flights.name(0) : "the flights", mask_text(flights.masks())));
+        flights.count() == 1 ? flights.task().flights.name(0) : "the flights", mask_text(flights.masks())));
   }
   const std::size_t unknown = flights.unknowns();
   if (flights.samples() <= unknown) {

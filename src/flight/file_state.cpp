@@ -4,6 +4,8 @@
 
 #include <tuple>
 
+#include <pcor/words/error.hpp>
+
 namespace pcor::internal {
 namespace {
 
@@ -28,6 +30,13 @@ bool FileState::operator==(const FileState& other) const {
     return std::tie(state.device_, state.inode_, state.size_, state.modified_, state.changed_);
   };
   return all(*this) == all(other);
+}
+
+void FileState::require(const std::filesystem::path& path) const {
+  if (FileState(path) == *this) return;
+  throw Error(Error::Code::file, path.string() +
+                                     " was replaced or changed while it was read; give the command again "
+                                     "when it stays as it is");
 }
 
 }  // namespace pcor::internal

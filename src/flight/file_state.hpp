@@ -17,6 +17,9 @@ class FileState {
   bool operator==(const FileState& other) const;
   bool operator!=(const FileState& other) const { return !(*this == other); }
 
+  /// @throws Error unless the path still names this file, unchanged
+  void require(const std::filesystem::path& path) const;
+
  private:
   dev_t device_ = 0;
   ino_t inode_ = 0;

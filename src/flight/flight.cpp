@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <pcor/flight/flight.hpp>
-#include <pcor/flight/flights_stay_open.hpp>
 #include <pcor/words/error.hpp>
 #include <pcor/words/suggest.hpp>
 #include <pcor/words/utc.hpp>
@@ -369,14 +368,10 @@ struct Flight::Implementation {
 };
 
 Flight::Flight(const std::filesystem::path& path, TimeStamp time_stamp)
-    : implementation_(FlightsStayOpen::find(path, time_stamp)) {
-  if (implementation_) return;
-  *this = Flight(open_flight_file(path), time_stamp);
-  FlightsStayOpen::keep(*this);
-}
+    : Flight(open_flight_file(path), time_stamp) {}
 Flight::Flight(std::unique_ptr<FlightFile> file, TimeStamp time_stamp) {
   const FileInHand in_hand(file->path());
-  implementation_ = std::make_shared<Implementation>(std::move(file), time_stamp);
+  implementation_ = std::make_unique<Implementation>(std::move(file), time_stamp);
 }
 Flight::Flight(Flight&&) noexcept = default;
 Flight& Flight::operator=(Flight&&) noexcept = default;

@@ -224,12 +224,7 @@ void NetcdfFile::check(int status, const std::string& doing) const {
                                                    : "; check the space and the permissions there"));
 }
 
-void NetcdfFile::require_unchanged() const {
-  if (FileState(path_) != state_)
-    throw Error(Error::Code::file, path_.string() +
-                                       " was replaced or changed while it was read; give the command again "
-                                       "when it stays as it is");
-}
+void NetcdfFile::require_unchanged() const { state_.require(path_); }
 
 void NetcdfFile::close() { check(nc_close(std::exchange(id_, closed)), "cannot be closed"); }
 

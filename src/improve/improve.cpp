@@ -483,12 +483,8 @@ class Climb {
 };
 
 /// The variables that all the flights have.
-std::vector<std::string> common_variables(const std::vector<std::filesystem::path>& flights,
-                                          const RefitOptions& options) {
-  const auto of_each = share_of_flights(*options.team, flights)
-                           .of_each_flight<std::vector<std::string>>([&](std::size_t number) {
-                             return Flight(flights[number], options.time_stamp).variables();
-                           });
+std::vector<std::string> common_variables(const FlightSet& flights) {
+  const std::vector<std::vector<std::string>> of_each = flights.variables();
   std::vector<std::string> common;
   for (const std::vector<std::string>& variables : of_each) {
     if (&variables == &of_each.front()) common = variables;
@@ -534,13 +530,12 @@ std::string rivals_text(const ImproveStep& step) {
 
 Improvement ImproveLoop::run(const ModelFile& model) const { return Climb(*this, model).run(); }
 
-Improvement improve(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
-                    const References& references, const ImproveOptions& options) {
-  std::vector<std::filesystem::path> all = flights;
-  all.insert(all.end(), options.refit.holdout.begin(), options.refit.holdout.end());
-  const std::vector<std::string> variables = common_variables(all, options.refit);
+Improvement improve(const FlightSet& flights, const ModelFile& model, const References& references,
+                    const ImproveOptions& options) {
+  const FlightSet all = flights.with(options.refit.holdout);
+  const std::vector<std::string> variables = common_variables(all);
   std::vector<std::string> names;
-  for (const std::filesystem::path& flight : flights) names.push_back(flight.filename().string());
+  for (std::size_t i = 0; i < flights.size(); ++i) names.push_back(flights.name(i));
   const auto tell = [&options](const std::string& what) {
     if (options.progress) options.progress(what);
   };
@@ -554,8 +549,6 @@ Improvement improve(const std::vector<std::filesystem::path>& flights, const Mod
                         [](const auto& reference) { return reference->is_of_one_sample(); });
   DiagnoseOptions diagnose_with;
   diagnose_with.mask = options.refit.mask;
-  diagnose_with.time_stamp = options.refit.time_stamp;
-  diagnose_with.team = options.refit.team;
   diagnose_with.formulas = options.formulas;
   diagnose_with.training_share = options.refit.training_share;
   diagnose_with.progress = options.refit.progress;
@@ -596,9 +589,9 @@ Improvement improve(const std::vector<std::filesystem::path>& flights, const Mod
   loop.trace_variables = options.trace_variables;
   loop.most_steps = options.most_steps;
   loop.flights = fmt::format("{}", fmt::join(names, ", "));
-  const std::string improved_on = flights_text(flights);  // while nothing is lost where one cannot be read
   Improvement improvement = loop.run(model);
-  descend(improvement.model, model, "improved on", improved_on);
+  all.require_unchanged();
+  descend(improvement.model, model, "improved on", flights.title());
   return improvement;
 }
 

@@ -28,12 +28,10 @@ const Finding* finding_of(const Improvement& improvement, std::size_t rung) {
 
 }  // namespace
 
-WhatIf what_if(const std::vector<std::filesystem::path>& flights, const Improvement& improvement,
-               const References& references, const ImproveOptions& options) {
+WhatIf what_if(const FlightSet& flights, const Improvement& improvement, const References& references,
+               const ImproveOptions& options) {
   WhatIfOptions with;
   with.diagnose.mask = options.refit.mask;
-  with.diagnose.time_stamp = options.refit.time_stamp;
-  with.diagnose.team = options.refit.team;
   with.diagnose.series_of = improvement.steps.front().diagnosis.flights_with_records();
   with.diagnose.training_share = options.refit.training_share;
   with.diagnose.formulas = options.formulas;

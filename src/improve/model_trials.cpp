@@ -67,12 +67,10 @@ struct TrialReference {
   std::vector<std::vector<double>> coefficients;
 };
 
-TrialFlight tried_on(const std::filesystem::path& path, const ModelFile& whole, const TrialReference& trial,
-                     const RefitOptions& options, bool held_out) {
-  const Flight file(path, options.time_stamp);
+TrialFlight tried_on(const FlightSet& flights, std::size_t number, const ModelFile& whole,
+                     const TrialReference& trial, const RefitOptions& options, bool held_out) {
   TrialFlight flight;
-  flight.samples =
-      std::make_shared<const FlightSamples>(read_samples(file, whole, trial.reference, options.mask));
+  flight.samples = flights.samples(number, whole, trial.reference, options.mask);
   const Residuals residuals(flight.samples, whole, trial.reference, options.mask);
   flight.held_out = used_samples(residuals.mask());
   if (!held_out) {
@@ -133,15 +131,12 @@ References with_alike(const References& references, const TrialModel& model,
   return result;
 }
 
-std::vector<TrialFlight> try_models(const std::vector<std::filesystem::path>& flights,
-                                    const std::vector<TrialModel>& models, const References& references,
-                                    const RefitOptions& options) {
+std::vector<TrialFlight> try_models(const FlightSet& flights, const std::vector<TrialModel>& models,
+                                    const References& references, const RefitOptions& options) {
   std::vector<ModelFile> files;
   for (const TrialModel& model : models) files.push_back(model.file);
   const ModelFile whole = union_of(files);
   std::vector<TrialFlight> tried;
-  const FlightShare share = share_of_flights(*options.team, flights);
-  const FlightShare held_out_share = share_of_flights(*options.team, options.holdout);
   for (const std::shared_ptr<const Reference>& reference : references) {
     TrialReference trial{*reference, {}};
     for (const TrialModel& model : models) {
@@ -152,18 +147,16 @@ std::vector<TrialFlight> try_models(const std::vector<std::filesystem::path>& fl
       const std::vector<double> theirs = coefficients_in(without_what_is_alike(*other, model), *other);
       all.insert(all.end(), theirs.begin(), theirs.end());
     }
-    const auto add = [&](const std::vector<std::filesystem::path>& paths, const FlightShare& of,
-                         bool held_out) {
-      for (TrialFlight& flight : of.of_each_flight<TrialFlight>([&](std::size_t number) {
-             return tried_on(paths[number], whole, trial, options, held_out);
-           })) {
+    const auto add = [&](const FlightSet& some, bool held_out) {
+      for (TrialFlight& flight : some.share().of_each_flight<TrialFlight>(
+               [&](std::size_t number) { return tried_on(some, number, whole, trial, options, held_out); })) {
         flight.first_reference = reference == references.front();
         flight.window = reference->window();
         tried.push_back(std::move(flight));
       }
     };
-    add(flights, share, false);
-    add(options.holdout, held_out_share, true);
+    add(flights, false);
+    add(options.holdout, true);
   }
   return tried;
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -41,11 +40,9 @@ struct TrialFlight {
 
 /// Holds models against the same samples: those of the flights, and of the flights that are held out, that a
 /// model with the effects of all of them would use. Of an effect the models may only differ in coefficients.
-/// The team of the options shares the flights.
 /// @throws Error as `refit`.
-std::vector<TrialFlight> try_models(const std::vector<std::filesystem::path>& flights,
-                                    const std::vector<TrialModel>& models, const References& references,
-                                    const RefitOptions& options);
+std::vector<TrialFlight> try_models(const FlightSet& flights, const std::vector<TrialModel>& models,
+                                    const References& references, const RefitOptions& options);
 
 /// Whether a model has an effect of that name.
 bool has(const ModelFile& model, const std::string& effect);

@@ -31,8 +31,15 @@ FlightShare FlightShare::of_entries(const std::vector<std::size_t>& flight_of_ea
   return share;
 }
 
-FlightShare FlightShare::those_from(std::size_t first, std::size_t count) const {
-  std::vector<std::size_t> flights(std::min(count, this->flights() - first));
+FlightShare FlightShare::with(const FlightShare& more) const {
+  FlightShare share = *this;
+  share.owner_.insert(share.owner_.end(), more.owner_.begin(), more.owner_.end());
+  share.own_ += more.own_;
+  return share;
+}
+
+FlightShare FlightShare::part(std::size_t first, std::size_t count) const {
+  std::vector<std::size_t> flights(count);
   std::iota(flights.begin(), flights.end(), first);
   return of_entries(flights);
 }

@@ -47,6 +47,10 @@ class FlightShare {
   /// several references: an entry is of the owner of its flight.
   FlightShare of_entries(const std::vector<std::size_t>& flight_of_each) const;
 
+  /// These flights, then those of another share of the same team.
+  FlightShare with(const FlightShare& more) const;
+  FlightShare part(std::size_t first, std::size_t count) const;
+
   /// Work on own flights. Where it fails, all members do, at what they gather next.
   template <class Work>
   void attempt(const Work& work) const {
@@ -106,7 +110,7 @@ class FlightShare {
     const std::size_t members = team_->size();
     const std::size_t at_a_time = std::min(of_each * members, std::max(enough, members));
     for (std::size_t first = 0; first < flights(); first += at_a_time) {
-      const FlightShare some = those_from(first, at_a_time);
+      const FlightShare some = part(first, std::min(at_a_time, flights() - first));
       std::vector<Part> own;
       some.attempt([&] {
         for (std::size_t k = 0; k < some.flights(); ++k) {
@@ -119,8 +123,6 @@ class FlightShare {
   }
 
  private:
-  FlightShare those_from(std::size_t first, std::size_t count) const;
-
   template <class Make>
   static auto part_of(const Make& make, std::size_t flight) {
     try {

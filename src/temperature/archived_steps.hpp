@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "residuals/flight_air.hpp"
+#include "campaign/flight_air.hpp"
 
 namespace pcor::internal {
 

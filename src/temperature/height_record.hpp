@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "residuals/flight_air.hpp"
+#include "campaign/flight_air.hpp"
 
 namespace pcor::internal {
 

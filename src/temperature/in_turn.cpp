@@ -4,9 +4,9 @@
 
 #include <pcor/temperature/temperature.hpp>
 #include <pcor/words/error.hpp>
+#include "campaign/flight_air.hpp"
 #include "fit/lineage.hpp"
 #include "laws/calibration.hpp"
-#include "residuals/flight_air.hpp"
 #include "team/flight_share.hpp"
 
 namespace pcor {
@@ -20,16 +20,14 @@ constexpr double settled_defect = 1e-3;       // hPa
 constexpr double settled_temperature = 1e-3;  // K
 
 /// The rms difference of delta-p of two models over the flights, in the air, hPa.
-double defect_change(const std::vector<std::filesystem::path>& flights, const ModelFile& before,
-                     const ModelFile& after, const TemperatureOptions& options) {
-  const FlightShare share = share_of_flights(*options.team, flights);
+double defect_change(const FlightSet& flights, const ModelFile& before, const ModelFile& after,
+                     const TemperatureOptions& options) {
   using SquaresAndCount = std::pair<double, double>;
   double squares = 0.0;
   double count = 0.0;
-  for (const SquaresAndCount& part : share.of_each_flight<SquaresAndCount>([&](std::size_t number) {
-         const Flight flight(flights[number], options.time_stamp);
-         const FlightAir first = read_flight_air(flight, before, options.mask);
-         const FlightAir second = read_flight_air(flight, after, options.mask);
+  for (const SquaresAndCount& part : flights.share().of_each_flight<SquaresAndCount>([&](std::size_t number) {
+         const FlightAir first = read_flight_air(flights, number, before, options.mask);
+         const FlightAir second = read_flight_air(flights, number, after, options.mask);
          SquaresAndCount own{0.0, 0.0};
          for (std::size_t i = 0; i < first.size(); ++i) {
            const double change = second.static_defect[i] - first.static_defect[i];
@@ -47,7 +45,7 @@ double defect_change(const std::vector<std::filesystem::path>& flights, const Mo
 
 }  // namespace
 
-CalibrationInTurn calibrate_in_turn(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
+CalibrationInTurn calibrate_in_turn(const FlightSet& flights, const ModelFile& model,
                                     const References& references, const RefitOptions& refit_options,
                                     const TemperatureOptions& temperature_options) {
   if (temperature_options.archived) {
@@ -88,7 +86,7 @@ CalibrationInTurn calibrate_in_turn(const std::vector<std::filesystem::path>& fl
     current = result.temperature.model;
     result.rounds.push_back(std::move(round));
   }
-  descend(result.temperature.model, model, "fitted to", flights_text(flights));
+  descend(result.temperature.model, model, "fitted to", flights.title());
   result.temperature.degrees = std::move(degrees);
   if (result.rounds.size() > 1) {
     std::vector<std::string>& notes = result.temperature.notes;

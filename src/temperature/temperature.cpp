@@ -15,15 +15,14 @@
 #include <pcor/effects/static_attack.hpp>
 #include <pcor/effects/static_qp.hpp>
 #include <pcor/effects/temp_calibration.hpp>
-#include <pcor/flight/same_aircraft.hpp>
 #include <pcor/words/error.hpp>
+#include "campaign/flight_air.hpp"
 #include "laws/archived_model.hpp"
 #include "laws/calibration.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
-#include "residuals/flight_air.hpp"
 #include "roles/recorded_model.hpp"
 #include "team/flight_share.hpp"
 #include "temperature/archived_steps.hpp"
@@ -62,31 +61,31 @@ constexpr double told = 2.6;  // standard errors, which chance makes once in 100
 
 /// What a member of a team tells of a flight of its own.
 struct FlightPart {
-  std::string aircraft{};
   std::string left_out{};  ///< why; empty where it is not
   std::optional<HeightRecord> record{};
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(aircraft, left_out, record);
+    archive(left_out, record);
   }
 };
 
 class TemperatureCalibration {
  public:
-  TemperatureCalibration(const ModelFile& model, const TemperatureOptions& options)
-      : model_(model),
+  TemperatureCalibration(const FlightSet& flights, const ModelFile& model, const TemperatureOptions& options)
+      : flights_(flights),
+        model_(model),
         bare_(without_calibration(model)),
         options_(options),
-        workers_(*options.team, options.threads) {
+        workers_(flights.team(), options.threads) {
     prior_.slope = options.slope == IsobarSlope::none ? 0.0 : options.slope_size;
     has_radome_ = model.variables.count(Quantity::attack_differential_pressure) > 0;
     prior_.pressure = {0.0, 0.0, usual_size<effects::StaticQp>,
                        has_radome_ ? usual_size<effects::StaticAlpha> : usual_size<effects::StaticAttack>};
   }
 
-  TemperatureResult run(const std::vector<std::filesystem::path>& paths) {
-    read(paths);
+  TemperatureResult run() {
+    read();
     const std::size_t most = static_cast<std::size_t>(options_.degree.value_or(2)) + 1;
     likeliest_ = maximise_likelihood(records_, static_cast<Eigen::Index>(most), prior_, start(), workers_);
     std::vector<HeightEquations> equations;
@@ -105,16 +104,14 @@ class TemperatureCalibration {
   }
 
  private:
-  void read(const std::vector<std::filesystem::path>& paths) {
-    require_each_once(paths);
-    const FlightShare share = share_of_flights(*options_.team, paths);
+  void read() {
+    flights_.require_each_once();
+    flights_.require_one_aircraft();
     std::size_t done = 0;
-    auto parts = share.of_each_flight<FlightPart>([&](std::size_t number) {
-      const Flight flight(paths[number], options_.time_stamp);
+    auto parts = flights_.share().of_each_flight<FlightPart>([&](std::size_t number) {
       FlightPart part;
-      part.aircraft = flight.aircraft();
       try {
-        part.record = read_record(flight);
+        part.record = read_record(number);
         if (options_.skip_returning && part.record->returns) {
           part.record.reset();
           part.left_out = "it ends where it began (--skip-returning)";
@@ -122,16 +119,14 @@ class TemperatureCalibration {
       } catch (const Error& error) {
         part.left_out = error.what();
       }
-      if (options_.progress) options_.progress(++done, share.own());
+      if (options_.progress) options_.progress(++done, flights_.share().own());
       return part;
     });
     std::string first_trouble;
-    std::vector<std::pair<std::string, std::string>> aircraft;
-    for (std::size_t number = 0; number < paths.size(); ++number) {
+    for (std::size_t number = 0; number < flights_.size(); ++number) {
       FlightPart& part = parts[number];
-      aircraft.emplace_back(paths[number].string(), part.aircraft);
       FlightHeights& heights = result_.flights.emplace_back();
-      heights.flight = paths[number].filename().string();
+      heights.flight = flights_.name(number);
       heights.left_out = part.left_out;
       if (first_trouble.empty()) first_trouble = part.left_out;
       if (!part.record) continue;
@@ -142,14 +137,13 @@ class TemperatureCalibration {
       take_off_isobar_slope(*part.record, options_.slope);
       records_.push_back(std::move(*part.record));
     }
-    require_one_aircraft(aircraft);
     if (!records_.empty()) return;
-    if (paths.size() == 1) throw Error(first_trouble);
+    if (flights_.size() == 1) throw Error(first_trouble);
     throw Error(
-        fmt::format("none of the {} flights can be used; the first: {}", paths.size(), first_trouble));
+        fmt::format("none of the {} flights can be used; the first: {}", flights_.size(), first_trouble));
   }
 
-  HeightRecord read_record(const Flight& flight) const {
+  HeightRecord read_record(std::size_t number) const {
     HeightRecordOptions record_options;
     record_options.least_climb_rate = options_.least_climb_rate;
     record_options.has_radome = has_radome_;
@@ -157,6 +151,7 @@ class TemperatureCalibration {
     FlightAir air;
     std::vector<double> steps;
     if (options_.archived) {
+      const Flight& flight = flights_[number];
       std::optional<ModelFile> recorded = recorded_model(flight);
       if (!recorded || recorded->variables.count(Quantity::ambient_temperature) == 0) {
         throw Error(
@@ -168,10 +163,10 @@ class TemperatureCalibration {
         if (model_.variables.count(role) > 0) recorded->variables[role] = model_.variables.at(role);
         if (model_.units.count(role) > 0) recorded->units[role] = model_.units.at(role);
       }
-      air = read_flight_air(flight, *recorded, options_.mask);
+      air = read_flight_air(flights_, number, *recorded, options_.mask);
       steps = archived_steps(flight, model_, air);
     } else {
-      air = read_flight_air(flight, bare_, options_.mask);
+      air = read_flight_air(flights_, number, bare_, options_.mask);
     }
     return height_record(air, steps, record_options);
   }
@@ -630,6 +625,7 @@ class TemperatureCalibration {
     all.emplace_back("temperature", ProvenanceValue{std::move(temperature)});
   }
 
+  const FlightSet& flights_;
   const ModelFile& model_;
   ModelFile bare_;  // without a correction of the temperature
   const TemperatureOptions& options_;
@@ -658,13 +654,15 @@ std::optional<IsobarSlope> isobar_slope_named(std::string_view name) {
   return std::nullopt;
 }
 
-TemperatureResult fit_temperature(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
+TemperatureResult fit_temperature(const FlightSet& flights, const ModelFile& model,
                                   const TemperatureOptions& options) {
   if (flights.empty()) throw Error("nothing to fit the temperature to; give at least one flight");
   constexpr int most = static_cast<int>(calibration_terms) - 1;
   if (options.degree && (*options.degree < 0 || *options.degree > most))
     throw Error(fmt::format("a correction has no degree {}; give one from 0 to {}", *options.degree, most));
-  return TemperatureCalibration(model, options).run(flights);
+  TemperatureResult result = TemperatureCalibration(flights, model, options).run();
+  flights.require_unchanged();
+  return result;
 }
 
 }  // namespace pcor

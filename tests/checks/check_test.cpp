@@ -13,7 +13,7 @@
 
 #include <pcor/simulate/simulate.hpp>
 #include <pcor/words/error.hpp>
-#include "residuals/flight_air.hpp"
+#include "campaign/flight_air.hpp"
 #include "support/temporary_directory.hpp"
 
 using namespace pcor::internal;
@@ -105,7 +105,7 @@ Checks with_both(const std::vector<fs::path>& flights) {
 /// By how much the model's airspeed is above the truth in the air, m/s.
 double true_airspeed_error(const fs::path& path, const ModelFile& model) {
   const Flight flight(path);
-  const FlightAir air = read_flight_air(flight, model);
+  const FlightAir air = read_flight_air({path}, 0, model);
   std::vector<double> truth(flight.records());
   flight.read_at_rate(1, "TRUE_TAS", {0, flight.records()}, flight.conversion("TRUE_TAS", "m/s"),
                       truth.data());

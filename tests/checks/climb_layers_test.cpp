@@ -90,7 +90,7 @@ duration = 60
 )";
   const test::TemporaryDirectory directory;
   simulate_flight(parse_scenario(text, "layers.toml"), directory / "flight.nc");
-  return read_flight_air(Flight(directory / "flight.nc"),
+  return read_flight_air({directory / "flight.nc"}, 0,
                          read_model(data / "scenarios" / "models" / "c130-psfd-eq18.toml"));
 }
 
@@ -428,7 +428,7 @@ TEST(LayersOfARealFlight, HaveErrorsForTheGpsOfItsTime) {
                      {Quantity::dynamic_pressure, "QCXC"},
                      {Quantity::ambient_temperature, "ATX"},
                      {Quantity::vapor_pressure, "EDPC"}};
-  const FlightLayers found = find_layers(read_flight_air(Flight(path), model));
+  const FlightLayers found = find_layers(read_flight_air({path}, 0, model));
   // Two thick climbs and two descents; autonomous GPS of 2004 errs by 1 m and more.
   EXPECT_GE(found.layers.size(), 3U);
   EXPECT_GT(found.uncertainty.height_noise, 1.0);

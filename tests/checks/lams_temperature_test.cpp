@@ -51,7 +51,7 @@ duration = 900
   ModelFile model = read_model(data / "scenarios" / "models" / "c130-psfd-eq18.toml");
   if (!with_laser) model.variables.erase(Quantity::lams_airspeed);
   CheckedFlights flights(1);
-  flights[0].air = read_flight_air(Flight(directory / "flight.nc"), model);
+  flights[0].air = read_flight_air({directory / "flight.nc"}, 0, model);
   return flights;
 }
 

@@ -228,9 +228,7 @@ TEST(Compare, KeepsTheRecordsOfSomeFlightsAndTheNumbersOfAll) {
   pcor::test::run_as_team(
       3,
       [&](pcor::Team& team) {
-        CompareOptions own = options;
-        own.team = &team;
-        expect_the_same(pcor::compare(flights, contenders, own));
+        expect_the_same(pcor::compare({flights, {{}, &team}}, contenders, options));
       },
       true);
   testing::internal::GetCapturedStderr();

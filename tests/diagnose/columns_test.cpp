@@ -225,12 +225,8 @@ bool has_candidate(const CandidateSet& set, const std::string& effect) {
                      [&](const Candidate& candidate) { return candidate.effect.id == effect; });
 }
 
-pcor::internal::FlightFiles file_of_short_flight() {
-  return {pcor::alone(), {short_flight()}, pcor::TimeStamp::begin};
-}
-
 CandidateSet candidates_of_file(const ModelFile& model, const std::vector<ModelEffect>& formulas = {}) {
-  return pcor::internal::find_candidates(model, formulas, file_of_short_flight(), {pcor::lams_reference()});
+  return pcor::internal::find_candidates(model, formulas, {short_flight()}, {pcor::lams_reference()});
 }
 
 }  // namespace
@@ -434,7 +430,7 @@ TEST(Candidates, OfHumidityFollowTheGasConstants) {
 }
 
 TEST(Candidates, OnOtherSystemsAreOneForEachSystem) {
-  const pcor::internal::FlightFiles files = file_of_short_flight();
+  const pcor::FlightSet files{short_flight()};
   const auto number_of = [&files](const std::vector<std::string>& others, const std::string& id) {
     pcor::References references{pcor::lams_reference()};
     for (const std::string& other : others) references.push_back(pcor::read_reference(other, laser_model()));

@@ -194,9 +194,7 @@ Diagnosis expect_that_of_one(const Paths& paths, const References& references, D
   for (const std::size_t size : {1U, 2U, 3U, 6U}) {
     SCOPED_TRACE(size);
     run(size, [&](Team& team) {
-      DiagnoseOptions own = options;
-      own.team = &team;
-      expect_same(diagnose(paths, model(), references, own), alone);
+      expect_same(diagnose({paths, {{}, &team}}, model(), references, options), alone);
     });
   }
   return alone;
@@ -238,16 +236,17 @@ TEST(WhatIfOfATeam, IsThatOfOne) {
   WhatIfOptions options;
   options.diagnose.training_share = 0.8;
   options.own = diagnosis.own;
-  options.holdout = {paths.back()};
-  const Paths fitted(paths.begin(), paths.end() - 1);
-  const WhatIf alone = what_if(fitted, model(), {lams_reference()}, candidates, options);
+  const auto of_team = [&](Team& team, WhatIfOptions with) {
+    const FlightSet all(paths, {{}, &team});
+    with.holdout = all.part(paths.size() - 1, 1);
+    return what_if(all.part(0, paths.size() - 1), model(), {lams_reference()}, candidates, with);
+  };
+  const WhatIf alone = of_team(pcor::alone(), options);
   EXPECT_THAT(alone.panel.separations, Not(IsEmpty()));
   EXPECT_GT(alone.panel.held_out.samples, 0.0);
   for (const std::size_t size : {2U, 6U}) {
     run(size, [&](Team& team) {
-      WhatIfOptions own = options;
-      own.diagnose.team = &team;
-      const WhatIf found = what_if(fitted, model(), {lams_reference()}, candidates, own);
+      const WhatIf found = of_team(team, options);
       EXPECT_EQ(packed(found.panel.coefficients), packed(alone.panel.coefficients));
       EXPECT_EQ(packed(found.panel.weights), packed(alone.panel.weights));
       EXPECT_EQ(packed(found.panel.alike), packed(alone.panel.alike));
@@ -259,9 +258,7 @@ TEST(WhatIfOfATeam, IsThatOfOne) {
   }
   options.diagnose.series_of = {1};
   run(2, [&](Team& team) {
-    WhatIfOptions own = options;
-    own.diagnose.team = &team;
-    const WhatIf shown = what_if(fitted, model(), {lams_reference()}, candidates, own);
+    const WhatIf shown = of_team(team, options);
     ASSERT_EQ(shown.flights.size(), 2U);
     EXPECT_EQ(shown.flights[0].samples->name, alone.flights[1].samples->name);
     EXPECT_EQ(packed(shown.flights[0]), packed(alone.flights[1]));
@@ -317,10 +314,8 @@ TEST(DiagnosisOfATeam, FailsOnAllMembersAsOneAlone) {
   EXPECT_THAT(alone, HasSubstr("broken.nc"));
   for (const std::size_t size : {2U, 3U, 6U}) {
     run(size, [&](Team& team) {
-      DiagnoseOptions options;
-      options.team = &team;
       try {
-        diagnose(paths, model(), {lams_reference()}, options);
+        diagnose({paths, {{}, &team}}, model(), {lams_reference()});
         ADD_FAILURE() << "of " << team.rank();
       } catch (const Error& error) {
         EXPECT_EQ(error.what(), alone);

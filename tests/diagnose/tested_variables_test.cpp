@@ -9,7 +9,6 @@
 #include "support/temporary_directory.hpp"
 
 using pcor::internal::FlightColumns;
-using pcor::internal::FlightFiles;
 using pcor::internal::recorded_variables;
 using pcor::internal::TestedVariable;
 using pcor::test::NetcdfMaker;
@@ -35,7 +34,7 @@ class RecordedVariables : public testing::Test {
       const int variable = file.series("V", units, values, rate);
       if (!circle.empty()) file.numbers(variable, "modulus_range", NC_FLOAT, circle);
     }
-    const FlightFiles files(pcor::alone(), {path}, pcor::TimeStamp::begin);
+    const pcor::FlightSet files{path};
     const FlightColumns flight;
     // The same flight twice, as two references see it.
     std::vector<TestedVariable> all = recorded_variables(files, {flight, flight}, {"Time"});

@@ -22,8 +22,8 @@ namespace {
 /// A stage that fits two slopes to intervals of each of ten flights, with the noise of all samples.
 class IntervalOffsets : public testing::TestWithParam<Loss> {
  protected:
-  static std::vector<FlightSource> sources() {
-    std::vector<FlightSource> all;
+  static std::vector<std::shared_ptr<const FlightSamples>> flights() {
+    std::vector<std::shared_ptr<const FlightSamples>> all;
     for (unsigned seed = 1; seed <= 10; ++seed) {
       made::Plan plan;
       plan.seed = seed;
@@ -43,7 +43,7 @@ class IntervalOffsets : public testing::TestWithParam<Loss> {
       instant.begin = samples.time[2200];
       instant.end = samples.time[2201];
       samples.intervals.push_back(instant);
-      all.push_back({{}, std::make_shared<const FlightSamples>(samples)});
+      all.push_back(std::make_shared<const FlightSamples>(samples));
     }
     return all;
   }
@@ -53,10 +53,9 @@ class IntervalOffsets : public testing::TestWithParam<Loss> {
     options_.threads = 1;
     task_.start = Eigen::Vector3d(0.004, 0.02, 0.03);
     task_.doubt = Eigen::Matrix3d::Zero();
-    whole_ = std::make_unique<FitFlights>(sources(), task_, FitSetup{task_.start, {0, 1, 2}});
+    whole_ = std::make_unique<FitFlights>(task_, FitSetup{task_.start, {0, 1, 2}});
     whole_->measure_noise(task_.start, true);
-    stage_ = std::make_unique<FitFlights>(sources(), task_,
-                                          FitSetup{task_.start, {1, 2}, {Regime::pitch_manoeuvre}});
+    stage_ = std::make_unique<FitFlights>(task_, FitSetup{task_.start, {1, 2}, {Regime::pitch_manoeuvre}});
     stage_->share_noise(*whole_);
   }
 
@@ -70,11 +69,11 @@ class IntervalOffsets : public testing::TestWithParam<Loss> {
   RefitOptions options_;
   ModelFile model_ = made::model({"static-constant", "static-alpha", "static-qp"});
   References references_ = made::pressure_reference();
-  FlightShare share_{10};
+  FlightSet flights_{flights()};
   FitTask task_{model_,
                 *references_.front(),
                 options_,
-                share_,
+                flights_,
                 fit_parameters(model_, *references_.front(), options_),
                 {},
                 {},

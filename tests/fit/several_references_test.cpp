@@ -1,4 +1,5 @@
 #include <gmock/gmock.h>
+#include <pcor/campaign/chosen_references.hpp>
 #include <pcor/fit/refit.hpp>
 #include <pcor/roles/with_effects.hpp>
 #include <pcor/simulate/simulate.hpp>

@@ -21,23 +21,22 @@ constexpr std::size_t loud = 16;   // which is none of those
 /// The robust deviation of the innovations of each flight.
 std::vector<double> deviations(std::size_t memory) {
   RefitOptions options;
-  options.memory = memory;
   const ModelFile model = made::model({"static-constant", "static-alpha", "static-qp"});
   const References references = made::pressure_reference();
-  const FlightShare share(count);
-  FitTask task{
-      model, *references.front(), options, share, fit_parameters(model, *references.front(), options), {}, {},
-      [] {}};
-  task.start = Eigen::Vector3d(0.004127875, 0.021279816, 0.030849643);
-  std::vector<FlightSource> sources;
+  std::vector<std::shared_ptr<const FlightSamples>> samples;
   for (std::size_t f = 0; f < count; ++f) {
     made::Plan plan;
     plan.seed = static_cast<unsigned>(f);
     plan.noise = f == loud ? 3.0 : 0.3;
     plan.defect = made::equation_18;
-    sources.push_back({{}, made::shared(plan)});
+    samples.push_back(made::shared(plan));
   }
-  FitFlights flights(sources, task, FitSetup{task.start, {0, 1, 2}});
+  const FlightSet set(samples, {{}, &alone(), memory});
+  FitTask task{
+      model, *references.front(), options, set, fit_parameters(model, *references.front(), options), {}, {},
+      [] {}};
+  task.start = Eigen::Vector3d(0.004127875, 0.021279816, 0.030849643);
+  FitFlights flights(task, FitSetup{task.start, {0, 1, 2}});
   flights.measure_noise(task.start, true);
   return flights.of_each([&](std::size_t, FitFlight& fit) {
     const Eigen::VectorXd innovations = fit.white_rows(task.start, {}).rightCols(1);

@@ -62,11 +62,10 @@ std::string text_of(const RefitResult& result) {
 RefitResult fit_of(const std::vector<std::shared_ptr<const FlightSamples>>& of, Team& team,
                    std::size_t threads = 1) {
   RefitOptions options;
-  options.team = &team;
   options.threads = threads;
   options.training_share = 0.9;
-  return refit(of, made::model({"static-constant", "static-alpha", "static-qp"}), made::pressure_reference(),
-               options);
+  return refit({of, {{}, &team}}, made::model({"static-constant", "static-alpha", "static-qp"}),
+               made::pressure_reference(), options);
 }
 
 TEST(TeamFit, IsThatOfOneProcessForAnyNumberOfMembersAndThreads) {
@@ -135,11 +134,9 @@ TEST(TeamFit, SendsATriangleOfEachFlightInOneExchangeAPass) {
 TEST(TeamFit, FailsOnAllMembersAlike) {
   std::vector<std::string> messages(2);
   test::run_as_team(2, [&](Team& team) {
-    RefitOptions options;
-    options.team = &team;
+    const std::vector<std::filesystem::path> paths{"nowhere/a.nc", "nowhere/b.nc"};
     try {
-      refit(std::vector<std::filesystem::path>{"nowhere/a.nc", "nowhere/b.nc"},
-            made::model({"static-constant"}), made::pressure_reference(), options);
+      refit({paths, {{}, &team}}, made::model({"static-constant"}), made::pressure_reference());
     } catch (const Error& error) {
       messages[team.rank()] = error.what();
     }

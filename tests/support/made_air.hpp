@@ -9,7 +9,7 @@
 
 #include <pcor/physics/geodesy.hpp>
 #include <pcor/physics/moist_air.hpp>
-#include "residuals/flight_air.hpp"
+#include "campaign/flight_air.hpp"
 
 /// Flights in memory through an atmosphere that is known in closed form: an isothermal or linear profile of
 /// temperature over geopotential height, in hydrostatic balance.

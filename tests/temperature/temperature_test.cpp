@@ -20,8 +20,8 @@
 #include <pcor/process/process.hpp>
 #include <pcor/simulate/simulate.hpp>
 #include <pcor/words/error.hpp>
+#include "campaign/flight_air.hpp"
 #include "laws/calibration.hpp"
-#include "residuals/flight_air.hpp"
 #include "support/many_seeds.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -83,7 +83,7 @@ TemperatureOptions of_degree(int degree) {
 /// puts the fault into the recovery temperature, so that there is no closed form.
 std::array<double, 2> truth(const fs::path& path) {
   const Flight flight(path);
-  const FlightAir air = read_flight_air(flight, model());
+  const FlightAir air = read_flight_air({path}, 0, model());
   std::vector<double> true_temperature(flight.records());
   flight.read_at_rate(1, "TRUE_AT", {0, flight.records()}, flight.conversion("TRUE_AT", "K"),
                       true_temperature.data());
@@ -492,7 +492,7 @@ TEST_F(Temperature, InTurnSaysHowFarThePressureMoved) {
   start.model.effects[0].parameters[0] += 0.001;
   const CalibrationInTurn back =
       calibrate_in_turn(flights, start, {pcor::lams_reference()}, {}, of_degree(1));
-  const FlightAir air = read_flight_air(Flight(flights[0]), model());
+  const FlightAir air = read_flight_air({flights[0]}, 0, model());
   double squares = 0.0;
   double count = 0.0;
   for (std::size_t i = 0; i < air.size(); ++i) {

@@ -104,15 +104,14 @@ void run(const Options& options) {
   refuse_overwriting({options.output, options.common.json}, inputs);
   require_writable(options.output);
   JsonResult json(options.common);
-  const ModelFile model = options.flight.empty()
-                              ? read_model(options.model)
-                              : read_model_for(options.model, {options.flight}, options.common);
+  const FlightSet flights = options.flight.empty() ? FlightSet() : FlightSet{options.flight};
+  const ModelFile model = read_model_for(options.model, flights, options.common);
   if (model.variables.count(Quantity::static_pressure) == 0) {
     throw Error(
         fmt::format("{}: it leaves its variables to the flight; give one with --flight", options.model));
   }
   std::vector<std::string> variables;
-  if (!options.flight.empty()) variables = Flight(options.flight).variables();
+  if (!flights.empty()) variables = flights[0].variables();
   const ModelFile extended = with_effects(model, wanted_effects(options, variables), variables);
   OutputsTogether together;
   deliver(extended, options.output, inputs);

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include <pcor/flight/flights_stay_open.hpp>
 #include <pcor/laws/model_file.hpp>
 #include "comparison.hpp"
 #include "flight_table.hpp"
@@ -198,14 +197,13 @@ void print(const Checks& checks, const Options& options, bool has_laser) {
 /// A row for each check of each flight, which is checked alone.
 ///
 /// @param together the checks of all flights, which are those of the flight where there is one
-FlightTable flight_table(const Options& options, const std::optional<ModelFile>& model,
+FlightTable flight_table(const FlightSet& flights, const std::optional<ModelFile>& model,
                          const CheckOptions& how, const Checks& together) {
   FlightTable table({"flight", "check", "verdict", "value", "standard_error", "unit", "what"});
-  const std::vector<std::filesystem::path> flights = flight_paths(options.flights);
   std::vector<std::vector<CheckInShort>> alone{in_short(together)};
   if (flights.size() > 1) alone = check_each_alone(flights, model, how);
   for (std::size_t i = 0; i < flights.size(); ++i) {
-    const std::string name = flights[i].filename().string();
+    const std::string name = flights.name(i);
     for (const CheckInShort& result : alone[i]) {
       if (result.ran) {
         table.add({name, result.name, std::string(name_of(result.verdict)), cell(result.key.value),
@@ -227,7 +225,6 @@ std::vector<std::string> models_of(const Options& options) {
 }
 
 void run(const Options& options) {
-  const FlightsStayOpen flights_stay_open;
   std::vector<std::filesystem::path> inputs = input_files(options.flights);
   inputs.insert(inputs.end(), {options.model, second_model(options)});
   refuse_overwriting({options.common.json, options.common.report, options.common.figures, options.table},
@@ -235,22 +232,20 @@ void run(const Options& options) {
   for (const std::string& output : {options.common.report, options.table}) require_writable(output);
   require_figures(options.common);
   JsonResult json(options.common);
+  const FlightSet flights = CommandFlights(options.flights).flights;
   std::optional<ModelFile> model;
-  if (!options.model.empty())
-    model = read_model_for(options.model, flight_paths(options.flights), options.common);
+  if (!options.model.empty()) model = read_model_for(options.model, flights, options.common);
   CheckOptions check_options;
   check_options.mask = mask_options(options.flights);
-  check_options.time_stamp = time_stamp(options.flights);
-  check_options.team = &team();
   if (!options.reference.empty()) check_options.second = read_model(second_model(options));
   Checks checks;
   {
     Progress bar("checking", !options.common.quiet);
     check_options.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
-    checks = check(flight_paths(options.flights), model, check_options);
+    checks = check(flights, model, check_options);
   }
   std::optional<FlightTable> table;
-  if (!options.table.empty()) table = flight_table(options, model, check_options, checks);
+  if (!options.table.empty()) table = flight_table(flights, model, check_options, checks);
   if (!is_speaker()) return;
   OutputsTogether together;
   if (wants_report(options.common))

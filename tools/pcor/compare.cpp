@@ -9,7 +9,6 @@
 #include <string>
 
 #include <pcor/compare/comparison_report.hpp>
-#include <pcor/flight/flights_stay_open.hpp>
 #include <pcor/words/utc.hpp>
 #include "comparison.hpp"
 #include "flight_table.hpp"
@@ -238,7 +237,6 @@ std::string history_of(const Options& options) {
 }
 
 void run(const Options& options) {
-  const FlightsStayOpen flights_stay_open;
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.insert(inputs.end(), options.models.begin(), options.models.end());
   std::vector<std::filesystem::path> outputs{options.common.json, options.common.report, options.table};
@@ -252,20 +250,18 @@ void run(const Options& options) {
   for (const std::filesystem::path& output : outputs) require_writable(output);
   require_figures(options.common);
   JsonResult json(options.common);
+  const FlightSet flights = CommandFlights(options.comparison).flights;
   std::vector<Contender> contenders;
   ChosenReferences references;  // of all models, as the text tells them
   for (const std::string& path : options.models) {
-    const ModelFile model = read_model_for(path, flight_paths(options.comparison), options.common);
-    const ChosenReferences own =
-        read_references(options.comparison.references, model, flight_paths(options.comparison), team());
+    const ModelFile model = read_model_for(path, flights, options.common);
+    const ChosenReferences own = read_references(options.comparison.references, model, flights);
     add_references(references, own);
     contenders.push_back({model.model.name, model, own.used});
   }
   name_by_file(contenders, options.models);
   CompareOptions compare_options;
   compare_options.mask = mask_options(options.comparison);
-  compare_options.time_stamp = time_stamp(options.comparison);
-  compare_options.team = &team();
   if (!options.residuals.empty())
     compare_options.most_series = options.comparison.flights.size();
   else if (!wants_report(options.common))
@@ -274,14 +270,13 @@ void run(const Options& options) {
   {
     Progress bar("comparing", !options.common.quiet);
     compare_options.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
-    comparison = compare(flight_paths(options.comparison), contenders, compare_options);
+    comparison = compare(flights, contenders, compare_options);
   }
   if (!is_speaker()) return;
   OutputsTogether together;
   if (!options.residuals.empty()) {
     for (std::size_t i = 0; i < comparison.flights.size(); ++i) {
-      write_residuals(comparison, i, options.comparison.flights[i], residual_file(options, i),
-                      history_of(options));
+      write_residuals(comparison, i, flights[i], residual_file(options, i), history_of(options));
     }
   }
   if (wants_report(options.common))

@@ -106,8 +106,14 @@ MaskOptions mask_options(const ComparisonOptions& options) {
   return mask;
 }
 
-TimeStamp time_stamp(const ComparisonOptions& options) {
-  return options.time_stamp == "middle" ? TimeStamp::middle : TimeStamp::begin;
+CommandFlights::CommandFlights(const ComparisonOptions& options, const std::vector<std::string>& held_out,
+                               std::size_t memory) {
+  std::vector<std::filesystem::path> paths = flight_paths(options);
+  paths.insert(paths.end(), held_out.begin(), held_out.end());
+  const TimeStamp time_stamp = options.time_stamp == "middle" ? TimeStamp::middle : TimeStamp::begin;
+  const FlightSet all(paths, {time_stamp, &team(), memory});
+  flights = all.part(0, options.flights.size());
+  holdout = all.part(options.flights.size(), held_out.size());
 }
 
 std::vector<std::filesystem::path> flight_paths(const ComparisonOptions& options) {
@@ -157,10 +163,8 @@ std::string advised_command_line(const ComparisonOptions& options) {
 }
 
 ChosenReferences references_to_fit(const ComparisonOptions& options, const ModelFile& model,
-                                   const std::vector<std::string>& holdout) {
-  std::vector<std::filesystem::path> flights = flight_paths(options);
-  flights.insert(flights.end(), holdout.begin(), holdout.end());
-  ChosenReferences chosen = read_references(options.references, model, flights, team());
+                                   const FlightSet& flights) {
+  ChosenReferences chosen = read_references(options.references, model, flights);
   if (!options.references.empty()) return chosen;
   const auto held_together = std::stable_partition(chosen.used.begin(), chosen.used.end(),
                                                    [](const auto& each) { return each->is_of_one_sample(); });

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <pcor/campaign/chosen_references.hpp>
 #include <pcor/compare/compare.hpp>
 #include "command.hpp"
 
@@ -36,7 +37,19 @@ Regime regime_of(const std::string& name, const std::string& option);
 
 /// @throws Error if a regime has no such name or the file of intervals cannot be read.
 MaskOptions mask_options(const ComparisonOptions& options);
-TimeStamp time_stamp(const ComparisonOptions& options);
+
+/// The flights of a command, opened once for all that it does: those that are fitted or compared, and those
+/// that are held out.
+struct CommandFlights {
+  FlightSet flights{};
+  FlightSet holdout{};
+
+  /// @param memory as `FlightSetOptions::memory`
+  CommandFlights(const ComparisonOptions& options, const std::vector<std::string>& held_out = {},
+                 std::size_t memory = FlightSetOptions{}.memory);
+
+  FlightSet all() const { return flights.with(holdout); }
+};
 
 /// The files that the options read, for `refuse_overwriting`.
 std::vector<std::filesystem::path> input_files(const ComparisonOptions& options);
@@ -53,9 +66,9 @@ std::vector<std::filesystem::path> flight_paths(const ComparisonOptions& options
 /// second pair. What the others leave to their noise, winds that change and slopes of surfaces of one
 /// pressure, is not known well enough to be taken unasked: heights that are off by a thousandth, and air that
 /// is not at rest, look to a diagnosis like some tenths of a kelvin at the thermometer.
-/// @param holdout flights that are held out, which must allow the references too
+/// @param flights those that are held out, too, must allow the references
 ChosenReferences references_to_fit(const ComparisonOptions& options, const ModelFile& model,
-                                   const std::vector<std::string>& holdout = {});
+                                   const FlightSet& flights);
 
 /// Prints which references a model is held against and which not, where there are several to tell of.
 void print_references(const ChosenReferences& references);

@@ -9,7 +9,6 @@
 #include <string>
 
 #include <pcor/diagnose/diagnosis_report.hpp>
-#include <pcor/flight/flights_stay_open.hpp>
 #include <pcor/words/utc.hpp>
 #include "comparison.hpp"
 #include "diagnosis.hpp"
@@ -183,7 +182,6 @@ void print(const Diagnosis& diagnosis, const ChosenReferences& references, const
 }
 
 void run(const Options& options) {
-  const FlightsStayOpen flights_stay_open;
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.emplace_back(options.model);
   inputs.emplace_back(options.candidates.file);
@@ -191,14 +189,13 @@ void run(const Options& options) {
   require_writable(options.common.report);
   require_figures(options.common);
   JsonResult json(options.common);
-  const ModelFile model = read_model_for(options.model, flight_paths(options.comparison), options.common);
-  const ChosenReferences references = references_to_fit(options.comparison, model);
+  const FlightSet flights = CommandFlights(options.comparison).flights;
+  const ModelFile model = read_model_for(options.model, flights, options.common);
+  const ChosenReferences references = references_to_fit(options.comparison, model, flights);
   DiagnoseOptions diagnose_with;
   diagnose_with.mask = mask_options(options.comparison);
-  diagnose_with.time_stamp = time_stamp(options.comparison);
-  diagnose_with.team = &team();
   if (!wants_report(options.common)) diagnose_with.series_of.emplace();
-  diagnose_with.formulas = candidate_formulas(options.candidates, model, options.comparison.flights);
+  diagnose_with.formulas = candidate_formulas(options.candidates, model, flights);
   diagnose_with.whole_file = !options.no_file_variables;
   diagnose_with.not_variables = options.not_variables;
   diagnose_with.training_share = options.training_share;
@@ -207,11 +204,10 @@ void run(const Options& options) {
   {
     Progress bar("diagnosing", !options.common.quiet);
     diagnose_with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
-    diagnosis = diagnose(flight_paths(options.comparison), model, references.used, diagnose_with);
+    diagnosis = diagnose(flights, model, references.used, diagnose_with);
     if (!options.common.report.empty()) {
       diagnose_with.series_of = diagnosis.flights_with_records();
-      tried = what_if(flight_paths(options.comparison), model, references.used,
-                      what_if_candidates(diagnosis, diagnose_with.formulas),
+      tried = what_if(flights, model, references.used, what_if_candidates(diagnosis, diagnose_with.formulas),
                       {diagnose_with, {}, true, diagnosis.own});
       std::string fit = command_line(options.comparison);
       if (options.training_share < 1.0) fit += fmt::format(" --training-share {}", options.training_share);

@@ -179,7 +179,7 @@ void require_known_variables(const ModelEffect& effect, const std::string& optio
 }
 
 std::vector<ModelEffect> candidate_formulas(const CandidateOptions& options, const ModelFile& model,
-                                            const std::vector<std::string>& flights) {
+                                            const FlightSet& flights) {
   std::vector<ModelEffect> candidates;
   const auto is_new = [&](const std::string& id) {
     const auto same = [&id](const ModelEffect& effect) { return effect.id == id; };
@@ -193,13 +193,11 @@ std::vector<ModelEffect> candidate_formulas(const CandidateOptions& options, con
   }
   if (options.formulas.empty()) return candidates;
   std::vector<std::string> variables;
-  for (const std::string& path : flights) {
-    const Flight flight(path);
-    variables.insert(variables.end(), flight.variables().begin(), flight.variables().end());
-  }
+  for (const std::vector<std::string>& of_one : flights.variables())
+    variables.insert(variables.end(), of_one.begin(), of_one.end());
   std::sort(variables.begin(), variables.end());
   variables.erase(std::unique(variables.begin(), variables.end()), variables.end());
-  const std::string place = flights.size() == 1 ? flights.front() : "any of the flights";
+  const std::string place = flights.size() == 1 ? flights.path(0).string() : "any of the flights";
   std::size_t number = 0;
   for (const std::string& formula : options.formulas) {
     do ++number;

@@ -1,4 +1,3 @@
-#include <pcor/flight/flights_stay_open.hpp>
 #include <pcor/improve/improve.hpp>
 
 #include <fmt/format.h>
@@ -123,21 +122,18 @@ void print(const Improvement& improvement, const ChosenReferences& references, c
       shell_word(options.comparison.flights.front()), shell_word(options.output));
 }
 
-ImproveOptions improve_options(const Options& options, const ModelFile& model) {
+ImproveOptions improve_options(const Options& options, const ModelFile& model, const CommandFlights& of) {
   ImproveOptions improve_with;
   improve_with.refit.mask = mask_options(options.comparison);
-  improve_with.refit.time_stamp = time_stamp(options.comparison);
-  improve_with.refit.team = &team();
   improve_with.refit.loss = *loss_named(options.loss);
   improve_with.refit.training_share = options.training_share;
-  improve_with.refit.holdout.assign(options.holdout.begin(), options.holdout.end());
-  improve_with.formulas = candidate_formulas(options.candidates, model, options.comparison.flights);
+  improve_with.refit.holdout = of.holdout;
+  improve_with.formulas = candidate_formulas(options.candidates, model, of.flights);
   improve_with.trace_variables = options.trace_variables;
   return improve_with;
 }
 
 void run(const Options& options) {
-  const FlightsStayOpen flights_stay_open;
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.emplace_back(options.model);
   inputs.emplace_back(options.candidates.file);
@@ -147,18 +143,19 @@ void run(const Options& options) {
   for (const std::string& output : {options.output, options.common.report}) require_writable(output);
   require_figures(options.common);
   JsonResult json(options.common);
-  const ModelFile model = read_model_for(options.model, flight_paths(options.comparison), options.common);
-  const ChosenReferences references = references_to_fit(options.comparison, model, options.holdout);
-  ImproveOptions improve_with = improve_options(options, model);
+  const CommandFlights of(options.comparison, options.holdout);
+  const ModelFile model = read_model_for(options.model, of.flights, options.common);
+  const ChosenReferences references = references_to_fit(options.comparison, model, of.all());
+  ImproveOptions improve_with = improve_options(options, model, of);
   Improvement improvement;
   WhatIf tried;
   {
     std::optional<Progress> bar;
     improve_with.progress = [&](const std::string& what) { bar.emplace(what, !options.common.quiet); };
     improve_with.refit.progress = [&bar](std::size_t done, std::size_t total) { bar->show(done, total); };
-    improvement = improve(flight_paths(options.comparison), model, references.used, improve_with);
+    improvement = improve(of.flights, model, references.used, improve_with);
     if (!options.common.report.empty()) {
-      tried = what_if(flight_paths(options.comparison), improvement, references.used, improve_with);
+      tried = what_if(of.flights, improvement, references.used, improve_with);
       std::string fit = command_line(options.comparison);
       for (const std::string& flight : options.holdout) fit += " --holdout " + shell_word(flight);
       if (options.training_share < 1.0) fit += fmt::format(" --training-share {}", options.training_share);

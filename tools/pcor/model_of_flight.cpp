@@ -4,23 +4,22 @@
 
 #include <utility>
 
+#include <pcor/campaign/model_for_flights.hpp>
 #include <pcor/roles/laws_of_flight.hpp>
-#include <pcor/roles/model_for_flights.hpp>
 #include <pcor/roles/with_roles.hpp>
 #include <pcor/words/error.hpp>
 
 #include "choices.hpp"
-#include "team.hpp"
 
 namespace pcor::tool {
 
-ModelFile read_model_for(const std::filesystem::path& model,
-                         const std::vector<std::filesystem::path>& flights, const CommonOptions& options) {
+ModelFile read_model_for(const std::filesystem::path& model, const FlightSet& flights,
+                         const CommonOptions& options) {
   const ModelFile file = read_model(model);
   if (flights.empty() || (file.roles_from.empty() && file.variables.count(Quantity::static_pressure) != 0))
     return file;
   std::vector<std::string> notes;
-  ModelFile whole = model_for_flights(file, flights, notes, team());
+  ModelFile whole = model_for_flights(file, flights, notes);
   tell_choices(notes, options.quiet);
   return whole;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <pcor/campaign/flight_set.hpp>
 #include <pcor/laws/model_file.hpp>
 #include "command.hpp"
 
@@ -13,8 +14,8 @@ namespace pcor::tool {
 /// (`with_roles`); what was chosen goes to standard error where text is wanted, and is kept for
 /// `choices_of_this_run`.
 /// @throws Error as `read_model` and `with_roles`
-ModelFile read_model_for(const std::filesystem::path& model,
-                         const std::vector<std::filesystem::path>& flights, const CommonOptions& options);
+ModelFile read_model_for(const std::filesystem::path& model, const FlightSet& flights,
+                         const CommonOptions& options);
 
 /// The model of a folder that a flight is to be corrected by (`law_of_flight`), with what it leaves to the
 /// flight's aircraft. Which it is, is among the choices of this run.

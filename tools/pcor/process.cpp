@@ -301,8 +301,8 @@ ModelOfFlight models_of(const Options& options) {
       return model_for_flight(models, flight, options.common);
     };
   }
-  return [model = read_model_for(options.model, {options.inputs.begin(), options.inputs.end()},
-                                 options.common)](const fs::path&) { return model; };
+  const FlightSet flights(std::vector<fs::path>(options.inputs.begin(), options.inputs.end()));
+  return [model = read_model_for(options.model, flights, options.common)](const fs::path&) { return model; };
 }
 
 void run(const Options& options) {

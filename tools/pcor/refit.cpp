@@ -12,7 +12,6 @@
 #include <string>
 
 #include <pcor/fit/refit_report.hpp>
-#include <pcor/flight/flights_stay_open.hpp>
 #include <pcor/words/error.hpp>
 #include "comparison.hpp"
 #include "flight_table.hpp"
@@ -75,10 +74,9 @@ FitStage parse_stage(const std::string& text) {
   return stage;
 }
 
-RefitOptions refit_options(const Options& options) {
+RefitOptions refit_options(const Options& options, const FlightSet& holdout) {
   RefitOptions refit;
   refit.mask = mask_options(options.comparison);
-  refit.time_stamp = time_stamp(options.comparison);
   refit.loss = *loss_named(options.loss);
   refit.fix = options.fix;
   refit.free = options.free;
@@ -88,9 +86,7 @@ RefitOptions refit_options(const Options& options) {
   refit.search = options.search;
   refit.drift = !options.no_drift;
   refit.training_share = options.training_share;
-  refit.holdout.assign(options.holdout.begin(), options.holdout.end());
-  refit.team = &team();
-  refit.memory = static_cast<std::size_t>(options.memory_mib * 1048576.0);
+  refit.holdout = holdout;
   return refit;
 }
 
@@ -249,13 +245,10 @@ void print_next_step(const Options& options) {
 
 /// The flights with the model before and after the fit, for the report.
 Comparison before_against_after(const RefitResult& result, const ModelFile& model,
-                                const References& references, const Options& options) {
+                                const References& references, const FlightSet& flights,
+                                const Options& options) {
   CompareOptions compare_options;
-  compare_options.team = &team();
   compare_options.mask = mask_options(options.comparison);
-  compare_options.time_stamp = time_stamp(options.comparison);
-  std::vector<std::filesystem::path> flights = flight_paths(options.comparison);
-  flights.insert(flights.end(), options.holdout.begin(), options.holdout.end());
   References fitted = references;
   for (std::shared_ptr<const Reference>& reference : fitted) {
     const ModelFile* const system = reference->model();
@@ -273,7 +266,7 @@ Comparison before_against_after(const RefitResult& result, const ModelFile& mode
 
 /// A row for each flight, with the coefficients that it finds alone.
 FlightTable flight_table(const RefitResult& all, const ModelFile& model, const References& references,
-                         RefitOptions with, const Options& options) {
+                         const FlightSet& flights, RefitOptions with, const Options& options) {
   std::vector<std::string> columns{"flight",         "held_out",       "reference",
                                    "samples",        "rms_before_hpa", "bias_after_hpa",
                                    "bias_error_hpa", "rms_after_hpa",  "noise_rms_hpa"};
@@ -286,10 +279,9 @@ FlightTable flight_table(const RefitResult& all, const ModelFile& model, const R
   }
   Progress bar("fitting each flight alone", !options.common.quiet);
   with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
-  const std::vector<std::filesystem::path> flights = flight_paths(options.comparison);
   const auto found = refit_each_alone(flights, model, references, with);
   std::map<std::string, std::vector<FittedParameter>> alone;
-  for (std::size_t i = 0; i < flights.size(); ++i) alone.emplace(flights[i].filename().string(), found[i]);
+  for (std::size_t i = 0; i < flights.size(); ++i) alone.emplace(flights.name(i), found[i]);
   FlightTable table(columns);
   for (const FlightFit& flight : all.flights) {
     std::vector<std::string> row{flight.flight,
@@ -330,7 +322,6 @@ void deliver_models(RefitResult& result, const std::vector<std::filesystem::path
 }
 
 void run(const Options& options) {
-  const FlightsStayOpen flights_stay_open;
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.emplace_back(options.model);
   inputs.insert(inputs.end(), options.holdout.begin(), options.holdout.end());
@@ -342,21 +333,26 @@ void run(const Options& options) {
     require_writable(output);
   require_figures(options.common);
   JsonResult json(options.common);
-  const ModelFile model = read_model_for(options.model, flight_paths(options.comparison), options.common);
-  const ChosenReferences references = references_to_fit(options.comparison, model, options.holdout);
-  RefitOptions refit_with = refit_options(options);
+  const CommandFlights of(options.comparison, options.holdout,
+                          static_cast<std::size_t>(options.memory_mib * 1048576.0));
+  const FlightSet all = of.all();
+  const ModelFile model = read_model_for(options.model, of.flights, options.common);
+  const ChosenReferences references = references_to_fit(options.comparison, model, all);
+  RefitOptions refit_with = refit_options(options, of.holdout);
   RefitResult result;
   {
     Progress bar("fitting", !options.common.quiet);
     refit_with.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
-    result = refit(flight_paths(options.comparison), model, references.used, refit_with);
+    result = refit(of.flights, model, references.used, refit_with);
   }
   const bool is_refused = !result.worse.empty() && !options.force;
   std::optional<Comparison> comparison;
   if (wants_report(options.common))
-    comparison = before_against_after(result, model, references.used, options);
+    comparison = before_against_after(result, model, references.used, all, options);
   std::optional<FlightTable> table;
-  if (!options.table.empty()) table = flight_table(result, model, references.used, refit_with, options);
+  if (!options.table.empty())
+    table = flight_table(result, model, references.used, of.flights, refit_with, options);
+  all.require_unchanged();
   if (!is_speaker()) return;
   OutputsTogether together;
   if (comparison) {

@@ -1,4 +1,3 @@
-#include <pcor/flight/flights_stay_open.hpp>
 #include <pcor/temperature/temperature.hpp>
 
 #include <fmt/format.h>
@@ -39,8 +38,6 @@ struct Options {
 TemperatureOptions temperature_options(const Options& options) {
   TemperatureOptions result;
   result.mask = mask_options(options.comparison);
-  result.time_stamp = time_stamp(options.comparison);
-  result.team = &team();
   if (options.degree != "auto") result.degree = std::stoi(options.degree);
   result.slope = *isobar_slope_named(options.slope);
   result.slope_size = options.slope_size * 1e-5;
@@ -228,7 +225,6 @@ const std::string& first_used(const TemperatureResult& result, const Options& op
 }
 
 void run(const Options& options) {
-  const FlightsStayOpen flights_stay_open;
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.emplace_back(options.model);
   refuse_overwriting({options.output, options.common.json, options.common.report, options.common.figures},
@@ -240,7 +236,8 @@ void run(const Options& options) {
     throw Error("--reference is what --iterate fits the pressures to; give both or none");
   require_figures(options.common);
   JsonResult json(options.common);
-  const ModelFile model = read_model_for(options.model, flight_paths(options.comparison), options.common);
+  const FlightSet flights = CommandFlights(options.comparison).flights;
+  const ModelFile model = read_model_for(options.model, flights, options.common);
   TemperatureOptions with = temperature_options(options);
   TemperatureResult result;
   CalibrationInTurn in_turn;
@@ -250,14 +247,12 @@ void run(const Options& options) {
     if (options.iterate) {
       RefitOptions refit_with;
       refit_with.mask = with.mask;
-      refit_with.time_stamp = with.time_stamp;
-      refit_with.team = with.team;
       refit_with.progress = with.progress;
-      const References references = references_to_fit(options.comparison, model).used;
-      in_turn = calibrate_in_turn(flight_paths(options.comparison), model, references, refit_with, with);
+      const References references = references_to_fit(options.comparison, model, flights).used;
+      in_turn = calibrate_in_turn(flights, model, references, refit_with, with);
       result = in_turn.temperature;
     } else {
-      result = fit_temperature(flight_paths(options.comparison), model, with);
+      result = fit_temperature(flights, model, with);
     }
   }
   if (!is_speaker()) return;

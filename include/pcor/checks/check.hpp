@@ -1,12 +1,11 @@
 #pragma once
 
+#include <pcor/campaign/flight_set.hpp>
 #include <pcor/laws/model_file.hpp>
 #include <pcor/report/report.hpp>
 #include <pcor/residuals/residuals.hpp>
-#include <pcor/team/team.hpp>
 
 #include <cstddef>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -58,11 +57,9 @@ struct CheckResult {
 
 struct CheckOptions {
   MaskOptions mask;
-  TimeStamp time_stamp = TimeStamp::begin;
   /// The model of a second static system of the aircraft, for the checks of redundant systems. Without it the
   /// second pair of pressures is looked for by its usual names, and is as measured.
   std::optional<ModelFile> second{};
-  Team* team = &alone();  ///< which shares the flights; all of its members get the result
   std::function<void(std::size_t done, std::size_t total)>
       progress{};  ///< told after every flight of this member
 };
@@ -88,7 +85,7 @@ struct Checks {
 ///
 /// @throws Error if a flight cannot be read or is given twice, a variable of the model is absent, the flights
 /// are of different aircraft, or both models are of the same pressures.
-Checks check(const std::vector<std::filesystem::path>& flights, const std::optional<ModelFile>& model,
+Checks check(const FlightSet& flights, const std::optional<ModelFile>& model,
              const CheckOptions& options = {});
 
 /// What a check says in short; the members are those of `CheckResult`.
@@ -102,9 +99,9 @@ struct CheckInShort {
 
 std::vector<CheckInShort> in_short(const Checks& checks);
 
-/// What the checks say of each flight alone; the team of the options shares the flights.
+/// What the checks say of each flight alone.
 /// @throws Error as `check`
-std::vector<std::vector<CheckInShort>> check_each_alone(const std::vector<std::filesystem::path>& flights,
+std::vector<std::vector<CheckInShort>> check_each_alone(const FlightSet& flights,
                                                         const std::optional<ModelFile>& model,
                                                         const CheckOptions& options = {});
 

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <pcor/campaign/flight_set.hpp>
 #include <pcor/numerics/line_fit.hpp>
 #include <pcor/residuals/residuals.hpp>
 #include <pcor/residuals/statistics.hpp>
-#include <pcor/team/team.hpp>
 
 #include <array>
 #include <cstddef>
@@ -86,8 +86,6 @@ struct Comparison {
 
 struct CompareOptions {
   MaskOptions mask;
-  TimeStamp time_stamp = TimeStamp::begin;
-  Team* team = &alone();  ///< which shares the flights; all of its members get the comparison
   /// Of how many flights the records are kept; the numbers are of all. Where there are more, those that are
   /// kept are read once more.
   std::size_t most_series = 16;
@@ -109,14 +107,14 @@ struct Contender {
 ///
 /// @throws Error if a flight cannot be read, a variable is absent, the flights are of different aircraft, or
 /// no sample is left: the message says which mask took how many.
-Comparison compare(const std::vector<std::filesystem::path>& flights,
-                   const std::vector<Contender>& contenders, const CompareOptions& options = {});
+Comparison compare(const FlightSet& flights, const std::vector<Contender>& contenders,
+                   const CompareOptions& options = {});
 
 /// Writes the residuals of a flight to a netCDF file: for each model RESIDUAL_1, RESIDUAL_2 ..., delta-p of
 /// the model PCOR_1 ... and of the reference PCOR_REFERENCE_1 ..., and the mask and the regimes as flags.
-/// @param flight its number among those whose records are kept
+/// @param number of the flight among those whose records are kept @param input the file of that flight
 /// @throws Error if the file cannot be written.
-void write_residuals(const Comparison& comparison, std::size_t flight, const std::filesystem::path& input,
+void write_residuals(const Comparison& comparison, std::size_t number, const Flight& input,
                      const std::filesystem::path& output, const std::string& history);
 
 }  // namespace pcor

@@ -1,15 +1,14 @@
 #pragma once
 
+#include <pcor/campaign/flight_set.hpp>
 #include <pcor/laws/model_file.hpp>
 #include <pcor/residuals/reference.hpp>
 #include <pcor/residuals/residuals.hpp>
 #include <pcor/residuals/statistics.hpp>
-#include <pcor/team/team.hpp>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -33,8 +32,6 @@ std::string_view name_of(Verdict verdict);
 
 struct DiagnoseOptions {
   MaskOptions mask;
-  TimeStamp time_stamp = TimeStamp::begin;
-  Team* team = &alone();  ///< which shares the flights; all of its members get the diagnosis
   /// The flights, by number, of which `Diagnosis::flights` holds the records. If not said, all of up to
   /// sixteen; of more those with the largest residual, and others spread over the time in which they were
   /// flown.
@@ -278,7 +275,7 @@ void judge_held_out(Diagnosis& diagnosis);
 /// flights without any effect. The noise of several flights is found on all processors.
 ///
 /// @throws Error if a flight cannot be read, a variable of the model is absent, or too few samples are left.
-Diagnosis diagnose(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
-                   const References& references, const DiagnoseOptions& options = {});
+Diagnosis diagnose(const FlightSet& flights, const ModelFile& model, const References& references,
+                   const DiagnoseOptions& options = {});
 
 }  // namespace pcor

@@ -3,7 +3,6 @@
 #include <pcor/diagnose/diagnose.hpp>
 #include <pcor/report/report.hpp>
 
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,11 +23,11 @@ struct WhatIfCandidate {
 };
 
 struct WhatIfOptions {
-  /// Team, masks, time stamps, formulas and training share of the diagnosis. If its `series_of` is said,
+  /// Masks, formulas and training share of the diagnosis. If its `series_of` is said,
   /// `WhatIf::flights` are those flights alone, and all that are held out; else all.
   DiagnoseOptions diagnose;
-  std::vector<std::filesystem::path> holdout{};  ///< flights that take no part in any fit
-  bool is_robust = true;                         ///< outliers count less, as by the loss of a refit
+  FlightSet holdout{};    ///< flights that take no part in any fit
+  bool is_robust = true;  ///< outliers count less, as by the loss of a refit
   /// The model's own coefficients at which the residual of the report was found; of the model without.
   std::vector<Estimate> own{};
 };
@@ -57,8 +56,7 @@ std::vector<WhatIfCandidate> what_if_candidates(const Diagnosis& diagnosis,
 /// effects in whose coefficients the residual is not linear, and what would tell the effects apart.
 ///
 /// @throws Error as `diagnose`.
-WhatIf what_if(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
-               const References& references, const std::vector<WhatIfCandidate>& candidates,
-               const WhatIfOptions& options);
+WhatIf what_if(const FlightSet& flights, const ModelFile& model, const References& references,
+               const std::vector<WhatIfCandidate>& candidates, const WhatIfOptions& options);
 
 }  // namespace pcor

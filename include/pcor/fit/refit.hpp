@@ -1,12 +1,11 @@
 #pragma once
 
+#include <pcor/campaign/flight_set.hpp>
 #include <pcor/fit/loss.hpp>
 #include <pcor/residuals/residuals.hpp>
 #include <pcor/residuals/statistics.hpp>
-#include <pcor/team/team.hpp>
 
 #include <cstddef>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -25,7 +24,6 @@ struct FitStage {
 
 struct RefitOptions {
   MaskOptions mask;
-  TimeStamp time_stamp = TimeStamp::begin;
   Loss loss = Loss::tukey;
   std::vector<std::string> fix{};   ///< parameters, or effects, held besides those that the file fixes
   std::vector<std::string> free{};  ///< parameters, or effects, fitted although the file fixes them
@@ -50,13 +48,9 @@ struct RefitOptions {
   bool search = false;
   /// The fit uses the first part of every flight, this share of the samples; the rest is held out.
   double training_share = 1.0;
-  std::vector<std::filesystem::path> holdout{};  ///< flights that take no part in the fit
+  FlightSet holdout{};  ///< flights that take no part in the fit
   /// Flights reduced at a time; 0: as many as processors, and one in a team of several.
   std::size_t threads = 0;
-  Team* team = &alone();  ///< which shares the flights; all of its members get the result
-  /// Bytes of flights that a member of the team may keep between passes; what is beyond is read again in
-  /// every pass, so memory does not grow with the number of flights.
-  std::size_t memory = std::size_t{512} << 20U;
   std::function<void(std::size_t pass, std::size_t passes)> progress{};
 };
 
@@ -148,18 +142,13 @@ struct RefitResult {
 /// @throws Error if a flight cannot be read, nothing is free, no sample is left (with the masks), samples are
 /// fewer than coefficients, bounds leave nothing, or coefficients cannot be told apart on these flights: the
 /// message names them and says which to fix.
-RefitResult refit(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
-                  const References& references, const RefitOptions& options = {});
-
-/// As `refit`, for flights in memory, which hold what the first reference reads: the others take no part.
-RefitResult refit(const std::vector<std::shared_ptr<const FlightSamples>>& flights, const ModelFile& model,
-                  const References& references, const RefitOptions& options = {});
+RefitResult refit(const FlightSet& flights, const ModelFile& model, const References& references,
+                  const RefitOptions& options = {});
 
 /// The coefficients as each flight alone finds them, without held-out flights; none of a flight that cannot
-/// tell them. The team of the options shares the flights.
+/// tell them.
 /// @throws Error if a flight cannot be read
-std::vector<std::vector<FittedParameter>> refit_each_alone(const std::vector<std::filesystem::path>& flights,
-                                                           const ModelFile& model,
+std::vector<std::vector<FittedParameter>> refit_each_alone(const FlightSet& flights, const ModelFile& model,
                                                            const References& references,
                                                            const RefitOptions& options = {});
 

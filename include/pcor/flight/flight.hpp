@@ -103,8 +103,7 @@ class Flight {
   ///
   /// @throws Error if the file is absent, not netCDF, truncated, without records or with more than a hundred
   /// million, has two variables of one name, or if a time is missing, repeated, earlier than the one before,
-  /// of a year without flights, or cannot be told at all. Gaps are no error, see `time()`. Of a file that
-  /// `FlightsStayOpen` keeps open nothing is read again.
+  /// of a year without flights, or cannot be told at all. Gaps are no error, see `time()`.
   explicit Flight(const std::filesystem::path& path, TimeStamp time_stamp = TimeStamp::begin);
 
   /// The same for a file of any format that is open already.
@@ -179,10 +178,8 @@ class Flight {
   void read_sample_times(RecordBlock block, int rate, double* out) const;
 
  private:
-  friend class FlightsStayOpen;
-
   struct Implementation;
-  std::shared_ptr<Implementation> implementation_;
+  std::unique_ptr<Implementation> implementation_;
 };
 
 }  // namespace pcor

@@ -4,7 +4,6 @@
 #include <pcor/diagnose/what_if.hpp>
 #include <pcor/fit/refit.hpp>
 
-#include <filesystem>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -14,7 +13,7 @@
 namespace pcor {
 
 struct ImproveOptions {
-  /// Masks, time stamps, loss, held-out flights and training share hold for every refit and every diagnosis.
+  /// Masks, loss, held-out flights and training share hold for every refit and every diagnosis.
   RefitOptions refit;
   std::vector<ModelEffect> formulas{};  ///< tried beside the catalogue
   /// Where no effect of the catalogue explains what is left, but a variable of the files does: add a formula
@@ -90,12 +89,12 @@ std::string rivals_text(const ImproveStep& step);
 /// is their average, with their spread in its stated error.
 ///
 /// @throws Error as `refit` and `diagnose`.
-Improvement improve(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
-                    const References& references, const ImproveOptions& options = {});
+Improvement improve(const FlightSet& flights, const ModelFile& model, const References& references,
+                    const ImproveOptions& options = {});
 
 /// The effects of the ladder, and what they could not be told from, for a reader to add under his hand to the
 /// model that came, refitted. Arguments as of `improve`. @throws Error as `diagnose`.
-WhatIf what_if(const std::vector<std::filesystem::path>& flights, const Improvement& improvement,
-               const References& references, const ImproveOptions& options);
+WhatIf what_if(const FlightSet& flights, const Improvement& improvement, const References& references,
+               const ImproveOptions& options);
 
 }  // namespace pcor

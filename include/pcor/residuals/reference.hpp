@@ -2,9 +2,7 @@
 
 #include <pcor/laws/model_file.hpp>
 #include <pcor/residuals/samples.hpp>
-#include <pcor/team/team.hpp>
 
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -55,6 +53,9 @@ class Reference {
 
   /// True where it is made of the laser that the model names.
   virtual bool reads_laser() const { return false; }
+
+  /// A text that is the same for two references whose `read` gives the same of a flight.
+  virtual std::string inputs() const { return name(); }
 
   /// Reads its own variables. @throws Error if one is absent, has no value, or its unit does not fit.
   virtual ModelSamples read(const Flight& flight, const std::vector<double>& time,
@@ -118,20 +119,5 @@ std::string reference_forms();
 /// @throws Error if the text is none of these, the file of a static system cannot be read, or the model of a
 /// LAMS comparison has no `lams_airspeed`.
 std::shared_ptr<const Reference> read_reference(const std::string& text, const ModelFile& model);
-
-/// What a model is held against, and what it could have been.
-struct ChosenReferences {
-  References used{};
-  std::vector<std::string> not_used{};  ///< where no text named any: which else there are, and why not these
-};
-
-/// The references that `texts` name; without texts LAMS, and all else that the model and every flight allow:
-/// the total pressure of a second pair of pressures, heights, and wind.
-///
-/// @param team looks at the flights
-/// @throws Error as `read_reference`, or if there is no text and no LAMS: the others do not tell a static
-/// pressure by themselves.
-ChosenReferences read_references(const std::vector<std::string>& texts, const ModelFile& model,
-                                 const std::vector<std::filesystem::path>& flights, Team& team = alone());
 
 }  // namespace pcor

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstddef>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -31,7 +30,6 @@ std::optional<IsobarSlope> isobar_slope_named(std::string_view name);
 
 struct TemperatureOptions {
   MaskOptions mask;
-  TimeStamp time_stamp = TimeStamp::begin;
   /// The highest power of the temperature, 0 to 2. Absent: chosen by flights that take no part.
   std::optional<int> degree{};
   IsobarSlope slope = IsobarSlope::fitted;
@@ -50,7 +48,6 @@ struct TemperatureOptions {
   /// the temperature: take -(R_a/g0) ln(p_i/p_(i-1)) and the temperature from there.
   bool archived = false;
   std::size_t threads = 0;  ///< 0: as many as processors, and one in a team of several
-  Team* team = &alone();    ///< which shares the flights; all of its members get the result
   std::function<void(std::size_t done, std::size_t total)>
       progress{};  ///< told after every flight of this member
 };
@@ -175,7 +172,7 @@ struct TemperatureResult {
 /// pressure moves no height.
 ///
 /// @throws Error if no flight can be used: the message says why for the first one.
-TemperatureResult fit_temperature(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
+TemperatureResult fit_temperature(const FlightSet& flights, const ModelFile& model,
                                   const TemperatureOptions& options = {});
 
 /// One round of `calibrate_in_turn`.
@@ -197,7 +194,7 @@ struct CalibrationInTurn {
 /// Fits them in turn until neither moves: delta-p by less than 0.001 hPa and the temperature by less than
 /// 0.001 K.
 /// @throws Error as `refit` and `fit_temperature`, and for archived flights, whose pressures are as they are.
-CalibrationInTurn calibrate_in_turn(const std::vector<std::filesystem::path>& flights, const ModelFile& model,
+CalibrationInTurn calibrate_in_turn(const FlightSet& flights, const ModelFile& model,
                                     const References& references, const RefitOptions& refit_options,
                                     const TemperatureOptions& temperature_options);
 

@@ -14,6 +14,7 @@
 #include <pcor/physics/moist_air.hpp>
 #include <pcor/words/error.hpp>
 #include "residuals/references/neighbours.hpp"
+#include "residuals/samples_key.hpp"
 #include "roles/recorded_series.hpp"
 
 namespace pcor::internal {
@@ -102,6 +103,8 @@ class HeightReference final : public Reference {
   bool is_static_pressure() const override { return false; }
   bool is_of_one_sample() const override { return false; }
   double window() const override { return height_window; }
+
+  std::string inputs() const override { return name() + inputs_of(model_, false); }
 
   ModelSamples read(const Flight& flight, const std::vector<double>&,
                     std::vector<std::string>&) const override {

@@ -9,6 +9,7 @@
 #include "residuals/model_on_samples.hpp"
 #include "residuals/reference_on_samples.hpp"
 #include "residuals/samples.hpp"
+#include "residuals/samples_key.hpp"
 
 namespace pcor::internal {
 
@@ -54,6 +55,8 @@ class SecondSystem : public Reference {
     for (const auto& [role, variable] : system_.variables) names.push_back(variable);
     return names;
   }
+
+  std::string inputs() const override { return inputs_of(system_, false); }
 
   ModelSamples read(const Flight& flight, const std::vector<double>& time,
                     std::vector<std::string>& notes) const override {

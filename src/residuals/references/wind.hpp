@@ -15,6 +15,7 @@
 #include "numerics/missing.hpp"
 #include "residuals/ground_velocity.hpp"
 #include "residuals/references/neighbours.hpp"
+#include "residuals/samples_key.hpp"
 #include "roles/recorded_series.hpp"
 
 namespace pcor::internal {
@@ -170,6 +171,8 @@ class WindReference final : public Reference {
   std::string name() const override { return "wind"; }
   bool is_static_pressure() const override { return false; }
   bool is_of_one_sample() const override { return false; }
+
+  std::string inputs() const override { return name() + inputs_of(model_, false); }
 
   ModelSamples read(const Flight& flight, const std::vector<double>&,
                     std::vector<std::string>&) const override {

@@ -1,10 +1,11 @@
+#include <pcor/campaign/chosen_references.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <string_view>
 
 #include <pcor/flight/flight.hpp>
-#include <pcor/residuals/reference.hpp>
 #include <pcor/words/error.hpp>
 #include "residuals/ground_velocity.hpp"
 #include "roles/recorded_series.hpp"
@@ -92,16 +93,15 @@ Allowed allowed_by_all(const std::vector<Allowed>& flights) {
 }  // namespace
 
 ChosenReferences read_references(const std::vector<std::string>& texts, const ModelFile& model,
-                                 const std::vector<std::filesystem::path>& flights, Team& team) {
+                                 const FlightSet& flights) {
   ChosenReferences chosen;
   const auto use = [&](const std::string& text) { chosen.used.push_back(read_reference(text, model)); };
   for (const std::string& text : texts) use(text);
   if (!texts.empty()) return chosen;
   use("lams");
   if (flights.empty()) return chosen;
-  const FlightShare share = share_of_flights(team, flights);
-  const Allowed allowed = allowed_by_all(share.of_each_flight<Allowed>(
-      [&](std::size_t number) { return allowed_by(Flight(flights[number]), model); }));
+  const Allowed allowed = allowed_by_all(flights.share().of_each_flight<Allowed>(
+      [&](std::size_t number) { return allowed_by(flights[number], model); }));
   if (!allowed.laser) return chosen;
   if (allowed.pairs.empty()) {
     chosen.not_used.emplace_back("total: there is no second pair of pressures of a usual name");

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <pcor/campaign/flight_set.hpp>
 #include <pcor/residuals/residuals.hpp>
 
 namespace pcor::internal {
@@ -72,11 +73,12 @@ struct FlightAir {
   const std::vector<double>& time() const { return samples->time; }
 };
 
-/// Reads a flight and runs `model` over it. The laser takes part where the model has one and the flight
-/// records it. Heights, positions and angles are those of the model's roles, else of the names that NCAR's
-/// files use.
+/// Reads an own flight of a set and runs `model` over it. The laser takes part where the model has one and
+/// the flight records it. Heights, positions and angles are those of the model's roles, else of the names
+/// that NCAR's files use.
 /// @throws Error as `read_samples`.
-FlightAir read_flight_air(const Flight& flight, const ModelFile& model, const MaskOptions& options = {});
+FlightAir read_flight_air(const FlightSet& flights, std::size_t number, const ModelFile& model,
+                          const MaskOptions& options = {});
 
 /// Why the height of a flight is none that goes with its pressure, for example because it is in feet; empty
 /// where it is well. Looks at the samples in the air only.

@@ -1,4 +1,4 @@
-#include "residuals/flight_air.hpp"
+#include "campaign/flight_air.hpp"
 
 #include <fmt/format.h>
 
@@ -103,19 +103,21 @@ void find_tail_wind(FlightAir& air) {
 
 }  // namespace
 
-FlightAir read_flight_air(const Flight& flight, const ModelFile& model, const MaskOptions& options) {
+FlightAir read_flight_air(const FlightSet& flights, std::size_t number, const ModelFile& model,
+                          const MaskOptions& options) {
+  const Flight& flight = flights[number];
   const auto laser = model.variables.find(Quantity::lams_airspeed);
   const bool with_laser = laser != model.variables.end() && flight.has(laser->second);
   const auto reference =
       with_laser ? lams_reference() : pressure_reference(model.variables.at(Quantity::static_pressure));
-  auto samples = std::make_shared<FlightSamples>(read_samples(flight, model, *reference, options));
+  const auto samples = flights.samples(number, model, *reference, options);
   FlightAir air;
   air.notes = samples->notes;
   air.flying = find_flying(*samples, options);
   air.measured_static = *samples->model.find(Quantity::static_pressure);
   air.measured_dynamic = *samples->model.find(Quantity::dynamic_pressure);
   run_chain(*samples, model.model, air);
-  air.samples = std::move(samples);
+  air.samples = samples;
   find_heights(flight, model, air);
   const GroundVelocity ground = read_ground_velocity(flight, model);
   for (std::size_t i = 0; i < ground.speed.values.size(); ++i) {

@@ -1,4 +1,4 @@
-#include <pcor/roles/model_for_flights.hpp>
+#include <pcor/campaign/model_for_flights.hpp>
 
 #include <fmt/format.h>
 #include <cereal/types/map.hpp>
@@ -31,12 +31,12 @@ struct Choice {
 
 }  // namespace
 
-ModelFile model_for_flights(const ModelFile& open, const std::vector<std::filesystem::path>& flights,
-                            std::vector<std::string>& notes, Team& team) {
-  const auto choices = share_of_flights(team, flights).of_each_flight<Choice>([&](std::size_t number) {
+ModelFile model_for_flights(const ModelFile& open, const FlightSet& flights,
+                            std::vector<std::string>& notes) {
+  const auto choices = flights.share().of_each_flight<Choice>([&](std::size_t number) {
     try {
       std::vector<std::string> unsaid;
-      const ModelFile own = with_roles(open, Flight(flights[number]), unsaid);
+      const ModelFile own = with_roles(open, flights[number], unsaid);
       return Choice{true, own.variables, own.model.moist};
     } catch (const Error&) {
       // Whether a flight may be left out is for the work to say.
@@ -45,18 +45,17 @@ ModelFile model_for_flights(const ModelFile& open, const std::vector<std::filesy
   });
   const auto completes = [](const Choice& choice) { return choice.completes; };
   const auto first = std::find_if(choices.begin(), choices.end(), completes);
-  const auto path_of = [&](auto choice) {
-    return flights[static_cast<std::size_t>(choice - choices.begin())];
-  };
+  const auto number_of = [&](auto choice) { return static_cast<std::size_t>(choice - choices.begin()); };
   for (auto other = first; other != choices.end(); ++other) {
     if (other->completes && (other->variables != first->variables || other->moist != first->moist)) {
       throw Error(fmt::format(
           "{} and {} record different variables, so that one model for both would be of the first; "
           "give them apart, or name the variables in the [variables] of the model",
-          path_of(first).string(), path_of(other).string()));
+          flights.path(number_of(first)).string(), flights.path(number_of(other)).string()));
     }
   }
-  return with_roles(open, Flight(first == choices.end() ? flights.front() : path_of(first)), notes);
+  // All members read that flight: its names, not its samples.
+  return with_roles(open, flights[first == choices.end() ? 0 : number_of(first)], notes);
 }
 
 }  // namespace pcor

@@ -1,9 +1,8 @@
 #pragma once
 
+#include <pcor/campaign/flight_set.hpp>
 #include <pcor/laws/model_file.hpp>
-#include <pcor/team/team.hpp>
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -15,7 +14,6 @@ namespace pcor {
 /// @param flights at least one
 /// @param notes get what was chosen, a sentence each
 /// @throws Error that of the first flight where none completes the model, or Error if two choose differently
-ModelFile model_for_flights(const ModelFile& open, const std::vector<std::filesystem::path>& flights,
-                            std::vector<std::string>& notes, Team& team = alone());
+ModelFile model_for_flights(const ModelFile& open, const FlightSet& flights, std::vector<std::string>& notes);
 
 }  // namespace pcor

@@ -1,4 +1,5 @@
 #include <gmock/gmock.h>
+#include <pcor/campaign/chosen_references.hpp>
 #include <pcor/residuals/reference.hpp>
 #include <pcor/words/error.hpp>
 

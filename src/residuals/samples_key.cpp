@@ -1,0 +1,63 @@
+#include "residuals/samples_key.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "roles/model_inputs.hpp"
+#include "team/digest.hpp"
+
+namespace pcor::internal {
+namespace {
+
+void add(std::string& text, const RadomeCalibration& radome) {
+  text += fmt::format("|{},{},{}", radome.offset, radome.slope, radome.slope_mach);
+}
+
+void add(std::string& text, const ModelEffect& effect, bool with_parameters) {
+  text += fmt::format("|{}:{}:{}:{}:{},{}", effect.id, effect.formula, fmt::join(effect.parameter_names, ","),
+                      static_cast<int>(effect.where), effect.scaling.static_pressure,
+                      effect.scaling.dynamic_pressure);
+  if (with_parameters) text += fmt::format(":{}", fmt::join(effect.parameters, ","));
+}
+
+std::string text_of(const UserIntervals& intervals) {
+  std::string text = intervals.flight;
+  for (const Interval& each : intervals.add)
+    text += fmt::format("|+{},{},{},{},{}", static_cast<int>(each.regime), each.begin, each.end, each.pair,
+                        each.note);
+  for (const Veto& each : intervals.veto)
+    text +=
+        fmt::format("|-{},{},{}", each.regime ? static_cast<int>(*each.regime) : -1, each.begin, each.end);
+  return text;
+}
+
+}  // namespace
+
+std::string inputs_of(const ModelFile& file, bool with_laser) {
+  const Model& model = file.model;
+  const Chain chain = chain_of(model, roles_of(file, with_laser));
+  std::string text = fmt::format("{}|{}|{}|{}|{}|{}", with_laser, model.aircraft, file.law.valid_from,
+                                 file.law.valid_to, file.roles_from, model.moist);
+  for (const auto& [role, variable] : file.variables)
+    text += fmt::format("|{}={}", static_cast<int>(role), variable);
+  for (const auto& [role, unit] : file.units) text += fmt::format("|{}:{}", static_cast<int>(role), unit);
+  text += fmt::format("|{},{},{}|{}|{},{},{},{}", model.lams.elevation, model.lams.azimuth,
+                      static_cast<int>(model.lams.approach), fmt::join(model.recovery.coefficients, ","),
+                      model.policy.taper_below, model.policy.taper_power, model.policy.minimum,
+                      model.policy.least_dynamic_pressure);
+  add(text, model.attack_radome);
+  add(text, model.sideslip_radome);
+  const bool with_parameters = chain.derives(Quantity::airspeed_rate) || chain.derives(Quantity::wetness);
+  for (const ModelEffect& effect : model.effects) add(text, effect, with_parameters);
+  for (const Where place : model.additions) text += fmt::format("|@{}", static_cast<int>(place));
+  return text;
+}
+
+std::uint64_t samples_key(const ModelFile& model, const Reference& reference, const MaskOptions& mask) {
+  std::string text = fmt::format("{}\n{}\n{}", inputs_of(model, reference.reads_laser()), reference.inputs(),
+                                 mask.least_airspeed);
+  if (mask.intervals) text += "\n" + text_of(*mask.intervals);
+  return digest_of(text);
+}
+
+}  // namespace pcor::internal

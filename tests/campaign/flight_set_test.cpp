@@ -1,0 +1,177 @@
+#include <pcor/campaign/flight_set.hpp>
+
+#include <gmock/gmock.h>
+#include <pcor/simulate/simulate.hpp>
+#include <pcor/words/error.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "support/made_samples.hpp"
+#include "support/netcdf_file.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace fs = std::filesystem;
+
+using namespace pcor;
+using pcor::test::NetcdfMaker;
+using testing::HasSubstr;
+
+namespace {
+
+const fs::path scenarios = PCOR_SOURCE_DIR "/data/scenarios";
+
+void make(const fs::path& path, const std::vector<double>& seconds = {0, 1, 2}) {
+  NetcdfMaker maker(path);
+  maker.time(seconds, "seconds since 2004-02-18 00:00:00 +0000");
+}
+
+std::string message_of(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+class FlightSets : public testing::Test {
+ protected:
+  /// How many files of this folder the process has open.
+  std::size_t open_files() const {
+    std::size_t count = 0;
+    for (const auto& entry : fs::directory_iterator("/proc/self/fd")) {
+      std::error_code gone;
+      if (fs::read_symlink(entry.path(), gone).parent_path() == directory.path()) ++count;
+    }
+    return count;
+  }
+
+  test::TemporaryDirectory directory;
+};
+
+TEST_F(FlightSets, OpenEveryFlightOnceAndShareIt) {
+  make(directory / "a.nc");
+  make(directory / "b.nc");
+  const FlightSet flights{directory / "a.nc", directory / "b.nc"};
+  EXPECT_EQ(open_files(), 0U);
+  const Flight& first = flights[0];
+  EXPECT_EQ(&flights[0], &first);
+  EXPECT_EQ(&flights.only(0)[0], &first);
+  EXPECT_EQ(&flights.part(0, 1)[0], &first);
+  EXPECT_EQ(&flights.part(1, 1).with(flights.part(0, 1))[1], &first);
+  EXPECT_EQ(open_files(), 1U);
+  EXPECT_EQ(flights.outlines().size(), 2U);
+  EXPECT_EQ(open_files(), 2U);
+}
+
+TEST_F(FlightSets, HoldNoMoreThanSixteenFilesOpen) {
+  std::vector<fs::path> paths;
+  for (int i = 0; i < 20; ++i) {
+    paths.push_back(directory / ("flight" + std::to_string(i) + ".nc"));
+    make(paths.back());
+  }
+  {
+    const FlightSet flights(paths);
+    for (std::size_t i = 0; i < paths.size(); ++i) EXPECT_EQ(flights[i].path(), paths[i]);
+    EXPECT_EQ(open_files(), 16U);
+    EXPECT_EQ(flights[0].path(), paths[0]);
+    EXPECT_EQ(open_files(), 16U);
+  }
+  EXPECT_EQ(open_files(), 0U);
+}
+
+TEST_F(FlightSets, RefuseAFileThatWasReplacedChangedOrTaken) {
+  const auto changes = {
+      +[](const fs::path& path) {
+        make(path.parent_path() / "other.nc");
+        fs::rename(path.parent_path() / "other.nc", path);
+      },
+      +[](const fs::path& path) { std::ofstream(path, std::ios::app) << "more"; },
+      +[](const fs::path& path) { fs::last_write_time(path, fs::file_time_type::clock::now()); },
+      +[](const fs::path& path) { fs::remove(path); }};
+  for (const auto& change : changes) {
+    make(directory / "a.nc");
+    const FlightSet flights{directory / "a.nc"};
+    EXPECT_EQ(flights[0].records(), 3U);
+    flights.require_unchanged();
+    change(directory / "a.nc");
+    EXPECT_THAT(message_of([&] { flights.require_unchanged(); }), HasSubstr("a.nc"));
+  }
+}
+
+TEST_F(FlightSets, RefuseAFileThatWasReplacedWhileItWasClosed) {
+  std::vector<fs::path> paths;
+  for (int i = 0; i < 17; ++i) {
+    paths.push_back(directory / ("flight" + std::to_string(i) + ".nc"));
+    make(paths.back());
+  }
+  const FlightSet flights(paths);
+  flights.outlines();  // opens all of them, so the first is closed
+  make(directory / "other.nc", {0, 1, 2, 3});
+  fs::rename(directory / "other.nc", paths[0]);
+  EXPECT_THAT(message_of([&] { flights[0]; }), HasSubstr("flight0.nc"));
+}
+
+TEST_F(FlightSets, RefuseAFlightThatIsGivenTwice) {
+  make(directory / "a.nc");
+  fs::create_symlink(directory / "a.nc", directory / "b.nc");
+  const FlightSet flights{directory / "a.nc", directory / "b.nc"};
+  EXPECT_THAT(message_of([&] { flights.require_each_once(); }), HasSubstr("b.nc"));
+}
+
+TEST_F(FlightSets, RefuseFlightsOfTwoAircraft) {
+  made::Plan plan;
+  plan.samples = 60;
+  plan.defect = made::equation_18;
+  FlightSamples own = made::flight(plan);
+  FlightSamples other = own;
+  own.aircraft = "N130AR";
+  other.aircraft = "N677F";
+  const auto shared = [](const FlightSamples& samples) {
+    return std::make_shared<const FlightSamples>(samples);
+  };
+  FlightSet({shared(own), shared(own)}).require_one_aircraft();
+  EXPECT_THAT(message_of([&] {
+                FlightSet({shared(own), shared(other)}).require_one_aircraft();
+              }),
+              testing::AllOf(HasSubstr("N130AR"), HasSubstr("N677F")));
+}
+
+TEST_F(FlightSets, KeepSamplesForEachSetOfRoles) {
+  const fs::path path = directory / "short.nc";
+  simulate_flight(read_scenario(scenarios / "c130-short.toml"), path);
+  ModelFile model = read_model(scenarios / "models" / "c130-psfd-eq18.toml");
+  const FlightSet flights{path};
+  const MaskOptions mask;
+  const auto samples = [&](const ModelFile& of) { return flights.samples(0, of, *lams_reference(), mask); };
+  const auto first = samples(model);
+  model.model.effects.front().parameters.front() += 0.001;
+  EXPECT_EQ(samples(model), first) << "coefficients change no column";
+  ModelFile other = model;
+  other.variables.erase(Quantity::vapor_pressure);
+  EXPECT_NE(samples(other), first);
+  MaskOptions fast = mask;
+  fast.least_airspeed = 90.0;
+  EXPECT_NE(flights.samples(0, model, *lams_reference(), fast), first);
+  EXPECT_NE(flights.samples(0, model, *pressure_reference("PS_A"), mask), first);
+  const FlightSet forgetful({path}, {TimeStamp::begin, &alone(), 0});
+  EXPECT_NE(forgetful.samples(0, model, *lams_reference(), mask),
+            forgetful.samples(0, model, *lams_reference(), mask));
+}
+
+TEST_F(FlightSets, GiveMemoryOfSamplesThatNobodyUses) {
+  made::Plan plan;
+  plan.defect = made::equation_18;
+  const FlightSet flights({made::shared(plan)}, {TimeStamp::begin, &alone(), 1000});
+  EXPECT_TRUE(flights.reserve(600));
+  EXPECT_FALSE(flights.reserve(600));
+  flights.release(600);
+  EXPECT_TRUE(flights.reserve(1000));
+}
+
+}  // namespace

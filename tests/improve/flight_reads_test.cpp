@@ -1,0 +1,78 @@
+#include <gtest/gtest.h>
+#include <pcor/improve/improve.hpp>
+#include <pcor/simulate/simulate.hpp>
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "residuals/reference_on_samples.hpp"
+#include "support/temporary_directory.hpp"
+
+// How often a whole improvement opens its flights, reads their samples and builds residuals.
+
+using namespace pcor;
+
+namespace {
+
+const std::filesystem::path scenarios = PCOR_SOURCE_DIR "/data/scenarios";
+
+struct Counts {
+  std::map<std::filesystem::path, std::size_t> reads{};  ///< of the samples of each flight
+  std::size_t residuals = 0;
+};
+
+/// The laser, which counts what is asked of it.
+class CountingReference final : public Reference {
+ public:
+  explicit CountingReference(std::shared_ptr<Counts> counts) : counts_(std::move(counts)) {}
+
+  std::string description() const override { return laser_->description(); }
+  std::string name() const override { return laser_->name(); }
+  bool reads_laser() const override { return true; }
+
+  ModelSamples read(const Flight& flight, const std::vector<double>& time,
+                    std::vector<std::string>& notes) const override {
+    ++counts_->reads[flight.path()];
+    return laser_->read(flight, time, notes);
+  }
+
+  std::unique_ptr<internal::ReferenceOnSamples> on(const FlightSamples& samples,
+                                                   const internal::ModelOnSamples& model) const override {
+    ++counts_->residuals;
+    return laser_->on(samples, model);
+  }
+
+ private:
+  std::shared_ptr<const Reference> laser_ = lams_reference();
+  std::shared_ptr<Counts> counts_;
+};
+
+TEST(FlightReads, OfAnImprovementAreOneForEachSetOfRoles) {
+  const test::TemporaryDirectory directory;
+  std::vector<std::filesystem::path> paths;
+  for (const std::uint64_t seed : {101U, 102U, 103U}) {
+    Scenario scenario = read_scenario(scenarios / "c130-hidden.toml");
+    scenario.seed = seed;
+    paths.push_back(directory / (std::to_string(seed) + ".nc"));
+    simulate_flight(scenario, paths.back());
+  }
+  const ModelFile model = read_model(scenarios / "models" / "c130-psfd-eq18.toml");
+  const FlightSet flights(paths);
+  const auto counts = std::make_shared<Counts>();
+  ImproveOptions options;
+  options.refit.holdout = flights.part(2, 1);
+  options.trace_variables = true;
+  const Improvement improvement =
+      improve(flights.part(0, 2), model, {std::make_shared<CountingReference>(counts)}, options);
+  ASSERT_EQ(improvement.steps.size(), 2U) << "one effect is found";
+  // What the model reads, what it and all candidates read, and the same once more with the effect that is
+  // added.
+  for (const auto& [path, reads] : counts->reads) EXPECT_LE(reads, 4U) << path;
+  EXPECT_EQ(counts->reads.size(), 3U);
+  EXPECT_LE(counts->residuals, 30U);
+}
+
+}  // namespace
