@@ -54,7 +54,7 @@ bool is_better(const Plan& one, const Plan& other) {
 
 /// For people, e.g. "2 more yaw manoeuvres".
 std::string intervals_text(Regime regime, int count) {
-  const bool is_leg = regime == Regime::level || regime == Regime::reverse_heading || regime == Regime::cloud;
+  const bool is_leg = regime == Regime::reverse_heading || regime == Regime::cloud;
   return fmt::format("{} more {}{}{}", count, facts_of(regime).name, is_leg ? " leg" : "",
                      count == 1 ? "" : "s");
 }
