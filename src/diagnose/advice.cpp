@@ -5,7 +5,6 @@
 
 #include "diagnose/separation.hpp"
 #include "numerics/triangular_factor.hpp"
-#include "team/median_of_all.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -18,18 +17,14 @@ std::size_t number_of(const std::vector<Candidate>& candidates, const std::strin
 
 }  // namespace
 
-void advise(const Analysis& analysis, const CandidateSet& set, const ModelFile& model,
-            const MaskOptions& mask, std::vector<Finding>& findings) {
+void advise(const Analysis& analysis, const std::vector<Candidate>& candidates,
+            std::vector<Finding>& findings) {
   const bool any = std::any_of(findings.begin(), findings.end(),
                                [](const Finding& finding) { return !finding.aliases.empty(); });
   if (!any) return;
-  // What the aircraft can fly is learnt from whole flights, which every member gets.
-  const std::vector<std::size_t> few = analysis.few();
-  const auto flights = analysis.share().of_entries(few).of_each_flight<std::shared_ptr<const FlightSamples>>(
-      [&](std::size_t k) { return analysis.flights()[few[k]].samples; });
-  const double usual_level = median_of_absolute_values(analysis.share().team(), levels_of(analysis.noise()));
-  const std::vector<Prospect> prospects =
-      prospects_of(flights, analysis.noise(), usual_level, set, model, mask);
+  const std::vector<FlownRegime> regimes = flown_regimes(analysis.scores(), [&analysis](std::size_t f) {
+    return FlightInBins{analysis.flight(f), analysis.bins(f)};
+  });
   const Eigen::Index columns = analysis.scores().columns();
   const Eigen::MatrixXd now = analysis.scores().information.topLeftCorner(columns, columns);
   const double variance = analysis.search().variance(analysis.result().chosen);
@@ -38,7 +33,7 @@ void advise(const Analysis& analysis, const CandidateSet& set, const ModelFile& 
     if (finding.aliases.empty()) continue;
     const std::size_t winner = analysis.result().chosen[i];
     Rivalry rivalry{now, variance, places_of(analysis.groups()[winner], analysis.base()), {}, {}};
-    const Candidate& found = set.candidates[winner];
+    const Candidate& found = candidates[winner];
     rivalry.size.resize(as_index(found.tested.size()));
     for (std::size_t k = 0; k < found.tested.size(); ++k) {
       const std::size_t place = found.tested[k].place;
@@ -55,16 +50,16 @@ void advise(const Analysis& analysis, const CandidateSet& set, const ModelFile& 
     for (const Alias& alias : finding.aliases) {
       rivals.push_back(alias.effect);
       std::vector<Eigen::Index>& rest = rivalry.rests.emplace_back(beside);
-      const std::size_t rival = number_of(set.candidates, alias.effect);
+      const std::size_t rival = number_of(candidates, alias.effect);
       for (const Eigen::Index place : places_of(analysis.groups()[rival], analysis.base()))
         rest.push_back(place);
     }
-    const Plan best = best_plan(prospects, rivalry);
+    const Plan best = best_plan(regimes, rivalry);
     finding.advice.sentence = text_of(best, finding.id(), finding.effect, rivals);
-    finding.advice.power = best.power;
-    if (!best.helps()) continue;
-    finding.advice.manoeuvre = best.manoeuvre->name;
+    if (best.regime == nullptr) continue;
+    finding.advice.manoeuvre = facts_of(best.regime->regime).name;
     finding.advice.duration = best.duration();
+    finding.advice.power = best.power;
   }
 }
 

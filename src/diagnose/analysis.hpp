@@ -49,8 +49,6 @@ class Analysis {
   const FlightColumns& flight(std::size_t number) const {
     return number < flights_.size() ? flights_[number] : further_[number - flights_.size()];
   }
-  /// Of the flights against the first reference the few from which what flights have in common is learnt.
-  std::vector<std::size_t> few() const { return binned_.few(); }
   const std::vector<Binning>& bins() const { return first_bins_; }
   const Binning& bins(std::size_t flight) const { return binned_.bins[flight]; }
   /// Of the flights against the first reference, with the levels of the own.

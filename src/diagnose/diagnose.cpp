@@ -287,7 +287,7 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelFile& model,
                           options.explained);
   diagnosis.threshold = analysis.result().threshold;
   result.found = diagnosis.findings = findings_of(analysis, set.candidates);
-  advise(analysis, set, model, options.mask, diagnosis.findings);
+  advise(analysis, set.candidates, diagnosis.findings);
   diagnosis.absorbed = absorbed_of(analysis, set.candidates, set.base);
   diagnosis.limits = limits_of(analysis, set.candidates, diagnosis.findings);
   diagnosis.not_testable = std::move(set.not_testable);

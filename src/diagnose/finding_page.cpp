@@ -111,8 +111,6 @@ std::string rivals(const Finding& finding, const Law& law) {
   }
   if (!finding.advice.sentence.empty()) {
     text += " " + sentence(finding.advice.sentence);
-    if (!finding.advice.manoeuvre.empty() && finding.advice.power > 0.0)
-      text += fmt::format(" That would decide with a probability of {}.", percent(finding.advice.power));
   } else if (!law.look_alikes.empty()) {
     text += fmt::format(" In general it is easily taken for {}", law.look_alikes);
     text += law.manoeuvre.empty() ? "." : fmt::format("; what tells them apart: {}.", law.manoeuvre);

@@ -6,6 +6,7 @@
 
 #include <pcor/effects/catalogue.hpp>
 #include "diagnose/findings.hpp"
+#include "diagnose/separation.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "residuals/masks.hpp"
@@ -153,10 +154,7 @@ void diagnose_flaps(const Analysis& analysis, const FlapsCandidates& flaps, std:
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     if (!flaps.reads_flaps[chosen[i]]) continue;
     Finding& finding = diagnosis.findings.emplace_back(findings[i]);
-    if (!finding.aliases.empty() && !finding.effect.is_formula()) {
-      finding.advice.manoeuvre = effect_facts[effect_named(finding.effect.id)].manoeuvre;
-      finding.advice.sentence = "fly this: " + finding.advice.manoeuvre;
-    }
+    if (!finding.aliases.empty()) finding.advice.sentence = general_advice(finding.id(), finding.effect);
     for (std::size_t f = 0; f < diagnosis.flights.size(); ++f) {
       if (!test.share().owns(f)) continue;
       FlightDiagnosis& flight = diagnosis.flights[f];

@@ -1,24 +1,21 @@
 #include "diagnose/separation.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
-#include <utility>
 
 #include <pcor/effects/catalogue.hpp>
-#include "diagnose/columns.hpp"
 #include "numerics/decompositions.hpp"
-#include "numerics/triangular_factor.hpp"
+#include "words/phrasing.hpp"
 
 namespace pcor::internal {
 namespace {
 
 constexpr double margin = 9.0;  // of chi2, as for aliases
 constexpr double enough_power = 0.95;
-constexpr double some_power = 0.5;
 constexpr int most_repeats = 4;
 constexpr double seconds_per_minute = 60.0;
 
@@ -37,78 +34,74 @@ double distinct(const Eigen::MatrixXd& information, const std::vector<Eigen::Ind
   return std::max(0.0, size.dot(information(own, own) * size) - imitated);
 }
 
+/// The same of the rival that imitates most.
+double least_distinct(const Rivalry& rivalry, const Eigen::MatrixXd& information) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::vector<Eigen::Index>& rest : rivalry.rests)
+    least = std::min(least, distinct(information, rest, rivalry.own, rivalry.size) / rivalry.variance);
+  return least;
+}
+
 double power_of(double distinct) {
   if (!(distinct > 0.0)) return 0.0;
   return 0.5 * std::erfc((margin - distinct) / (2.0 * std::sqrt(distinct)) / std::sqrt(2.0));
 }
 
-}  // namespace
-
-std::vector<Prospect> prospects_of(const std::vector<std::shared_ptr<const FlightSamples>>& flights,
-                                   NoiseModel noise, double usual_level, const CandidateSet& set,
-                                   const ModelFile& model, const MaskOptions& mask) {
-  MaskOptions all = mask;
-  all.exclude.clear();
-  all.intervals.reset();
-  std::vector<Prospect> prospects;
-  for (Manoeuvre& manoeuvre : standard_manoeuvres(flights)) {
-    const FlightColumns columns = find_columns(manoeuvre.samples, model, set, 0, all, 1.0);
-    const Binning bins(columns.given, columns.samples->time, columns.samples->step);
-    if (bins.size() == 0) continue;
-    const Eigen::MatrixXd binned = binned_columns(columns, bins);
-    if (!binned.allFinite()) continue;
-    noise.level = {Eigen::VectorXd::Constant(binned.rows(), usual_level)};
-    const Eigen::MatrixXd white = whitened(binned, bins, noise, 0);
-    prospects.push_back({std::move(manoeuvre), white.transpose() * white});
-  }
-  return prospects;
+bool is_better(const Plan& one, const Plan& other) {
+  if (one.power >= enough_power && other.power >= enough_power) return one.gain > other.gain;
+  return one.power > other.power;
 }
 
-bool Plan::helps() const { return manoeuvre != nullptr && power >= some_power; }
+/// For people, e.g. "2 more yaw manoeuvres".
+std::string intervals_text(Regime regime, int count) {
+  const bool is_leg = regime == Regime::reverse_heading || regime == Regime::cloud;
+  return fmt::format("{} more {}{}{}", count, facts_of(regime).name, is_leg ? " leg" : "",
+                     count == 1 ? "" : "s");
+}
 
-double Plan::duration() const { return repeats * manoeuvre->duration; }
+}  // namespace
 
-Plan best_plan(const std::vector<Prospect>& prospects, const Rivalry& rivalry) {
+Plan best_plan(const std::vector<FlownRegime>& regimes, const Rivalry& rivalry) {
+  const double now = least_distinct(rivalry, rivalry.information);
   Plan best;
-  for (int repeats = 1; repeats <= most_repeats && best.power < enough_power; ++repeats) {
-    for (const Prospect& prospect : prospects) {
-      const Eigen::MatrixXd then = rivalry.information + static_cast<double>(repeats) * prospect.information;
-      double power = 1.0;
-      for (const std::vector<Eigen::Index>& rest : rivalry.rests)
-        power = std::min(power, power_of(distinct(then, rest, rivalry.own, rivalry.size) / rivalry.variance));
-      if (power > best.power) best = {&prospect.manoeuvre, repeats, power};
+  for (const FlownRegime& regime : regimes) {
+    Plan plan{&regime};
+    while (plan.repeats < most_repeats && plan.power < enough_power) {
+      ++plan.repeats;
+      const double then = least_distinct(rivalry, rivalry.information + plan.repeats * regime.information);
+      plan.power = power_of(then);
+      plan.gain = (then - now) / plan.duration();
     }
+    if (is_better(plan, best)) best = plan;
   }
-  return best;
+  return 1.0 - best.power <= 0.5 * (1.0 - power_of(now)) ? best : Plan{};
 }
 
 std::string text_of(const Plan& plan, const std::string& id, const ModelEffect& effect,
                     const std::vector<std::string>& rivals) {
-  std::string names = rivals.front();
-  if (rivals.size() > 1)
-    names = fmt::format("{} and {}", fmt::join(rivals.begin(), rivals.end() - 1, ", "), rivals.back());
-  if (!plan.helps()) {
-    const std::size_t place = effect_named(effect.id);
-    const std::string hint = place == catalogue_size ? std::string("a second sensor would have to")
-                                                     : fmt::format("what separates it in general: {}",
-                                                                   effect_facts[place].manoeuvre);
+  const std::string names = list_text(rivals);
+  if (plan.regime == nullptr) {
+    const std::string general = general_advice(id, effect);
     return fmt::format(
-        "no manoeuvre that this aircraft flies would tell {} from {} at the size found, with this reference "
-        "alone; {}",
-        id, names, hint);
+        "none of the regimes flown, repeated up to {} times, would separate {} from {} at the size found{}{}",
+        most_repeats, id, names, general.empty() ? "" : "; ", general);
   }
-  const std::string times = plan.repeats == 1 ? "" : fmt::format(" {} times", plan.repeats);
-  return fmt::format(
-      "fly this: {}{} ({}; {:.0f} min): it would tell {} from {} with a probability of {:.0f} %",
-      plan.manoeuvre->name, times, plan.manoeuvre->how, std::max(1.0, plan.duration() / seconds_per_minute),
-      id, names, std::min(99.0, 100.0 * plan.power));
+  const bool is_one = plan.repeats == 1;
+  return fmt::format("fly {} of {:.1f} min{} as on {}: probability {:.0f} % that {} {} from {}",
+                     intervals_text(plan.regime->regime, plan.repeats),
+                     plan.regime->duration / seconds_per_minute, is_one ? "" : " each", plan.regime->flight,
+                     std::min(99.0, 100.0 * plan.power), is_one ? "it separates" : "they separate", id,
+                     names);
 }
 
-std::vector<double> levels_of(const NoiseModel& noise) {
-  std::vector<double> levels;
-  for (const Eigen::VectorXd& level : noise.level)
-    levels.insert(levels.end(), level.data(), level.data() + level.size());
-  return levels;
+std::string general_advice(const std::string& id, const ModelEffect& effect) {
+  const std::size_t place = effect_named(effect.id);
+  if (place == catalogue_size) return "";
+  return fmt::format("what separates {} in general: {}", id, effect_facts[place].manoeuvre);
+}
+
+bool is_separated(const Rivalry& rivalry) {
+  return power_of(least_distinct(rivalry, rivalry.information)) >= enough_power;
 }
 
 std::vector<Eigen::Index> places_of(const ColumnGroup& group, Eigen::Index base) {

@@ -1,30 +1,16 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include <pcor/diagnose/diagnose.hpp>
-#include "diagnose/candidates.hpp"
-#include "diagnose/manoeuvres.hpp"
+#include <pcor/laws/model_file.hpp>
+#include "diagnose/flown_regimes.hpp"
 #include "diagnose/search.hpp"
-#include "numerics/noise_model.hpp"
 
 namespace pcor::internal {
 
-/// A manoeuvre, and what it would add to the sums over base and candidates.
-struct Prospect {
-  Manoeuvre manoeuvre;
-  Eigen::MatrixXd information;
-};
-
-/// What the aircraft of some flights could fly, with the usual level of their noise, hPa.
-std::vector<Prospect> prospects_of(const std::vector<std::shared_ptr<const FlightSamples>>& flights,
-                                   NoiseModel noise, double usual_level, const CandidateSet& set,
-                                   const ModelFile& model, const MaskOptions& mask);
-
-/// An effect of an estimated size, and what it is to be told from.
+/// An effect of an estimated size, and its rivals.
 struct Rivalry {
   Eigen::MatrixXd information;    ///< of base and candidates, as the flights are
   double variance = 1.0;          ///< of the whitened residuals
@@ -34,26 +20,35 @@ struct Rivalry {
   std::vector<std::vector<Eigen::Index>> rests;
 };
 
-/// The best of the manoeuvres, flown so many times.
+/// A regime that was flown, to be flown again so many times.
 struct Plan {
-  const Manoeuvre* manoeuvre = nullptr;
-  int repeats = 1;
-  double power = 0.0;  ///< probability that it tells the effect from all rivals with 95 % confidence
+  const FlownRegime* regime = nullptr;
+  int repeats = 0;
+  double power = 0.0;  ///< probability that it separates the effect from all rivals with 95 % confidence
+  double gain = 0.0;   ///< in D (see `best_plan`) per second of flight
 
-  /// Whether it is worth flying.
-  bool helps() const;
-  double duration() const;  ///< s
+  double duration() const { return repeats * regime->duration; }  ///< s
 };
 
-Plan best_plan(const std::vector<Prospect>& prospects, const Rivalry& rivalry);
+/// Which regime to fly again: of those that separate the effect with a probability of 95 % the one with the
+/// largest gain per second; if there is none, the one with the largest probability; none where the
+/// probability that the effect is not separated does not become half of what it is.
+///
+/// A rival is separated where chi2 rises by more than 9 with it in the place of the effect. The difference is
+/// normal with mean D and variance 4 D, where D is what of the effect the rival cannot imitate. Repeated
+/// intervals are taken to be like the mean interval of their regime.
+Plan best_plan(const std::vector<FlownRegime>& regimes, const Rivalry& rivalry);
 
-/// What to fly, how long, and what it would tell; or that nothing would.
-/// @param id of the effect, as that of a finding
+/// What to fly, how long, and how surely it separates the effect from its rivals; of a plan without a regime
+/// what separates the effect in general. @param id of the effect, as that of a finding
 std::string text_of(const Plan& plan, const std::string& id, const ModelEffect& effect,
                     const std::vector<std::string>& rivals);
 
-/// The levels of the noise of all flights' bins, hPa.
-std::vector<double> levels_of(const NoiseModel& noise);
+/// What separates an effect of the catalogue from those that look like it, whatever was flown.
+std::string general_advice(const std::string& id, const ModelEffect& effect);
+
+/// Whether the flights separate the effect from its rivals as they are, with a probability of 95 %.
+bool is_separated(const Rivalry& rivalry);
 
 /// The columns of a group among those of base and candidates.
 std::vector<Eigen::Index> places_of(const ColumnGroup& group, Eigen::Index base);

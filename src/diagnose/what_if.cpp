@@ -18,7 +18,6 @@
 #include "numerics/triangular_factor.hpp"
 #include "residuals/masks.hpp"
 #include "residuals/moving_columns.hpp"
-#include "team/median_of_all.hpp"
 
 namespace pcor {
 
@@ -283,32 +282,30 @@ std::string note_of(const Candidate& candidate, const std::string& flaps_variabl
   return "";
 }
 
-/// What would tell each effect from each other, at the sizes that each has alone.
-std::vector<WhatIfSeparation> separations_of(const WhatIfFit& fit, const CandidateSet& set,
-                                             const ModelFile& model, const MaskOptions& mask) {
+/// Which regime would separate each effect from each other, at the sizes that each has alone.
+std::vector<WhatIfSeparation> separations_of(const WhatIfFit& fit, const std::vector<Candidate>& candidates) {
   std::vector<WhatIfSeparation> separations;
-  if (set.candidates.size() < 2) return separations;
-  const TeamColumns& columns = fit.flights();
-  const std::vector<std::size_t> few = fit.few();
-  const auto samples = columns.share.of_entries(few).of_each_flight<std::shared_ptr<const FlightSamples>>(
-      [&](std::size_t k) { return columns.flights[few[k]].samples; });
-  const double usual_level = median_of_absolute_values(columns.share.team(), levels_of(fit.noise()));
-  const std::vector<Prospect> prospects = prospects_of(samples, fit.noise(), usual_level, set, model, mask);
   const auto columns_of = [&fit](std::size_t effect) { return places_of(fit.groups()[effect], fit.base()); };
-  for (std::size_t effect = 0; effect < set.candidates.size(); ++effect) {
-    if (set.candidates[effect].is_shared) continue;  // its columns are those of another
+  for (std::size_t effect = 0; effect < candidates.size(); ++effect) {
+    if (candidates[effect].is_shared) continue;  // its columns are those of another
     const Eigen::VectorXd alone = fit.fitted({effect}).values;
     const std::vector<Eigen::Index> own = columns_of(effect);
     Rivalry rivalry{fit.information(), fit.variance({effect}), own, alone(own), {}};
-    for (std::size_t rival = 0; rival < set.candidates.size(); ++rival) {
-      if (rival == effect || set.candidates[rival].is_shared) continue;
+    for (std::size_t rival = 0; rival < candidates.size(); ++rival) {
+      if (rival == effect || candidates[rival].is_shared) continue;
       std::vector<Eigen::Index> rest = fit.own();
       const std::vector<Eigen::Index> others = columns_of(rival);
       rest.insert(rest.end(), others.begin(), others.end());
       rivalry.rests = {std::move(rest)};
-      separations.push_back({effect, rival,
-                             text_of(best_plan(prospects, rivalry), set.candidates[effect].id,
-                                     set.candidates[effect].effect, {set.candidates[rival].id})});
+      const std::string& id = candidates[effect].id;
+      const std::string& other = candidates[rival].id;
+      separations.push_back(
+          {effect, rival,
+           is_separated(rivalry)
+               ? fmt::format(
+                     "these flights separate {} from {} at the size found, with a probability above 95 %", id,
+                     other)
+               : text_of(best_plan(fit.regimes(), rivalry), id, candidates[effect].effect, {other})});
     }
   }
   return separations;
@@ -436,7 +433,7 @@ WhatIf what_if(const FlightSet& flights, const ModelFile& model, const Reference
     result.flights.push_back({flight.samples, by_records(flight)});
   for (const FlightColumns& flight : shown(fit.others(), is_shown)) add_held_out(result.flights, flight);
   files.require_unchanged();
-  panel.separations = separations_of(fit, ordered, model, mask);
+  panel.separations = separations_of(fit, ordered.candidates);
   return result;
 }
 

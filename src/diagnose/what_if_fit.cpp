@@ -288,6 +288,7 @@ Eigen::VectorXd WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool
               })
               .kinds;
   for (SumOfProducts& part : parts) part.products = part.products.selfadjointView<Eigen::Lower>();
+  regimes_ = flown_regimes(scores, [&](std::size_t f) { return FlightInBins{flights[f], binned_.bins[f]}; });
   whole_.products = scores.information;
   whole_.count = static_cast<double>(scores.row_count);
   return values;
@@ -296,9 +297,9 @@ Eigen::VectorXd WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool
 std::vector<NoiseModel> WhatIfFit::noise_after(const Eigen::VectorXd& values,
                                                const std::vector<Eigen::MatrixXd>& columns,
                                                const std::vector<Eigen::VectorXd>& residuals,
-                                               const Places& free, bool drifts) {
+                                               const Places& free, bool drifts) const {
   const std::size_t threads = Workers(flights_.share.team(), 0).threads;
-  std::vector<NoiseModel> noise = noise_of_flights(
+  return noise_of_flights(
       flights_.share, binned_,
       {[&](std::size_t f) -> Eigen::MatrixXd { return columns[f](Eigen::all, free); },
        [&](std::size_t f) -> Eigen::VectorXd { return residuals[f] - columns[f] * values; },
@@ -306,8 +307,6 @@ std::vector<NoiseModel> WhatIfFit::noise_after(const Eigen::VectorXd& values,
       [&](const auto& bins, const auto& fitted, const auto& left) {
         return drifts ? find_noise(bins, fitted, left, threads).model : estimate_noise(bins, left);
       });
-  noise_ = noise_of_first_reference(binned_, noise);
-  return noise;
 }
 
 /// Over all samples that take part.

@@ -8,6 +8,7 @@
 #include <pcor/report/report.hpp>
 #include "diagnose/binned_flights.hpp"
 #include "diagnose/flight_columns.hpp"
+#include "diagnose/flown_regimes.hpp"
 #include "diagnose/search.hpp"
 #include "numerics/noise_model.hpp"
 
@@ -50,10 +51,8 @@ class WhatIfFit {
   Eigen::Index base() const { return base_; }
   /// The model's own columns that are fitted.
   const std::vector<Eigen::Index>& own() const { return own_; }
-  /// Of the flights against the first reference, with the levels of the own.
-  const NoiseModel& noise() const { return noise_; }
-  /// Of the flights against the first reference the few from which the noise was learnt.
-  std::vector<std::size_t> few() const { return binned_.few(); }
+  /// The regimes of the flights.
+  const std::vector<FlownRegime>& regimes() const { return regimes_; }
 
   /// Sums of the parts of the flights, as a refit with some of the effects that were found weights them.
   struct Weights {
@@ -97,7 +96,7 @@ class WhatIfFit {
   std::vector<NoiseModel> noise_after(const Eigen::VectorXd& values,
                                       const std::vector<Eigen::MatrixXd>& columns,
                                       const std::vector<Eigen::VectorXd>& residuals,
-                                      const std::vector<Eigen::Index>& free, bool drifts);
+                                      const std::vector<Eigen::Index>& free, bool drifts) const;
   double rms_of(const Eigen::VectorXd& values) const;
   void sum_records();
   void sum_held_out();
@@ -111,7 +110,7 @@ class WhatIfFit {
   Eigen::VectorXd start_{};
   Eigen::VectorXd given_{};  // changes from the start to what is given
   BinnedFlights binned_{};
-  NoiseModel noise_{};
+  std::vector<FlownRegime> regimes_{};
   std::vector<Weights> weights_{};
   SumOfProducts whole_{};
   double inflation_ = 1.0;

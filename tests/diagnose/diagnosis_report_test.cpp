@@ -102,8 +102,9 @@ Finding sideslip_finding() {
                       3.2,
                       {{"azimuth", "deg", 0.32, 0.03, 0.1}}}};
   finding.advice = {
-      "a yaw manoeuvre of 3 min with a second static pair recorded would tell the ports from the laser",
-      "yaw manoeuvre at 600 hPa", 180.0, 0.93};
+      "fly 2 more yaw manoeuvres of 1.5 min each as on rf01: probability 93 % that they separate "
+      "static-beta-odd from lams-azimuth",
+      "yaw manoeuvre", 180.0, 0.93};
   return finding;
 }
 
@@ -273,7 +274,7 @@ TEST(DiagnosisReport, SaysWhatIsMissingHowLargeAndHowSure) {
                      HasSubstr("probability of less than one in a million"),
                      HasSubstr("rf01, 2011-11-17 20:30:00 to 20:35:00 UTC (level, yaw manoeuvre)"),
                      HasSubstr("cannot tell it from lams-azimuth (error of the azimuth of the laser beam)"),
-                     HasSubstr("A yaw manoeuvre of 3 min with a second static pair"))));
+                     HasSubstr("Fly 2 more yaw manoeuvres of 1.5 min each"))));
   EXPECT_THAT(report.summary, Contains(HasSubstr("clock-skew |dt| < 0.13 s (0.021 hPa rms)")));
   EXPECT_THAT(report.facts, Contains(testing::Pair("Not used", HasSubstr("200 "))));
   words_of(report);
@@ -291,7 +292,8 @@ TEST(DiagnosisReport, HasAPageInWordsForEachFinding) {
         "20:35:00 UTC (level, yaw manoeuvre), 55 %", "falls from 0.196 to 0.152 hPa",
         "lams-azimuth (error of the azimuth of the laser beam; correlation +0.991, chi2 1.4 lower, 3.2 times "
         "the usual size).",
-        "decide with a probability of 93 %", "Source: Cooper (2012) eq. 19."})
+        "Fly 2 more yaw manoeuvres of 1.5 min each as on rf01: probability 93 %",
+        "Source: Cooper (2012) eq. 19."})
     EXPECT_THAT(text, HasSubstr(part));
   const auto* second = item<ReportText>(report, "Finding 2: static-lag");
   ASSERT_NE(second, nullptr);

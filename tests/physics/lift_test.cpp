@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
-using pcor::lift_number;
 using pcor::load_factor;
 
 namespace {
@@ -19,15 +16,5 @@ TEST(LoadFactor, IsOneInLevelFlightAndTwoInATurnOfSixtyDegrees) {
 }
 
 TEST(LoadFactor, IsNothingInFreeFall) { EXPECT_NEAR(load_factor(-9.80665, 20.0), 0.0, rounding); }
-
-TEST(LiftNumber, IsLoadOverDynamicPressureInSlowFlight) {
-  EXPECT_NEAR(lift_number(1.0, 0.0, 50.0), 0.02, rounding);
-  EXPECT_NEAR(lift_number(2.0, 0.0, 50.0), 0.04, rounding);
-}
-
-TEST(LiftNumber, FallsWithTheMachNumberAsTheWingLiftsMore) {
-  EXPECT_NEAR(lift_number(1.0, 0.6, 50.0), 0.8 * 0.02, rounding);
-  EXPECT_TRUE(std::isnan(lift_number(std::nan(""), 0.6, 50.0)));
-}
 
 }  // namespace

@@ -160,6 +160,10 @@ class Diagnose(DiagnosisTest):
             self.assertLessEqual({"effect", "aliases", "alias_details", "p_value", "rms_before_hpa", "rms_after_hpa",
                                   "parameters", "stderr", "advice", "evidence", "events"}, set(finding))
             self.assertEqual(finding["aliases"], [alias["effect"] for alias in finding["alias_details"]])
+            advice = finding["advice_details"]
+            self.assertEqual(finding["advice"] == "", finding["aliases"] == [])
+            self.assertEqual(advice["power"] > 0, advice["manoeuvre"] != "")
+            self.assertLessEqual(advice["power"], 1)
 
     def test_nothing_is_missing(self):
         result = self.diagnose()

@@ -212,7 +212,7 @@ class OneEffect(WhatIfTest):
         effects = self.value("pcorReport.whatIf.item.effects.map(({id}) => id)")
         self.assertEqual(effects[0], "static-lag")
         words = self.value("pcorReport.whatIf.pairWords.textContent")
-        self.assertIn(f"tell static-lag from {effects[1]}", words)
+        self.assertIn(f"separate static-lag from {effects[1]}", words)
         self.assertRegex(words, r"correlation of (−?0\.\d{3})")
         rows = self.value("pcorReport.whatIf.pairTable.tBodies[0].rows.length")
         self.assertEqual(rows, self.value("pcorReport.samples.regimes.size") + 1)

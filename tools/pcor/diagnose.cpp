@@ -54,10 +54,7 @@ void print_finding(const Finding& finding) {
         estimates_text(alias.estimates), alias.correlation, std::abs(alias.chi2_less),
         alias.chi2_less < 0.0 ? "more" : "less", size);
   }
-  const Advice& advice = finding.advice;
-  if (advice.sentence.empty()) return;
-  say("  advice: {}{}\n", advice.sentence,
-      advice.power > 0.0 ? fmt::format(" (expected power {:.0f} %)", 100.0 * advice.power) : "");
+  if (!finding.advice.sentence.empty()) say("  advice: {}\n", finding.advice.sentence);
 }
 
 void print_findings(const std::vector<Finding>& findings) {

@@ -83,13 +83,14 @@ struct Alias {
   bool is_alike = false;            ///< as `Finding::is_alike`
 };
 
-/// A manoeuvre that would tell rivals apart.
+/// Which of the regimes that were flown, flown again, would separate rivals.
 struct Advice {
-  std::string
-      sentence{};  ///< for people: what to fly, how long, and what it would tell; may say that nothing would
-  std::string manoeuvre{};  ///< e.g. "yaw manoeuvre at 3000 m"; empty where none helps
-  double duration = 0.0;    ///< s
-  double power = 0.0;       ///< probability that it tells the effect from all rivals with 95 % confidence
+  /// For people: what to fly, how long, and how surely it would separate them; where no regime that was flown
+  /// helps, what separates the effect in general.
+  std::string sentence{};
+  std::string manoeuvre{};  ///< the name of the regime, e.g. "yaw manoeuvre"; empty where none helps
+  double duration = 0.0;    ///< of all repeats, s
+  double power = 0.0;       ///< probability that it separates the effect from all rivals with 95 % confidence
 };
 
 /// The name of an effect, or of a coefficient, of a system that the model is held against: "reference:NAME".

@@ -22,20 +22,4 @@ S load_factor(const S& vertical_acceleration, const S& roll) {
          cos(roll * S(constants::radians_per_degree));
 }
 
-/// How the lift needs the angle of attack, 1/hPa:
-///
-///     n (1 - M^2)^(1/2)/q
-///
-/// With the wing as it is, the angle of attack above that without lift is this number times the weight over
-/// the area and the slope of the lift (rule of Prandtl and Glauert), but for the part of q that compression
-/// adds. Flaps need less of it for the same lift.
-///
-/// @param load_factor n @param mach below 1 @param dynamic_pressure q, hPa
-/// NaN where one is NaN.
-template <class S>
-S lift_number(const S& load_factor, const S& mach, const S& dynamic_pressure) {
-  using std::sqrt;
-  return load_factor * sqrt(S(1.0) - mach * mach) / dynamic_pressure;
-}
-
 }  // namespace pcor

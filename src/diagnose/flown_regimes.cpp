@@ -1,0 +1,109 @@
+#include "diagnose/flown_regimes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "numerics/triangular_factor.hpp"
+#include "team/symmetric_part.hpp"
+
+namespace pcor::internal {
+namespace {
+
+/// All intervals of a regime.
+struct RegimeSum {
+  SymmetricPart information{};
+  double intervals = 0.0;
+  double duration = 0.0;  ///< s
+  std::string flight{};
+  double longest = 0.0;  ///< duration on that flight, s
+
+  RegimeSum& operator+=(const RegimeSum& other) {
+    if (information.matrix.size() == 0)
+      information = other.information;
+    else if (other.information.matrix.size() > 0)
+      information += other.information;
+    intervals += other.intervals;
+    duration += other.duration;
+    if (other.longest > longest) {
+      flight = other.flight;
+      longest = other.longest;
+    }
+    return *this;
+  }
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(information, intervals, duration, flight, longest);
+  }
+};
+
+/// The sums of each regime, in the order of `Regime`.
+struct RegimeSums {
+  std::array<RegimeSum, regime_count> of{};
+
+  RegimeSums& operator+=(const RegimeSums& other) {
+    for (std::size_t r = 0; r < regime_count; ++r) of[r] += other.of[r];
+    return *this;
+  }
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(of);
+  }
+};
+
+/// Whether the same again is what a pilot can fly. What happens on a level leg besides flying level is not.
+bool can_be_repeated(Regime regime) { return regime >= Regime::climb && regime != Regime::level; }
+
+RegimeSums sums_of(const Eigen::MatrixXd& rows, const FlightInBins& flight) {
+  constexpr auto phases = static_cast<std::size_t>(Regime::level) + 1;
+  const FlightSamples& samples = *flight.columns.samples;
+  const std::vector<double>& time = flight.bins.time();
+  const std::vector<RegimeSet> regimes = regimes_of_samples(time, samples.intervals);
+  const auto place = [&time](double when) {
+    return static_cast<std::size_t>(std::lower_bound(time.begin(), time.end(), when) - time.begin());
+  };
+  RegimeSums sums;
+  for (const Interval& interval : samples.intervals) {
+    if (!can_be_repeated(interval.regime)) continue;
+    const std::size_t first = place(interval.begin);
+    const std::size_t last = place(interval.end);
+    std::vector<Eigen::Index> own;
+    for (std::size_t i = first; i < last; ++i) {
+      if (!is_phase(interval.regime) || (regimes[i] >> phases).none()) own.push_back(as_index(i));
+    }
+    if (own.empty()) continue;
+    const Eigen::MatrixXd columns = rows(own, Eigen::seqN(0, rows.cols() - 1));
+    RegimeSum part{SymmetricPart(columns.transpose() * columns)};
+    if (flight.columns.reference == 0) {  // an interval counts once, whatever the number of references
+      part.intervals = 1.0;
+      part.duration = (interval.end - interval.begin) * static_cast<double>(own.size()) /
+                      static_cast<double>(last - first);
+    }
+    sums.of[static_cast<std::size_t>(interval.regime)] += part;
+  }
+  for (RegimeSum& sum : sums.of) {
+    sum.flight = samples.name;
+    sum.longest = sum.duration;
+  }
+  return sums;
+}
+
+}  // namespace
+
+std::vector<FlownRegime> flown_regimes(const Scores& scores,
+                                       const std::function<FlightInBins(std::size_t flight)>& flight) {
+  RegimeSums sums = scores.share.sum_of_each_flight<RegimeSums>(
+      [&](std::size_t f) { return sums_of(scores.rows[f], flight(f)); });
+  std::vector<FlownRegime> regimes;
+  for (std::size_t r = 0; r < regime_count; ++r) {
+    RegimeSum& sum = sums.of[r];
+    if (sum.intervals == 0.0) continue;
+    regimes.push_back({static_cast<Regime>(r), sum.duration / sum.intervals,
+                       sum.information.matrix / sum.intervals, std::move(sum.flight)});
+  }
+  return regimes;
+}
+
+}  // namespace pcor::internal

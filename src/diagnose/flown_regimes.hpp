@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <pcor/regimes/regimes.hpp>
+#include "diagnose/columns.hpp"
+#include "diagnose/scores.hpp"
+
+namespace pcor::internal {
+
+/// A regime that some flights flew: the mean of its intervals.
+struct FlownRegime {
+  Regime regime = Regime::count;
+  double duration = 0.0;          ///< s
+  Eigen::MatrixXd information{};  ///< products of the whitened columns with each other
+  std::string flight{};           ///< name of the flight that flew most of the regime
+};
+
+/// An own flight against one of its references.
+struct FlightInBins {
+  const FlightColumns& columns;
+  const Binning& bins;
+};
+
+/// The regimes of all flights that can be flown once more: all but ground, take-off and level. Bins of a
+/// climb or a descent over which another regime lies, such as a turn, count for that regime alone.
+///
+/// @param flight gives the flight of an entry of the scores
+std::vector<FlownRegime> flown_regimes(const Scores& scores,
+                                       const std::function<FlightInBins(std::size_t flight)>& flight);
+
+}  // namespace pcor::internal

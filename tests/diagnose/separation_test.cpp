@@ -1,0 +1,161 @@
+// What more flying would separate, against chances by simulation and against laws of what repeats do.
+#include "diagnose/separation.hpp"
+
+#include <gmock/gmock.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pcor/effects/catalogue.hpp>
+
+namespace pcor::internal {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+enum : Eigen::Index { base, effect, rival, columns };
+
+/// Rows in which the columns of effect and rival are alike to a correlation.
+Eigen::MatrixXd rows_of(Eigen::Index count, double correlation, unsigned seed = 1) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd rows = Eigen::MatrixXd::NullaryExpr(
+      count, columns, [&](Eigen::Index, Eigen::Index) { return normal(engine); });
+  rows.col(rival) =
+      correlation * rows.col(effect) + std::sqrt(1.0 - correlation * correlation) * rows.col(rival);
+  return rows;
+}
+
+FlownRegime regime_of(Regime regime, const Eigen::MatrixXd& rows, double duration = 90.0) {
+  return {regime, duration, rows.transpose() * rows, "second.nc"};
+}
+
+Rivalry rivalry_of(const Eigen::MatrixXd& rows, double size) {
+  return {rows.transpose() * rows, 1.0, {effect}, Eigen::VectorXd::Constant(1, size), {{base, rival}}};
+}
+
+/// The sum of squares that a fit of some columns leaves.
+double left_by(const Eigen::MatrixXd& rows, const std::vector<Eigen::Index>& fitted,
+               const Eigen::VectorXd& residual) {
+  const Eigen::MatrixXd some = rows(Eigen::all, fitted);
+  const Eigen::VectorXd estimate = (some.transpose() * some).ldlt().solve(some.transpose() * residual);
+  return (residual - some * estimate).squaredNorm();
+}
+
+// A rival is separated where chi2 rises by more than 9 with it in the place of the effect.
+TEST(Separation, IsAsProbableAsItIsFrequent) {
+  constexpr int draws = 2000;
+  const Eigen::MatrixXd now = rows_of(200, 0.99, 1);
+  const Eigen::MatrixXd more = rows_of(100, 0.95, 2);
+  for (const double size : {0.8, 1.0}) {
+    const std::vector<FlownRegime> regimes{regime_of(Regime::circle, more)};
+    const Plan plan = best_plan(regimes, rivalry_of(now, size));
+    ASSERT_NE(plan.regime, nullptr);
+    Eigen::MatrixXd all(now.rows() + plan.repeats * more.rows(), columns);
+    all.topRows(now.rows()) = now;
+    for (int i = 0; i < plan.repeats; ++i) all.middleRows(now.rows() + i * more.rows(), more.rows()) = more;
+    std::mt19937_64 engine(3);
+    std::normal_distribution<double> normal;
+    int separated = 0;
+    for (int draw = 0; draw < draws; ++draw) {
+      const Eigen::VectorXd residual =
+          size * all.col(effect) +
+          Eigen::VectorXd::NullaryExpr(all.rows(), [&](Eigen::Index) { return normal(engine); });
+      if (left_by(all, {base, rival}, residual) - left_by(all, {base, effect}, residual) > 9.0) ++separated;
+    }
+    EXPECT_NEAR(plan.power, static_cast<double>(separated) / draws, 0.03) << size;
+  }
+}
+
+TEST(Separation, GrowsWithRepeatsAsWithLongerIntervals) {
+  const Rivalry rivalry = rivalry_of(rows_of(100, 0.99), 0.5);
+  double before = 0.0;
+  for (const int length : {100, 200, 400, 800}) {
+    const std::vector<FlownRegime> once{regime_of(Regime::circle, rows_of(length, 0.97, 4))};
+    const Plan plan = best_plan(once, rivalry);
+    const double power = std::min(plan.power, 0.95);  // with which it needs no more repeats
+    EXPECT_GE(power, before) << length;
+    EXPECT_LE(power, 1.0);
+    before = power;
+    if (power < 0.95) continue;
+    FlownRegime joined = once.front();
+    joined.information *= plan.repeats;
+    joined.duration *= plan.repeats;
+    const std::vector<FlownRegime> of_joined{joined};
+    const Plan longer = best_plan(of_joined, rivalry);
+    EXPECT_EQ(longer.repeats, 1);
+    EXPECT_DOUBLE_EQ(longer.power, plan.power);
+    EXPECT_DOUBLE_EQ(longer.duration(), plan.duration());
+  }
+  EXPECT_EQ(before, 0.95);
+}
+
+TEST(Separation, IsByTheRegimeThatGainsMostInTheSameTime) {
+  const Rivalry rivalry = rivalry_of(rows_of(100, 0.99), 1.0);
+  const Eigen::MatrixXd rows = rows_of(200, 0.7, 5);
+  std::vector<FlownRegime> regimes{regime_of(Regime::climb, rows_of(800, 0.9, 6), 1200.0),
+                                   regime_of(Regime::circle, rows, 160.0)};
+  Plan plan = best_plan(regimes, rivalry);
+  ASSERT_EQ(plan.regime, &regimes[1]);
+  EXPECT_THAT(text_of(plan, "static-lag", neutral_effect("static-lag"), {"temp-lag"}),
+              HasSubstr("fly 1 more circle of 2.7 min as on second.nc"));
+  regimes[1].duration = 16000.0;
+  plan = best_plan(regimes, rivalry);
+  ASSERT_EQ(plan.regime, &regimes[0]);
+}
+
+TEST(Separation, IsOfTheRivalThatImitatesMost) {
+  const Eigen::MatrixXd rows = rows_of(100, 0.99);
+  const std::vector<FlownRegime> regimes{regime_of(Regime::yaw_manoeuvre, rows_of(400, 0.9, 7))};
+  Rivalry rivalry = rivalry_of(rows, 1.0);
+  const Plan of_one = best_plan(regimes, rivalry);
+  rivalry.rests.push_back({base});  // which imitates nothing
+  const Plan of_two = best_plan(regimes, rivalry);
+  EXPECT_EQ(of_two.repeats, of_one.repeats);
+  EXPECT_EQ(of_two.power, of_one.power);
+  const std::string text =
+      text_of(of_two, "static-lag", neutral_effect("static-lag"), {"temp-lag", "total-lag"});
+  EXPECT_THAT(text, HasSubstr("more yaw manoeuvre"));
+  EXPECT_THAT(text, HasSubstr("static-lag from temp-lag and total-lag"));
+}
+
+TEST(Separation, IsWhatTheCatalogueSaysWhereNoRegimeHelps) {
+  const ModelEffect lag = neutral_effect("static-lag");
+  const std::string manoeuvre(effect_facts[effect_named("static-lag")].manoeuvre);
+  const Rivalry rivalry = rivalry_of(rows_of(100, 1.0), 5.0);
+  const std::vector<FlownRegime> alike{regime_of(Regime::pitch_manoeuvre, rows_of(100, 1.0, 8))};
+  for (const std::vector<FlownRegime>& regimes : {alike, std::vector<FlownRegime>{}}) {
+    const Plan plan = best_plan(regimes, rivalry);
+    EXPECT_EQ(plan.regime, nullptr);
+    EXPECT_EQ(plan.power, 0.0);
+    const std::string text = text_of(plan, "reference:static-lag", lag, {"temp-lag"});
+    EXPECT_THAT(text, HasSubstr(manoeuvre));
+    EXPECT_THAT(text, Not(HasSubstr("%")));
+  }
+  ModelEffect own;
+  own.id = "my-thrust";
+  own.formula = "k * ENGTRQ";
+  EXPECT_THAT(general_advice("my-thrust", own), testing::IsEmpty());
+  EXPECT_FALSE(is_separated(rivalry));
+}
+
+// More of the same is no advice to flights that separate the effect nearly, or surely, without it.
+TEST(Separation, NeedsARegimeThatHalvesTheDoubt) {
+  const Eigen::MatrixXd rows = rows_of(300, 0.9);
+  const std::vector<FlownRegime> nothing{regime_of(Regime::turn, 1e-3 * rows_of(10, 0.5, 9))};
+  for (const double size : {0.4, 0.5}) {
+    const Rivalry rivalry = rivalry_of(rows, size);
+    EXPECT_EQ(best_plan(nothing, rivalry).regime, nullptr) << size;
+    EXPECT_FALSE(is_separated(rivalry)) << size;
+  }
+  EXPECT_TRUE(is_separated(rivalry_of(rows, 2.0)));
+}
+
+}  // namespace
+}  // namespace pcor::internal
