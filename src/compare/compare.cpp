@@ -17,6 +17,7 @@
 #include "residuals/flight_statistics.hpp"
 #include "residuals/packed_residuals.hpp"
 #include "team/flight_share.hpp"
+#include "team/workers.hpp"
 #include "words/phrasing.hpp"
 
 namespace pcor {
@@ -246,13 +247,15 @@ std::vector<Field> fields_of(const std::vector<Contender>& contenders) {
 }
 
 /// The residuals of models to one reference on one flight, where all of them have one.
-FlightResiduals residuals_on(const FlightSet& flights, std::size_t number,
+/// @param samples of each pairing
+FlightResiduals residuals_on(const std::vector<std::shared_ptr<const FlightSamples>>& samples_of,
                              const std::vector<Pairing>& pairings, const MaskOptions& options,
                              std::vector<std::string>& notes) {
   FlightResiduals result;
-  for (const auto& [contender, reference] : pairings) {
+  for (std::size_t k = 0; k < pairings.size(); ++k) {
+    const auto& [contender, reference] = pairings[k];
     const ModelFile& model = contender.model;
-    const auto samples = flights.samples(number, model, reference, options);
+    const std::shared_ptr<const FlightSamples>& samples = samples_of[k];
     const Residuals residuals(samples, model, reference, options);
     const double* const parameters = residuals.parameters().data();
     result.values.push_back(residuals.values(parameters));
@@ -338,18 +341,27 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
   Comparison result;
   result.reference = first.description();
   result.is_static_pressure = first.is_static_pressure();
-  const auto read = [&](std::size_t number, bool with_series) {
+  using SamplesOfPairings = std::vector<std::shared_ptr<const FlightSamples>>;
+  const auto read = [&](std::size_t number) {
+    SamplesOfPairings samples;
+    for (const auto& [contender, reference] : pairings)
+      samples.push_back(flights.samples(number, contender.model, reference, options.mask));
+    return samples;
+  };
+  const auto make = [&](const SamplesOfPairings& samples, bool with_series) {
     std::vector<std::string> notes;
-    FlightPart part = part_of(residuals_on(flights, number, pairings, options.mask, notes), with_series);
+    FlightPart part = part_of(residuals_on(samples, pairings, options.mask, notes), with_series);
     part.notes = std::move(notes);
     return part;
   };
   const bool keeps_all = flights.size() <= options.most_series;
-  auto parts = flights.share().of_each_flight<FlightPart>([&](std::size_t number) {
-    FlightPart part = read(number, keeps_all);
-    tell();
-    return part;
-  });
+  auto parts = flights.share().map<FlightPart>(
+      Workers(flights.team(), 0).threads,
+      [&](std::size_t number) {
+        tell();
+        return read(number);
+      },
+      [&](std::size_t, const SamplesOfPairings& samples) { return make(samples, keeps_all); });
   std::vector<FlightNote> notes;
   PairMoments pressures;
   PairMoments total_pressures;
@@ -378,7 +390,7 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
   if (keeps_all) return result;
   const std::vector<std::size_t> shown = to_show(parts, options.most_series);
   for (FlightPart& part : flights.share().of_entries(shown).of_each_flight<FlightPart>(
-           [&](std::size_t k) { return read(shown[k], true); }))
+           [&](std::size_t k) { return make(read(shown[k]), true); }))
     result.flights.push_back(std::move(*part.series));
   return result;
 }

@@ -12,6 +12,7 @@
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "residuals/frozen.hpp"
+#include "team/workers.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -122,12 +123,14 @@ References usable_references(const References& references, std::vector<std::stri
 }
 
 TeamColumns columns_of_entries(const FlightShare& share,
-                               const std::function<FlightColumns(std::size_t)>& make) {
+                               const std::function<SamplesOfFlight(std::size_t)>& read,
+                               const std::function<FlightColumns(std::size_t, SamplesOfFlight)>& make) {
   std::vector<FlightColumns> own(share.flights());
-  TeamColumns columns{share, share.of_each_flight<FlightColumns>([&](std::size_t entry) {
-                        own[entry] = make(entry);
-                        return outline_of(own[entry]);
-                      })};
+  TeamColumns columns{share, share.map<FlightColumns>(Workers(share.team(), 0).threads, read,
+                                                      [&](std::size_t entry, SamplesOfFlight samples) {
+                                                        own[entry] = make(entry, std::move(samples));
+                                                        return outline_of(own[entry]);
+                                                      })};
   for (std::size_t entry = 0; entry < own.size(); ++entry) {
     if (share.owns(entry)) columns.flights[entry] = std::move(own[entry]);
   }
@@ -142,10 +145,11 @@ TeamColumns columns_of_flights(const FlightSet& files, std::size_t count, const 
     for (std::size_t file = 0; file < count; ++file) file_of_each.push_back(file);
   }
   std::size_t done = 0;
-  TeamColumns columns = columns_of_entries(files.share().of_entries(file_of_each), [&](std::size_t entry) {
+  const auto read = [&](std::size_t entry) {
     const std::size_t file = file_of_each[entry];
     const std::size_t r = entry / count;
-    auto samples = files.samples(file, set.extended, *set.references[0], options.mask);
+    if (r == 0 && options.progress) options.progress(++done, files.share().own());
+    SamplesOfFlight samples = files.samples(file, set.extended, *set.references[0], options.mask);
     if (r > 0) {
       auto further = std::make_shared<FlightSamples>(*samples);
       further->notes.clear();
@@ -153,11 +157,15 @@ TeamColumns columns_of_flights(const FlightSet& files, std::size_t count, const 
       mark_frozen(*further, &FlightSamples::reference, options.mask.least_airspeed);
       samples = std::move(further);
     }
-    FlightColumns found = find_columns(samples, model, set, r, options.mask, options.training_share);
-    found.file = file;
-    if (r == 0 && options.progress) options.progress(++done, files.share().own());
+    return samples;
+  };
+  const auto make = [&](std::size_t entry, const SamplesOfFlight& samples) {
+    FlightColumns found =
+        find_columns(samples, model, set, entry / count, options.mask, options.training_share);
+    found.file = file_of_each[entry];
     return found;
-  });
+  };
+  TeamColumns columns = columns_of_entries(files.share().of_entries(file_of_each), read, make);
   for (const FlightColumns& flight : columns.flights)
     notes.insert(notes.end(), flight.samples->notes.begin(), flight.samples->notes.end());
   return columns;

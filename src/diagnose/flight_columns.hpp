@@ -26,9 +26,13 @@ struct TeamColumns {
   std::vector<FlightColumns> flights{};
 };
 
-/// The columns of entries of a share. @param make gives them of an own entry
+using SamplesOfFlight = std::shared_ptr<const FlightSamples>;
+
+/// The columns of entries of a share, in threads.
+/// @param read gives the samples of an own entry @param make gives its columns
 TeamColumns columns_of_entries(const FlightShare& share,
-                               const std::function<FlightColumns(std::size_t entry)>& make);
+                               const std::function<SamplesOfFlight(std::size_t entry)>& read,
+                               const std::function<FlightColumns(std::size_t entry, SamplesOfFlight)>& make);
 
 /// The columns of the first `count` flights against each of the set's references.
 /// @param notes get what a user should know of the flights

@@ -133,17 +133,18 @@ TeamColumns held_out_columns(const FlightSet& files, std::size_t fitted, const T
       if (flight.reference == 0) file_of_each.push_back(flight.file);
     }
   }
-  return columns_of_entries(files.share().of_entries(file_of_each), [&](std::size_t entry) {
-    const std::size_t file = file_of_each[entry];
-    // The fitted flights against the first reference come first.
-    std::shared_ptr<const FlightSamples> samples =
-        entry < whole ? files.samples(file, set.extended, *set.references[0], mask)
-                      : columns.flights[entry - whole].samples;
-    FlightColumns later =
-        held_out(find_columns(samples, model, set, 0, mask, 1.0), entry < whole ? 0.0 : share);
-    later.file = file;
-    return later;
-  });
+  // The fitted flights against the first reference come first.
+  const auto read = [&](std::size_t entry) {
+    return entry < whole ? files.samples(file_of_each[entry], set.extended, *set.references[0], mask)
+                         : columns.flights[entry - whole].samples;
+  };
+  return columns_of_entries(
+      files.share().of_entries(file_of_each), read, [&](std::size_t entry, const SamplesOfFlight& samples) {
+        FlightColumns later =
+            held_out(find_columns(samples, model, set, 0, mask, 1.0), entry < whole ? 0.0 : share);
+        later.file = file_of_each[entry];
+        return later;
+      });
 }
 
 /// The residual with effects at coefficients that are not small: as a refit with them has it.

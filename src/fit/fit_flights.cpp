@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
-#include <future>
 
 #include "numerics/binned_rows.hpp"
 #include "numerics/median.hpp"
@@ -136,36 +134,11 @@ std::shared_ptr<FitFlight> FitFlights::made(std::size_t number,
 
 void FitFlights::visit_those(const std::function<bool(std::size_t)>& chosen,
                              const std::function<void(std::size_t, FitFlight&)>& visit) {
-  const std::size_t threads = task_.threads();
-  const auto how = threads > 1 ? std::launch::async : std::launch::deferred;
-  std::deque<std::pair<std::size_t, std::future<void>>> working;
-  const auto finish_first = [&working] {
-    const std::size_t number = working.front().first;
-    std::future<void> done = std::move(working.front().second);
-    working.pop_front();
-    try {
-      done.get();
-    } catch (const Error& error) {
-      throw FlightError(error, number);
-    }
-  };
-  const auto work_on = [&](std::size_t number, std::shared_ptr<const FlightSamples> samples) {
-    visit(number, *made(number, std::move(samples)));
-  };
-  for (std::size_t number = 0; number < count(); ++number) {
-    if (!task_.flights.share().owns(number) || !chosen(number)) continue;
-    std::shared_ptr<const FlightSamples> samples;
-    try {
-      samples = samples_of(number);
-    } catch (const Error& error) {
-      while (!working.empty()) finish_first();  // an earlier flight fails first
-      throw FlightError(error, number);
-    }
-    if (working.size() == threads) finish_first();
-    working.emplace_back(number, std::async(how, work_on, number, std::move(samples)));
-    if (threads == 1) finish_first();
-  }
-  while (!working.empty()) finish_first();
+  task_.flights.share().visit(
+      task_.threads(), chosen, [this](std::size_t number) { return samples_of(number); },
+      [&](std::size_t number, std::shared_ptr<const FlightSamples> samples) {
+        visit(number, *made(number, std::move(samples)));
+      });
 }
 
 Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss& loss) {

@@ -7,6 +7,9 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <functional>
+#include <future>
+#include <optional>
 #include <string>
 #include <typeinfo>
 #include <utility>
@@ -76,6 +79,47 @@ class FlightShare {
              [&parts](std::size_t flight, Part part) { parts[flight] = std::move(part); });
     }
     return parts;
+  }
+
+  /// Visits own flights in threads. @param chosen tells whether to visit a flight
+  /// @param read gives what is read of a flight; it is called in this thread, in the order of the flights
+  /// @param work gets a flight and what was read of it; it is called by up to `threads` threads
+  /// @throws FlightError of the first flight that failed
+  template <class Read, class Work>
+  void visit(std::size_t threads, const std::function<bool(std::size_t)>& chosen, const Read& read,
+             const Work& work) const {
+    std::deque<std::pair<std::size_t, std::future<void>>> working;
+    const auto finish_first = [&working] {
+      auto first = std::move(working.front());
+      working.pop_front();
+      part_of([&first](std::size_t) { first.second.get(); }, first.first);
+    };
+    const auto how = threads > 1 ? std::launch::async : std::launch::deferred;
+    for (std::size_t flight = 0; flight < flights(); ++flight) {
+      if (!owns(flight) || !chosen(flight)) continue;
+      std::optional<decltype(read(flight))> input;
+      try {
+        input = part_of(read, flight);
+      } catch (const FlightError&) {
+        while (!working.empty()) finish_first();  // an earlier flight fails first
+        throw;
+      }
+      if (working.size() == threads) finish_first();
+      working.emplace_back(flight, std::async(how, work, flight, std::move(*input)));
+      if (threads == 1) finish_first();
+    }
+    while (!working.empty()) finish_first();
+  }
+
+  /// As `on_each_flight`, of what was read of each flight, in threads. @param read as in `visit`
+  /// @param make gives the part of a flight from its number and what was read of it
+  template <class Part, class Read, class Make>
+  std::vector<Part> map(std::size_t threads, const Read& read, const Make& make) const {
+    return on_each_flight<Part>([&](std::vector<Part>& parts) {
+      visit(
+          threads, [](std::size_t) { return true; }, read,
+          [&](std::size_t flight, auto input) { parts[flight] = make(flight, std::move(input)); });
+    });
   }
 
   /// The same of one flight after another. @param make gives the part of a flight
