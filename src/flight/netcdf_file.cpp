@@ -1,8 +1,10 @@
 #include "flight/netcdf_file.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <strings.h>
+#include <unistd.h>
 #include <pcor/words/shell_word.hpp>
 
 #include <algorithm>
@@ -365,13 +367,10 @@ void NetcdfFile::bring_into_memory(RecordBlock records) const {
   if (!is_brought(layout_.record_bytes) || records.count == 0 || end <= brought_) return;
   const std::size_t first = std::max(records.first, brought_);
   brought_ = end;
-  std::vector<char> buffer(classic_buffer_bytes);
-  std::ifstream file;
-  file.rdbuf()->pubsetbuf(buffer.data(), static_cast<std::streamsize>(buffer.size()));
-  file.open(path_, std::ios::binary);
-  file.seekg(static_cast<std::streamoff>(layout_.records_begin + first * layout_.record_bytes));
-  file.ignore(
-      static_cast<std::streamsize>((end - first) * layout_.record_bytes));  // the library finds trouble
+  const int file = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+  posix_fadvise(file, static_cast<off_t>(layout_.records_begin + first * layout_.record_bytes),
+                static_cast<off_t>((end - first) * layout_.record_bytes), POSIX_FADV_WILLNEED);
+  ::close(file);
 }
 
 void NetcdfFile::read(int number, RecordBlock records, double* out) const {
