@@ -297,11 +297,6 @@ struct FlightWriter::Implementation {
 
   // The data
 
-  template <class Number>
-  void put(int variable, RecordBlock block, std::size_t rate, const Number* numbers) const {
-    file->variable(variable).putVar({block.first, 0}, {block.count, rate}, numbers);
-  }
-
   void write_time_stamps(RecordBlock block, const double* times) {
     end_definition();
     if (block.count == 0) return;
@@ -316,7 +311,7 @@ struct FlightWriter::Implementation {
         throw Error(
             fmt::format("{}: the time of record {} is not a whole second", shown.string(), block.first + i));
     }
-    put(time_variable, block, 1, since_midnight.data());
+    file->variable(time_variable).putVar({block.first}, {block.count}, since_midnight.data());
     if (time_records == 0) first_time = times[0];
     last_time = times[block.count - 1];
     time_records += block.count;
@@ -333,7 +328,7 @@ struct FlightWriter::Implementation {
         if (!(std::abs(values[i]) <= std::numeric_limits<int>::max()) || values[i] != std::floor(values[i]))
           throw Error(fmt::format("{}: {} is not a whole number at record {}", shown.string(), variable.name,
                                   block.first + i / rate));
-      put(variable.id, block, rate, values);
+      file->variable(variable.id).putVar({block.first, 0}, {block.count, rate}, values);
     } else {
       constexpr double most = std::numeric_limits<float>::max();
       floats.resize(total);
@@ -344,7 +339,7 @@ struct FlightWriter::Implementation {
         if (present) range.include(static_cast<double>(floats[i]));
       }
       variable.range = range;
-      put(variable.id, block, rate, floats.data());
+      file->variable(variable.id).putVar({block.first, 0}, {block.count, rate}, floats.data());
     }
     variable.records += block.count;
   }
@@ -357,7 +352,7 @@ struct FlightWriter::Implementation {
       input->read(copied.name, block, UnitConversion(), values.data());
       std::replace_if(
           values.begin(), values.end(), [](double value) { return std::isnan(value); }, fill);
-      put(copied.id, block, rate, values.data());
+      file->variable(copied.id).putVar({block.first, 0}, {block.count, rate}, values.data());
     }
   }
 

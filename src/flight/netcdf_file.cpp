@@ -27,6 +27,7 @@ using netCDF::exceptions::NcException;
 namespace pcor::internal {
 namespace {
 
+constexpr std::string_view classic = "CDF", hdf5 = "\211HDF";  // how files begin
 constexpr std::size_t chunk_cache_bytes = 1 << 18, chunk_cache_slots = 1009;
 constexpr std::size_t page = std::size_t{4} << 10;
 // Of records between these only the pages are moved that hold what is wanted. Longer ones hold so much else
@@ -66,8 +67,6 @@ bool begins_with(const std::filesystem::path& path, std::string_view bytes) {
   return start == bytes;
 }
 
-bool is_classic(const std::filesystem::path& path) { return begins_with(path, "CDF"); }
-
 bool is_brought(std::size_t record_bytes) {
   return record_bytes > large_record && record_bytes <= longest_brought;
 }
@@ -81,15 +80,6 @@ std::string without_trailing_blanks(std::string text) {
 Error damaged(const std::filesystem::path& path, const std::string& why) {
   return Error(Error::Code::file,
                path.string() + " is truncated or damaged" + why + "; fetch it again from its source");
-}
-
-ClassicLayout checked_layout_of_classic(const std::filesystem::path& path) {
-  const auto layout = layout_of_classic(path);
-  if (!layout) throw damaged(path, ": its header cannot be read");
-  const auto size = std::filesystem::file_size(path);
-  if (size < layout->size)
-    throw damaged(path, fmt::format(": its header promises {} bytes and it has {}", layout->size, size));
-  return *layout;
 }
 
 std::string advice_to_reader(int status) {
@@ -129,10 +119,19 @@ std::string netcdf_reason(const NcException& error) {
   return text.substr(0, text.find('\n'));  // the place in netcdf-cxx4 follows
 }
 
-bool is_netcdf(const std::filesystem::path& path) { return is_classic(path) || begins_with(path, "\211HDF"); }
+bool is_netcdf(const std::filesystem::path& path) {
+  return begins_with(path, classic) || begins_with(path, hdf5);
+}
 
 NetcdfFile::NetcdfFile(std::filesystem::path path) : path_(std::move(path)), state_(path_) {
-  if (is_classic(path_)) layout_ = checked_layout_of_classic(path_);
+  if (begins_with(path_, classic)) {
+    const auto layout = layout_of_classic(path_);
+    if (!layout) throw damaged(path_, ": its header cannot be read");
+    const auto size = std::filesystem::file_size(path_);
+    if (size < layout->size)
+      throw damaged(path_, fmt::format(": its header promises {} bytes and it has {}", layout->size, size));
+    layout_ = *layout;
+  }
   try {
     file_.open(path_, is_brought(layout_.record_bytes)      ? page
                       : layout_.record_bytes > large_record ? large_record
