@@ -20,7 +20,7 @@ struct Format {
 constexpr Format formats[] = {
     {is_netcdf,
      [](const std::filesystem::path& path) -> std::unique_ptr<FlightFile> {
-       return std::make_unique<NetcdfFile>(NetcdfFile::open(path));
+       return std::make_unique<NetcdfFile>(path);
      }},
 };
 

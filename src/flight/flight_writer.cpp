@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <netcdf.h>
 #include <pcor/flight/flight_writer.hpp>
 #include <pcor/units/units.hpp>
 #include <pcor/words/error.hpp>
@@ -25,6 +24,8 @@ using namespace internal;
 namespace {
 
 constexpr float fill = -32767;
+constexpr int global = FlightFile::whole_file;
+constexpr const char* writing = "cannot be written";
 constexpr const char* iso_8601 = "%Y-%m-%dT%H:%M:%SZ";
 
 struct Range {
@@ -37,6 +38,8 @@ struct Range {
   }
   bool empty() const { return least > greatest; }
 };
+
+constexpr Range reserved{fill, fill};  // keeps the place of a range until the values are known
 
 /// A duration by ISO 8601, always of the same length.
 std::string duration_text(double seconds) {
@@ -71,17 +74,15 @@ struct FlightWriter::Implementation {
   bool whole_seconds;
   ReplacementFile replacement;
   std::optional<NetcdfOutput> file;
-  std::optional<CfDescription> cf;
   std::optional<NetcdfCopy> copies;  // from an input that is a netCDF file
   std::vector<Series> series;        // from another one
 
   int time_variable = 0;
   std::vector<Written> written;
   std::vector<float> floats;
-  std::vector<int> integers;
+  bool defining = true;
   std::size_t time_records = 0;
   double first_time = 0, last_time = 0;
-  std::vector<std::pair<int, std::string>> unknown;  // attributes that turned out to have no value
 
   Implementation(std::filesystem::path output, const Flight* flight, const NewFlight& start,
                  FileDescription what)
@@ -95,18 +96,17 @@ struct FlightWriter::Implementation {
     if (input && std::filesystem::equivalent(shown, input->path(), code))
       throw Error(shown.string() + " is the input itself; choose another output");
     file.emplace(replacement.path(), shown, start.kind);
-    cf.emplace(description, *file);
     const auto* const source = input ? dynamic_cast<const NetcdfFile*>(&input->file()) : nullptr;
     if (source) {
       const int time = *source->find_variable(input->time_variable());
       copies.emplace(*source, source->dimensions_of(time).front(), *file);
     }
-    define_time(start.first_time);
-    describe_file();
+    file->attempt(writing, [&] {
+      define_time(start.first_time);
+      describe_file();
+    });
   }
 
-  int id() const { return file->id(); }
-  void check(int status) const { file->check(status); }
   void put_text(int variable, const std::string& name, const std::string& text) const {
     file->put_text(variable, name, text);
   }
@@ -114,7 +114,7 @@ struct FlightWriter::Implementation {
   // The definition of the file
 
   void define_time(double first) {
-    time_variable = file->add_variable("Time", whole_seconds ? NC_INT : NC_DOUBLE, {file->time_dimension()});
+    time_variable = file->add_variable("Time", whole_seconds ? NC_INT : NC_DOUBLE, {file->time()});
     put_text(time_variable, "long_name", "time of measurement");
     put_text(time_variable, "standard_name", "time");
     put_text(time_variable, "axis", "T");
@@ -129,7 +129,7 @@ struct FlightWriter::Implementation {
                           (description.history.empty() ? "written by pcor" : description.history);
     if (input) {
       if (copies) copies->copy_global_attributes();
-      put_text(NC_GLOBAL, "time_coverage_resolution", fmt::format("PT{:g}S", input->time().step));
+      put_text(global, "time_coverage_resolution", fmt::format("PT{:g}S", input->time().step));
       const std::string earlier = input->attribute("history");
       if (!earlier.empty()) history += "\n" + earlier;
       supply("platform", input->aircraft());
@@ -143,32 +143,25 @@ struct FlightWriter::Implementation {
     supply("source", "airborne observations");
     supply("platform_type", "aircraft");
     supply("keywords", "aircraft, airspeed, static pressure, dynamic pressure");
-    put_text(NC_GLOBAL, "Conventions", conventions(true));
-    if (!input) put_text(NC_GLOBAL, "ConventionsURL", "https://www.eol.ucar.edu/raf/Software/netCDF.html");
-    put_text(NC_GLOBAL, "standard_name_vocabulary", "CF Standard Name Table v93");
-    put_text(NC_GLOBAL, "history", history);
-    put_text(NC_GLOBAL, "date_created", utc_text(now, iso_8601));
-    put_text(NC_GLOBAL, "time_coordinate", "Time");
-    for (const auto& [name, text] : description.attributes) put_text(NC_GLOBAL, name, text);
+    put_text(global, "Conventions", conventions(true));
+    if (!input) put_text(global, "ConventionsURL", "https://www.eol.ucar.edu/raf/Software/netCDF.html");
+    put_text(global, "standard_name_vocabulary", "CF Standard Name Table v93");
+    put_text(global, "history", history);
+    put_text(global, "date_created", utc_text(now, iso_8601));
+    put_text(global, "time_coordinate", "Time");
+    for (const auto& [name, text] : description.attributes) put_text(global, name, text);
     // Filled in at the end, with as many letters.
-    put_text(NC_GLOBAL, "time_coverage_start", utc_text(0, iso_8601));
-    put_text(NC_GLOBAL, "time_coverage_end", utc_text(0, iso_8601));
+    put_text(global, "time_coverage_start", utc_text(0, iso_8601));
+    put_text(global, "time_coverage_end", utc_text(0, iso_8601));
     supply("FlightDate", utc_text(midnight, "%m/%d/%Y"));
-    put_text(NC_GLOBAL, "TimeInterval", "00:00:00-00:00:00");
-    put_text(NC_GLOBAL, "time_coverage_duration", duration_text(0));
-    const struct {
-      const std::string& variable;
-      const char *coordinate, *range;
-    } places[] = {{description.latitude, "latitude_coordinate", "geospatial_lat"},
-                  {description.longitude, "longitude_coordinate", "geospatial_lon"},
-                  {description.altitude, "zaxis_coordinate", "geospatial_vertical"}};
-    for (const auto& place : places) {
-      if (place.variable.empty()) continue;
-      put_text(NC_GLOBAL, place.coordinate, place.variable);
-      reserve_range(NC_GLOBAL, std::string(place.range) + "_min", 1);
-      reserve_range(NC_GLOBAL, std::string(place.range) + "_max", 1);
+    put_text(global, "TimeInterval", "00:00:00-00:00:00");
+    put_text(global, "time_coverage_duration", duration_text(0));
+    for (const Place& place : places) {
+      if ((description.*place.variable).empty()) continue;
+      put_text(global, place.coordinate, description.*place.variable);
+      put_range(global, place.range, reserved);
     }
-    if (!description.altitude.empty()) put_text(NC_GLOBAL, "geospatial_vertical_positive", "up");
+    if (!description.altitude.empty()) put_text(global, "geospatial_vertical_positive", "up");
   }
 
   std::string conventions(bool is_cf) const {
@@ -196,9 +189,8 @@ struct FlightWriter::Implementation {
 
   /// Whether every unit is one that UDUNITS knows.
   bool has_known_units() const {
-    const NetcdfFile& whole = file->file();
-    for (int variable = 0; variable < whole.variable_count(); ++variable) {
-      const std::string unit = whole.text_attribute(variable, "units");
+    for (int variable = 0; variable < file->variable_count(); ++variable) {
+      const std::string unit = file->text_attribute(variable, "units");
       const bool is_time = unit.find(" since ") != std::string::npos;
       if (!unit.empty() && !is_time && !is_known_unit(unit)) return false;
     }
@@ -206,30 +198,27 @@ struct FlightWriter::Implementation {
   }
 
   void end_definition() {
-    if (!file->is_defining()) return;
-    cf->complete(trajectory());
-    if (!has_known_units()) put_text(NC_GLOBAL, "Conventions", conventions(false));
+    if (!defining) return;
+    defining = false;
+    const std::string flight = trajectory();
+    const std::optional<int> trajectory_id = describe_by_cf(description, flight, *file);
+    if (!has_known_units()) put_text(global, "Conventions", conventions(false));
     file->end_definition();
-    cf->write();
+    if (trajectory_id) file->variable(*trajectory_id).putVar(flight.c_str());
   }
 
-  std::string text_of(const std::string& name) const { return file->file().text_attribute(NC_GLOBAL, name); }
+  std::string text_of(const std::string& name) const { return file->text_attribute(global, name); }
 
   // A global attribute as stated, else as the input has it, else as given.
   void supply(const std::string& name, const std::string& otherwise, const std::string& stated = "") const {
     if (!stated.empty())
-      put_text(NC_GLOBAL, name, stated);
+      put_text(global, name, stated);
     else if (text_of(name).empty())
-      put_text(NC_GLOBAL, name, otherwise);
-  }
-
-  void reserve_range(int variable, const std::string& name, std::size_t count) const {
-    const float bounds[] = {fill, fill};
-    check(nc_put_att_float(id(), variable, name.c_str(), NC_FLOAT, count, bounds));
+      put_text(global, name, otherwise);
   }
 
   void check_new(const std::string& name) const {
-    if (!file->is_defining())
+    if (!defining)
       throw Error(shown.string() + ": " + name + " is defined after the first value was written");
     if (name.empty() || name.find('/') != std::string::npos)
       throw Error(shown.string() + ": a variable cannot be called \"" + name + "\"; choose another name");
@@ -248,7 +237,7 @@ struct FlightWriter::Implementation {
     entry.flags = !variable.flags.empty();
     entry.id = file->add_variable(variable.name, entry.flags ? NC_INT : NC_FLOAT,
                                   file->dimensions_of_series(static_cast<std::size_t>(variable.rate)));
-    if (!entry.flags) check(nc_put_att_float(id(), entry.id, "_FillValue", NC_FLOAT, 1, &fill));
+    if (!entry.flags) file->variable(entry.id).putAtt("_FillValue", netCDF::ncFloat, fill);
     if (entry.flags)
       put_flags(entry.id, variable.flags);
     else
@@ -264,7 +253,7 @@ struct FlightWriter::Implementation {
     put_text(entry.id, "ancillary_variables",
              fmt::format("{}", fmt::join(variable.ancillary_variables, " ")));
     for (const auto& [name, text] : variable.attributes) put_text(entry.id, name, text);
-    if (!entry.flags) reserve_range(entry.id, "actual_range", 2);
+    if (!entry.flags) put_range(entry.id, "actual_range", reserved);
     written.push_back(entry);
     return written.size() - 1;
   }
@@ -276,7 +265,7 @@ struct FlightWriter::Implementation {
       masks.push_back(flag.mask);
       meanings.push_back(flag.meaning);
     }
-    check(nc_put_att_int(id(), variable, "flag_masks", NC_INT, masks.size(), masks.data()));
+    file->variable(variable).putAtt("flag_masks", netCDF::ncInt, masks.size(), masks.data());
     put_text(variable, "flag_meanings", fmt::format("{}", fmt::join(meanings, " ")));
   }
 
@@ -300,8 +289,7 @@ struct FlightWriter::Implementation {
                   " is not a time series, which alone is copied; leave it out");
     const int variable = file->add_variable(info.name, NC_DOUBLE,
                                             file->dimensions_of_series(static_cast<std::size_t>(info.rate)));
-    const double marker = fill;
-    check(nc_put_att_double(id(), variable, "_FillValue", NC_DOUBLE, 1, &marker));
+    file->variable(variable).putAtt("_FillValue", netCDF::ncDouble, fill);
     put_text(variable, "units", standard_unit(info.units));
     put_text(variable, "long_name", info.long_name.empty() ? info.name : info.long_name);
     series.push_back({info.name, variable});
@@ -323,7 +311,7 @@ struct FlightWriter::Implementation {
         throw Error(
             fmt::format("{}: the time of record {} is not a whole second", shown.string(), block.first + i));
     }
-    check(nc_put_vara_double(id(), time_variable, &block.first, &block.count, since_midnight.data()));
+    file->variable(time_variable).putVar({block.first}, {block.count}, since_midnight.data());
     if (time_records == 0) first_time = times[0];
     last_time = times[block.count - 1];
     time_records += block.count;
@@ -332,28 +320,26 @@ struct FlightWriter::Implementation {
   void write(std::size_t number, RecordBlock block, const double* values) {
     end_definition();
     Written& variable = written.at(number);
-    const std::size_t start[] = {block.first, 0};
-    const std::size_t count[] = {block.count, static_cast<std::size_t>(variable.rate)};
-    const std::size_t total = count[0] * count[1];
+    const auto rate = static_cast<std::size_t>(variable.rate);
+    const std::size_t total = block.count * rate;
     if (total == 0) return;
     if (variable.flags) {
-      integers.resize(total);
-      for (std::size_t i = 0; i < total; ++i) {
+      for (std::size_t i = 0; i < total; ++i)
         if (!(std::abs(values[i]) <= std::numeric_limits<int>::max()) || values[i] != std::floor(values[i]))
           throw Error(fmt::format("{}: {} is not a whole number at record {}", shown.string(), variable.name,
-                                  block.first + i / count[1]));
-        integers[i] = static_cast<int>(values[i]);
-      }
-      check(nc_put_vara_int(id(), variable.id, start, count, integers.data()));
+                                  block.first + i / rate));
+      file->variable(variable.id).putVar({block.first, 0}, {block.count, rate}, values);
     } else {
       constexpr double most = std::numeric_limits<float>::max();
       floats.resize(total);
+      Range range = variable.range;  // a local one stays in registers
       for (std::size_t i = 0; i < total; ++i) {
         const bool present = std::abs(values[i]) <= most;  // false for NaN
         floats[i] = present ? static_cast<float>(values[i]) : fill;
-        if (present) variable.range.include(static_cast<double>(floats[i]));
+        if (present) range.include(static_cast<double>(floats[i]));
       }
-      check(nc_put_vara_float(id(), variable.id, start, count, floats.data()));
+      variable.range = range;
+      file->variable(variable.id).putVar({block.first, 0}, {block.count, rate}, floats.data());
     }
     variable.records += block.count;
   }
@@ -366,21 +352,18 @@ struct FlightWriter::Implementation {
       input->read(copied.name, block, UnitConversion(), values.data());
       std::replace_if(
           values.begin(), values.end(), [](double value) { return std::isnan(value); }, fill);
-      const std::size_t start[] = {block.first, 0};
-      const std::size_t count[] = {block.count, rate};
-      check(nc_put_vara_double(id(), copied.id, start, count, values.data()));
+      file->variable(copied.id).putVar({block.first, 0}, {block.count, rate}, values.data());
     }
   }
 
   // The end
 
-  std::optional<Range> range_of(const std::string& name) const {
+  Range range_of(const std::string& name) const {
     for (const Written& variable : written)
       if (variable.name == name && !variable.range.empty()) return variable.range;
-    if (!input || !file->has(name) || !input->has(name) || !input->variable(name).is_series)
-      return std::nullopt;
-    const auto rate = static_cast<std::size_t>(input->variable(name).rate);
     Range range;
+    if (!input || !file->has(name) || !input->has(name) || !input->variable(name).is_series) return range;
+    const auto rate = static_cast<std::size_t>(input->variable(name).rate);
     std::vector<double> values;
     for (const RecordBlock block : input->blocks()) {
       values.resize(block.count * rate);
@@ -388,21 +371,20 @@ struct FlightWriter::Implementation {
       for (const double value : values)
         if (!std::isnan(value)) range.include(value);
     }
-    return range.empty() ? std::nullopt : std::optional(range);
+    return range;
   }
 
-  // An attribute that could not be known is taken out again.
-  void put_range(int variable, const std::string& name, std::optional<Range> range) {
-    const bool both = variable != NC_GLOBAL;
-    if (!range) {
-      unknown.emplace_back(variable, both ? name : name + "_min");
-      if (!both) unknown.emplace_back(variable, name + "_max");
-      return;
-    }
-    const float bounds[] = {static_cast<float>(range->least), static_cast<float>(range->greatest)};
-    if (both) return check(nc_put_att_float(id(), variable, name.c_str(), NC_FLOAT, 2, bounds));
-    check(nc_put_att_float(id(), variable, (name + "_min").c_str(), NC_FLOAT, 1, &bounds[0]));
-    check(nc_put_att_float(id(), variable, (name + "_max").c_str(), NC_FLOAT, 1, &bounds[1]));
+  // A variable has both bounds in one attribute, the whole file in two. The attributes of an empty range are
+  // removed.
+  void put_range(int variable, const std::string& name, const Range& range) const {
+    const float bounds[] = {static_cast<float>(range.least), static_cast<float>(range.greatest)};
+    const auto put = [&](const std::string& attribute, std::size_t count, const float* numbers) {
+      if (range.empty()) return file->drop(variable, attribute);
+      file->variable(variable).putAtt(attribute, netCDF::ncFloat, count, numbers);
+    };
+    if (variable != global) return put(name, 2, bounds);
+    put(name + "_min", 1, &bounds[0]);
+    put(name + "_max", 1, &bounds[1]);
   }
 
   void finish() {
@@ -422,20 +404,15 @@ struct FlightWriter::Implementation {
         throw Error(fmt::format("{}: {} was written for {} of {} records", shown.string(), variable.name,
                                 variable.records, time_records));
 
-    put_text(NC_GLOBAL, "time_coverage_start", utc_text(first_time, iso_8601));
-    put_text(NC_GLOBAL, "time_coverage_end", utc_text(last_time, iso_8601));
-    put_text(NC_GLOBAL, "TimeInterval", utc_text(first_time, "%H:%M:%S-") + utc_text(last_time, "%H:%M:%S"));
-    put_text(NC_GLOBAL, "time_coverage_duration", duration_text(last_time - first_time));
+    put_text(global, "time_coverage_start", utc_text(first_time, iso_8601));
+    put_text(global, "time_coverage_end", utc_text(last_time, iso_8601));
+    put_text(global, "TimeInterval", utc_text(first_time, "%H:%M:%S-") + utc_text(last_time, "%H:%M:%S"));
+    put_text(global, "time_coverage_duration", duration_text(last_time - first_time));
     for (const Written& variable : written)
-      if (!variable.flags)
-        put_range(variable.id, "actual_range",
-                  variable.range.empty() ? std::nullopt : std::optional(variable.range));
-    if (!description.latitude.empty()) put_range(NC_GLOBAL, "geospatial_lat", range_of(description.latitude));
-    if (!description.longitude.empty())
-      put_range(NC_GLOBAL, "geospatial_lon", range_of(description.longitude));
-    if (!description.altitude.empty())
-      put_range(NC_GLOBAL, "geospatial_vertical", range_of(description.altitude));
-    file->remove(unknown);
+      if (!variable.flags) put_range(variable.id, "actual_range", variable.range);
+    for (const Place& place : places)
+      if (const std::string& name = description.*place.variable; !name.empty())
+        put_range(global, place.range, range_of(name));
     file->close();
     replacement.commit();
   }
@@ -448,7 +425,7 @@ NewFlight start_of(const Flight& input) {
   const TimeAxis& time = input.time();
   const bool fits_integers =
       time.whole_seconds && time.last - midnight_before(time.first) <= std::numeric_limits<int>::max();
-  return {time.first, fits_integers, netcdf ? kind_of(*netcdf) : FileKind::netcdf4};
+  return {time.first, fits_integers, netcdf ? netcdf->kind() : FileKind::netcdf4};
 }
 
 }  // namespace
@@ -466,19 +443,30 @@ FlightWriter::FlightWriter(FlightWriter&&) noexcept = default;
 FlightWriter& FlightWriter::operator=(FlightWriter&&) noexcept = default;
 FlightWriter::~FlightWriter() = default;
 
-std::size_t FlightWriter::define(const OutputVariable& variable) { return implementation_->define(variable); }
-void FlightWriter::copy(const std::string& name) { implementation_->copy(name); }
-bool FlightWriter::can_copy(const std::string& name) const { return implementation_->can_copy(name); }
+std::size_t FlightWriter::define(const OutputVariable& variable) {
+  return implementation_->file->attempt(writing, [&] { return implementation_->define(variable); });
+}
+
+void FlightWriter::copy(const std::string& name) {
+  implementation_->file->attempt(writing, [&] { implementation_->copy(name); });
+}
+
+bool FlightWriter::can_copy(const std::string& name) const {
+  return implementation_->file->attempt(writing, [&] { return implementation_->can_copy(name); });
+}
+
 bool FlightWriter::has(const std::string& name) const { return implementation_->file->has(name); }
 
 void FlightWriter::write_time_stamps(RecordBlock block, const double* times) {
-  implementation_->write_time_stamps(block, times);
+  implementation_->file->attempt(writing, [&] { implementation_->write_time_stamps(block, times); });
 }
 
 void FlightWriter::write(std::size_t variable, RecordBlock block, const double* values) {
-  implementation_->write(variable, block, values);
+  implementation_->file->attempt(writing, [&] { implementation_->write(variable, block, values); });
 }
 
-void FlightWriter::finish() { implementation_->finish(); }
+void FlightWriter::finish() {
+  implementation_->file->attempt(writing, [&] { implementation_->finish(); });
+}
 
 }  // namespace pcor

@@ -8,7 +8,8 @@
 
 namespace pcor::internal {
 
-/// Variables and attributes of a netCDF file that are taken over into a new one as they are stored.
+/// Variables and attributes of a netCDF file that are copied into a new one as they are stored. Callers use
+/// `attempt` of the output: the functions below may throw exceptions of netcdf-cxx4.
 class NetcdfCopy {
  public:
   /// Both files must outlive it. `time_dimension` is that of the source's records.
@@ -28,18 +29,14 @@ class NetcdfCopy {
 
  private:
   struct Copied {
-    int from = 0, to = 0;
-    int type = 0;
+    int from = 0, to = 0;          // the numbers of the variables
+    std::size_t record_bytes = 0;  // of all of it where it does not lie over time
     bool over_time = false;
-    std::vector<std::size_t> shape;  // of all of it, or of one record
+    std::vector<std::size_t> shape;  // of one record
   };
 
   void copy_attribute(int from, int to, const std::string& name, int type_of_variable) const;
-  void copy_compression(const Copied& variable) const;
-  std::size_t record_bytes(const Copied& variable) const;
-  void read(const Copied& variable, RecordBlock block, char* buffer) const;
-  void write(const Copied& variable, RecordBlock block, const char* buffer) const;
-  bool source_has_records() const;
+  void copy_block(const Copied& variable, RecordBlock block, std::vector<char>& buffer) const;
 
   const NetcdfFile& source_;
   int time_dimension_;

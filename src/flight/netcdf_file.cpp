@@ -1,9 +1,10 @@
 #include "flight/netcdf_file.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
-#include <netcdf.h>
+#include <fmt/ranges.h>
 #include <strings.h>
-#include <pcor/words/error.hpp>
+#include <unistd.h>
 #include <pcor/words/shell_word.hpp>
 
 #include <algorithm>
@@ -15,77 +16,55 @@
 #include <limits>
 #include <new>
 #include <string_view>
-#include <utility>
 
-#include "flight/classic_netcdf.hpp"
 #include "flight/file_in_hand.hpp"
 #include "words/quoting.hpp"
+
+using netCDF::NcDim;
+using netCDF::NcVar;
+using netCDF::exceptions::NcException;
 
 namespace pcor::internal {
 namespace {
 
-constexpr int closed = -1;
+constexpr std::string_view classic = "CDF", hdf5 = "\211HDF";  // how files begin
 constexpr std::size_t chunk_cache_bytes = 1 << 18, chunk_cache_slots = 1009;
 constexpr std::size_t page = std::size_t{4} << 10;
 // Of records between these only the pages are moved that hold what is wanted. Longer ones hold so much else
 // that bringing all of it into memory would take longer.
 constexpr std::size_t large_record = std::size_t{32} << 10, longest_brought = std::size_t{1} << 20;
 
-enum class Content { classic, hdf5, other };
+struct NumberType {
+  int type = NC_NAT;
+  double span = 0;  // how many integers there are; 0 for other types
+  bool is_signed = false;
+  // What the library writes where nothing was; for bytes it is a value like any other.
+  std::optional<double> fill;
+};
 
-/// What the library writes where nothing was; for bytes it is a value like any other.
-std::optional<double> default_fill(int type) {
-  switch (type) {
-    case NC_SHORT:
-      return NC_FILL_SHORT;
-    case NC_USHORT:
-      return NC_FILL_USHORT;
-    case NC_INT:
-      return NC_FILL_INT;
-    case NC_UINT:
-      return NC_FILL_UINT;
-    case NC_INT64:
-      return static_cast<double>(NC_FILL_INT64);
-    case NC_UINT64:
-      return static_cast<double>(NC_FILL_UINT64);
-    case NC_FLOAT:
-      return static_cast<double>(NC_FILL_FLOAT);
-    case NC_DOUBLE:
-      return NC_FILL_DOUBLE;
-    default:
-      return std::nullopt;
-  }
+constexpr NumberType number_types[] = {{NC_BYTE, 0x1p8, true, {}},
+                                       {NC_UBYTE, 0x1p8, false, {}},
+                                       {NC_SHORT, 0x1p16, true, NC_FILL_SHORT},
+                                       {NC_USHORT, 0x1p16, false, NC_FILL_USHORT},
+                                       {NC_INT, 0x1p32, true, NC_FILL_INT},
+                                       {NC_UINT, 0x1p32, false, NC_FILL_UINT},
+                                       {NC_INT64, 0x1p64, true, static_cast<double>(NC_FILL_INT64)},
+                                       {NC_UINT64, 0x1p64, false, static_cast<double>(NC_FILL_UINT64)},
+                                       {NC_FLOAT, 0, false, static_cast<double>(NC_FILL_FLOAT)},
+                                       {NC_DOUBLE, 0, false, NC_FILL_DOUBLE}};
+
+NumberType number_type(int type) {
+  for (const NumberType& each : number_types)
+    if (each.type == type) return each;
+  return {};
 }
 
-/// How many numbers an integer type has; nothing for other types.
-std::optional<double> span_of(int type) {
-  switch (type) {
-    case NC_BYTE:
-    case NC_UBYTE:
-      return 0x1p8;
-    case NC_SHORT:
-    case NC_USHORT:
-      return 0x1p16;
-    case NC_INT:
-    case NC_UINT:
-      return 0x1p32;
-    case NC_INT64:
-    case NC_UINT64:
-      return 0x1p64;
-    default:
-      return std::nullopt;
-  }
-}
+bool is_float(int type) { return type == NC_FLOAT || type == NC_DOUBLE; }
 
-bool is_signed(int type) { return type == NC_BYTE || type == NC_SHORT || type == NC_INT || type == NC_INT64; }
-
-Content content_of(const std::filesystem::path& path) {
-  char start[4] = {};
-  std::ifstream(path, std::ios::binary).read(start, sizeof start);
-  const std::string_view text(start, sizeof start);
-  if (text.substr(0, 3) == "CDF") return Content::classic;
-  if (text == "\211HDF") return Content::hdf5;
-  return Content::other;
+bool begins_with(const std::filesystem::path& path, std::string_view bytes) {
+  std::string start(bytes.size(), '\0');
+  std::ifstream(path, std::ios::binary).read(start.data(), static_cast<std::streamsize>(start.size()));
+  return start == bytes;
 }
 
 bool is_brought(std::size_t record_bytes) {
@@ -98,43 +77,24 @@ std::string without_trailing_blanks(std::string text) {
   return text;
 }
 
-ClassicLayout checked_layout_of_classic(const std::filesystem::path& path) {
-  const auto layout = layout_of_classic(path);
-  if (!layout)
-    throw Error(Error::Code::file,
-                path.string() +
-                    " is truncated or damaged: its header cannot be read; fetch it again from its source");
-  const auto size = std::filesystem::file_size(path);
-  if (size < layout->size)
-    throw Error(
-        Error::Code::file,
-        fmt::format(
-            "{} is truncated or damaged: its header promises {} bytes and it has {}; fetch it again from its "
-            "source",
-            path.string(), layout->size, size));
-  return *layout;
+Error damaged(const std::filesystem::path& path, const std::string& why) {
+  return Error(Error::Code::file,
+               path.string() + " is truncated or damaged" + why + "; fetch it again from its source");
 }
 
-/// Room for any name, as the library copies all of one: HDF5 keeps the length of an attribute's in two bytes,
-/// and those of variables and dimensions the library has cut off itself. Names in a classic file are looked
-/// at before (`layout_of_classic`).
-constexpr std::size_t room_for_name = std::size_t{1} << 16;
-
-const char* advice_to_reader(int status) {
-  switch (status) {
-    case NC_EATTMETA:
-      return "; take away what is neither text nor a list of numbers, as a table, or fetch the file again "
-             "from its source";
-    case NC_ENOFILTER:
-      return "; install the plug-in of HDF5 for the filter that it is compressed with, or on a machine that "
-             "has it write the file anew with nccopy -F none, or fetch the file again from its source";
-    default:
-      return "; fetch the file again from its source";
-  }
+std::string advice_to_reader(int status) {
+  const char* const first = status == NC_EATTMETA
+                                ? "take away what is neither text nor a list of numbers, as a table, or "
+                            : status == NC_ENOFILTER ? "install the plug-in of HDF5 for the filter that it "
+                                                       "is compressed with, or on a machine that has it "
+                                                       "write the file anew with nccopy -F none, or "
+                                                     : "";
+  return fmt::format("; {}fetch the file again from its source", first);
 }
 
-/// Whether a word that files hold, or a user gives, is no name that netCDF allows.
-bool can_name_nothing(int status) { return status == NC_EBADNAME || status == NC_EMAXNAME; }
+void require_memory(const NcException& error) {
+  if (error.errorCode() == NC_ENOMEM || error.errorCode() == ENOMEM) throw std::bad_alloc();
+}
 
 }  // namespace
 
@@ -151,93 +111,69 @@ std::size_t records_in_buffer(std::size_t record_bytes) {
 }
 
 std::size_t NetcdfFile::records_at_once() const {
-  return record_bytes_ > 0 ? records_in_buffer(record_bytes_) : records_per_block;
+  return layout_.record_bytes > 0 ? records_in_buffer(layout_.record_bytes) : records_per_block;
 }
 
-std::string netcdf_reason(int status) { return status > 0 ? std::strerror(status) : nc_strerror(status); }
+std::string netcdf_reason(const NcException& error) {
+  const std::string text = error.what();
+  return text.substr(0, text.find('\n'));  // the place in netcdf-cxx4 follows
+}
 
-bool is_netcdf(const std::filesystem::path& path) { return content_of(path) != Content::other; }
+bool is_netcdf(const std::filesystem::path& path) {
+  return begins_with(path, classic) || begins_with(path, hdf5);
+}
 
-NetcdfFile NetcdfFile::open(const std::filesystem::path& path) {
-  const std::string name = path.string();
-  const FileState state(path);
-  ClassicLayout layout;
-  if (content_of(path) == Content::classic) layout = checked_layout_of_classic(path);
-  int id = closed;
-  std::size_t buffer = is_brought(layout.record_bytes)      ? page
-                       : layout.record_bytes > large_record ? large_record
-                                                            : classic_buffer_bytes;
-  const int opened = nc__open(name.c_str(), NC_NOWRITE, &buffer, &id);
-  if (opened == NC_ENOMEM || opened == ENOMEM) throw std::bad_alloc();
-  if (opened > 0)
-    throw Error(Error::Code::file, name + " cannot be read: " + netcdf_reason(opened) +
+NetcdfFile::NetcdfFile(std::filesystem::path path) : path_(std::move(path)), state_(path_) {
+  if (begins_with(path_, classic)) {
+    const auto layout = layout_of_classic(path_);
+    if (!layout) throw damaged(path_, ": its header cannot be read");
+    const auto size = std::filesystem::file_size(path_);
+    if (size < layout->size)
+      throw damaged(path_, fmt::format(": its header promises {} bytes and it has {}", layout->size, size));
+    layout_ = *layout;
+  }
+  try {
+    file_.open(path_, is_brought(layout_.record_bytes)      ? page
+                      : layout_.record_bytes > large_record ? large_record
+                                                            : classic_buffer_bytes);
+  } catch (const NcException& error) {
+    require_memory(error);
+    const std::string reason = netcdf_reason(error);
+    if (error.errorCode() < 0) throw damaged(path_, " (" + reason + ")");
+    throw Error(Error::Code::file, path_.string() + " cannot be read: " + reason +
                                        "; check its disk and the limits of the system");
-  if (opened != NC_NOERR)
-    throw Error(Error::Code::file, name + " is truncated or damaged (" + netcdf_reason(opened) +
-                                       "); fetch it again from its source");
-  NetcdfFile file(id, path, Use::reading, state);
-  file.record_bytes_ = layout.record_bytes;
-  file.records_begin_ = layout.records_begin;
-  return file;
+  }
+  kind_ = attempt("cannot tell its format", [&] { return file_.kind(); });
 }
-
-NetcdfFile NetcdfFile::create(const std::filesystem::path& path, const std::filesystem::path& shown_path,
-                              int mode) {
-  int id = closed;
-  std::size_t buffer = classic_buffer_bytes;
-  const int status = nc__create(path.c_str(), mode | NC_CLOBBER, 0, &buffer, &id);
-  NetcdfFile file(id, shown_path, Use::writing);
-  file.check(status, "cannot be created");
-  return file;
-}
-
-NetcdfFile::NetcdfFile(NetcdfFile&& other) noexcept
-    : id_(std::exchange(other.id_, closed)),
-      path_(std::move(other.path_)),
-      use_(other.use_),
-      state_(other.state_),
-      record_bytes_(other.record_bytes_),
-      records_begin_(other.records_begin_),
-      brought_(other.brought_),
-      fitted_(std::move(other.fitted_)) {}
 
 NetcdfFile::~NetcdfFile() {
-  if (id_ == closed) return;
   std::optional<FileInHand> in_hand;  // the library may crash where the system does not close the file
-  if (use_ == Use::reading) in_hand.emplace(path_);
-  nc_close(id_);
+  if (state_ != FileState()) in_hand.emplace(path_);
+  file_.close_quietly();
 }
 
-void NetcdfFile::check(int status, const std::string& doing) const {
-  if (status == NC_NOERR) return;
-  if (status == NC_ENOMEM || status == ENOMEM) throw std::bad_alloc();
-  if (use_ == Use::reading) require_unchanged();
-  std::string message = path_.string() + ": " + doing + ": " + netcdf_reason(status);
-  if (use_ == Use::reading) throw Error(Error::Code::file, message + advice_to_reader(status));
-  if (can_name_nothing(status)) throw Error(Error::Code::output, message + "; give it another name");
-  std::error_code code;
-  const auto space = std::filesystem::space(std::filesystem::absolute(path_).parent_path(), code);
-  constexpr std::uintmax_t little = 1 << 20;
-  const bool full = status == ENOSPC || (!code && space.available < little);
-  if (full && status != ENOSPC) message += " (the disk is full)";
-  throw Error(Error::Code::output, message + (full ? "; make room or choose another output"
-                                                   : "; check the space and the permissions there"));
+void NetcdfFile::fail(const NcException& error, std::string_view doing) const {
+  require_memory(error);
+  throw error_of(error.errorCode(), fmt::format("{}: {}: {}", path_.string(), doing, netcdf_reason(error)));
+}
+
+Error NetcdfFile::error_of(int status, const std::string& message) const {
+  require_unchanged();
+  return Error(Error::Code::file, message + advice_to_reader(status));
 }
 
 void NetcdfFile::require_unchanged() const { state_.require(path_); }
 
-void NetcdfFile::close() { check(nc_close(std::exchange(id_, closed)), "cannot be closed"); }
-
-void NetcdfFile::fit_chunk_cache(int variable) const {
-  if (!fitted_.insert(variable).second) return;
-  int storage = NC_CONTIGUOUS;
-  std::vector<std::size_t> chunk(dimensions_of(variable).size());
-  if (chunk.empty() || nc_inq_var_chunking(id_, variable, &storage, chunk.data()) != NC_NOERR) return;
-  if (storage != NC_CHUNKED) return;
-  std::size_t bytes = 0;
-  check(nc_inq_type(id_, type_of(variable), nullptr, &bytes), "cannot read a variable's type");
-  for (const std::size_t length : chunk) bytes *= length;
-  nc_set_var_chunk_cache(id_, variable, std::max(2 * bytes, chunk_cache_bytes), chunk_cache_slots, 1);
+void NetcdfFile::fit_chunk_cache(int number) const {
+  if (!is_hdf5() || !fitted_.insert(number).second) return;
+  attempt("cannot read how its variables are stored", [&] {
+    NcVar::ChunkMode mode{};
+    std::vector<std::size_t> chunk;
+    variable(number).getChunkingParameters(mode, chunk);
+    if (mode != NcVar::nc_CHUNKED || chunk.empty()) return;
+    const std::size_t bytes = elements(chunk) * netCDF::NcType(type_of(number)).getSize();
+    variable(number).setChunkCache(std::max(2 * bytes, chunk_cache_bytes), chunk_cache_slots, 1);
+  });
 }
 
 std::string NetcdfFile::allowed(const std::string& name, const char* what) const {
@@ -250,105 +186,76 @@ std::string NetcdfFile::allowed(const std::string& name, const char* what) const
 }
 
 int NetcdfFile::variable_count() const {
-  int count = 0;
-  check(nc_inq_nvars(id_, &count), "cannot count its variables");
-  return count;
+  return attempt("cannot count its variables", [&] { return file_.getVarCount(); });
 }
 
 std::optional<int> NetcdfFile::find_variable(const std::string& name) const {
-  int variable = 0;
-  const int status = nc_inq_varid(id_, name.c_str(), &variable);
-  if (status == NC_ENOTVAR || can_name_nothing(status)) return std::nullopt;
-  check(status, "cannot look for the variable " + name);
-  return variable;
+  return attempt("cannot look for the variable " + name,
+                 [&] { return internal::find_variable(file_, name); });
 }
 
-std::string NetcdfFile::variable_name(int variable) const {
-  char name[room_for_name];
-  check(nc_inq_varname(id_, variable, name), "cannot read a variable's name");
-  return allowed(name, "a variable");
+std::string NetcdfFile::variable_name(int number) const {
+  return allowed(attempt("cannot read a variable's name", [&] { return name_of(variable(number)); }),
+                 "a variable");
 }
 
-std::vector<int> NetcdfFile::dimensions_of(int variable) const {
-  int rank = 0;
-  check(nc_inq_varndims(id_, variable, &rank), "cannot read a variable's dimensions");
-  std::vector<int> dimensions(static_cast<std::size_t>(rank));
-  check(nc_inq_vardimid(id_, variable, dimensions.data()), "cannot read a variable's dimensions");
+std::vector<int> NetcdfFile::dimensions_of(int number) const {
+  std::vector<int> dimensions;
+  attempt("cannot read a variable's dimensions", [&] {
+    for (const NcDim& each : variable(number).getDims()) dimensions.push_back(each.getId());
+  });
   return dimensions;
 }
 
-std::string NetcdfFile::dimension_name(int dimension) const {
-  char name[room_for_name];
-  check(nc_inq_dimname(id_, dimension, name), "cannot read a dimension's name");
-  return allowed(name, "a dimension");
+std::string NetcdfFile::dimension_name(int number) const {
+  return allowed(attempt("cannot read a dimension's name", [&] { return name_of(dimension(number)); }),
+                 "a dimension");
 }
 
-std::size_t NetcdfFile::dimension_length(int dimension) const {
-  std::size_t length = 0;
-  check(nc_inq_dimlen(id_, dimension, &length), "cannot read a dimension's length");
-  return length;
+std::size_t NetcdfFile::dimension_length(int number) const {
+  return attempt("cannot read a dimension's length", [&] { return dimension(number).getSize(); });
 }
 
-int NetcdfFile::type_of(int variable) const {
-  nc_type type = NC_NAT;
-  check(nc_inq_vartype(id_, variable, &type), "cannot read a variable's type");
-  return type;
+int NetcdfFile::type_of(int number) const {
+  return attempt("cannot read a variable's type", [&] { return internal::type_of(variable(number)); });
 }
 
-std::vector<std::string> NetcdfFile::attribute_names(int variable) const {
-  int count = 0;
-  check(nc_inq_varnatts(id_, variable, &count), "cannot count attributes");
-  std::vector<std::string> names;
-  for (int i = 0; i < count; ++i) {
-    char name[room_for_name];
-    check(nc_inq_attname(id_, variable, i, name), "cannot read an attribute's name");
-    names.push_back(allowed(name, "an attribute"));
-  }
+std::vector<std::string> NetcdfFile::attribute_names(int number) const {
+  auto names = attempt("cannot read the names of attributes",
+                       [&] { return internal::attribute_names(variable(number)); });
+  for (const std::string& name : names) allowed(name, "an attribute");
   return names;
 }
 
-std::optional<NetcdfFile::Attribute> NetcdfFile::find_attribute(int variable, const std::string& name) const {
-  Attribute found;
-  const int status = nc_inq_att(id_, variable, name.c_str(), &found.type, &found.length);
-  if (status == NC_ENOTATT || can_name_nothing(status)) return std::nullopt;
-  check(status, "cannot read its attributes, among them perhaps " + name);
-  return found;
+std::optional<Attribute> NetcdfFile::find_attribute(int number, const std::string& name) const {
+  return attempt("cannot read its attributes, among them perhaps " + name,
+                 [&] { return internal::find_attribute(variable(number), name); });
 }
 
-std::string NetcdfFile::text_attribute(int variable, const std::string& name) const {
-  const auto [type, length] = find_attribute(variable, name).value_or(Attribute());
-  if (length == 0) return {};
-  if (type == NC_CHAR) {
-    std::string text(length, '\0');
-    check(nc_get_att_text(id_, variable, name.c_str(), text.data()), "cannot read the attribute " + name);
-    return without_trailing_blanks(text);
+std::string NetcdfFile::text_attribute(int number, const std::string& name) const {
+  const auto attribute = find_attribute(number, name);
+  if (!attribute || attribute->length == 0 || attribute->type > NC_STRING) return {};
+  if (attribute->type != NC_CHAR && attribute->type != NC_STRING) {
+    const std::vector<double> numbers = number_attribute(number, name);
+    if (attribute->type != NC_FLOAT) return fmt::format("{}", fmt::join(numbers, ", "));
+    return fmt::format("{}", fmt::join(std::vector<float>(numbers.begin(), numbers.end()), ", "));
   }
-  if (type == NC_STRING) {
-    std::vector<char*> strings(length);
-    check(nc_get_att_string(id_, variable, name.c_str(), strings.data()),
-          "cannot read the attribute " + name);
-    std::string text;
-    for (const char* each : strings) text += (text.empty() ? "" : ", ") + std::string(each ? each : "");
-    nc_free_string(length, strings.data());
-    return without_trailing_blanks(text);
-  }
-  if (type > NC_STRING) return {};
-  std::string text;
-  for (const double number : number_attribute(variable, name)) {
-    if (!text.empty()) text += ", ";
-    text += type == NC_FLOAT ? fmt::format("{}", static_cast<float>(number)) : fmt::format("{}", number);
-  }
-  return text;
+  std::string text(attribute->type == NC_CHAR ? attribute->length : 0, '\0');
+  std::vector<char*> strings(attribute->type == NC_STRING ? attribute->length : 0);
+  void* const values = strings.empty() ? static_cast<void*>(text.data()) : strings.data();
+  attempt("cannot read the attribute " + name, [&] { attribute->getValues(values); });
+  for (const char* each : strings) text += (text.empty() ? "" : ", ") + std::string(each ? each : "");
+  if (!strings.empty()) variable(number).freeString(strings.size(), strings.data());
+  return without_trailing_blanks(text);
 }
 
 std::vector<double> NetcdfFile::number_attribute(int variable, const std::string& name) const {
-  const auto [type, length] = find_attribute(variable, name).value_or(Attribute());
-  if (type == NC_NAT || type > NC_STRING) return {};
+  const auto attribute = find_attribute(variable, name);
+  if (!attribute || attribute->type > NC_STRING) return {};
   std::vector<double> numbers;
-  if (type != NC_CHAR && type != NC_STRING) {
-    numbers.resize(length);
-    check(nc_get_att_double(id_, variable, name.c_str(), numbers.data()),
-          "cannot read the attribute " + name);
+  if (attribute->type != NC_CHAR && attribute->type != NC_STRING) {
+    numbers.resize(attribute->length);
+    attempt("cannot read the attribute " + name, [&] { attribute->getValues(numbers.data()); });
     return numbers;
   }
   const std::string text = text_attribute(variable, name);
@@ -366,28 +273,24 @@ std::vector<double> NetcdfFile::number_attribute(int variable, const std::string
   return numbers;
 }
 
-bool NetcdfFile::is_numeric(int variable) const {
-  const int type = type_of(variable);
-  return type != NC_CHAR && type > NC_NAT && type < NC_STRING;
-}
+bool NetcdfFile::is_numeric(int variable) const { return number_type(type_of(variable)).type != NC_NAT; }
 
 bool NetcdfFile::is_unsigned(int variable) const {
-  const int type = type_of(variable);
-  if (!is_signed(type)) return span_of(type).has_value();
+  const NumberType type = number_type(type_of(variable));
+  if (!type.is_signed) return type.span > 0;
   return strcasecmp(text_attribute(variable, "_Unsigned").c_str(), "true") == 0;
 }
 
 void NetcdfFile::make_unsigned(int variable, double* numbers, std::size_t count) const {
-  const int type = type_of(variable);
-  if (!is_signed(type) || !is_unsigned(variable)) return;
-  const double span = *span_of(type);
-  for (std::size_t i = 0; i < count; ++i) numbers[i] += numbers[i] < 0 ? span : 0;
+  const NumberType type = number_type(type_of(variable));
+  if (!type.is_signed || !is_unsigned(variable)) return;
+  for (std::size_t i = 0; i < count; ++i) numbers[i] += numbers[i] < 0 ? type.span : 0;
 }
 
 double NetcdfFile::greatest_number(int variable) const {
-  const std::optional<double> span = span_of(type_of(variable));
-  if (!span) return std::numeric_limits<double>::max();
-  return (is_unsigned(variable) ? *span : *span / 2) - 1;
+  const double span = number_type(type_of(variable)).span;
+  if (span == 0) return std::numeric_limits<double>::max();
+  return (is_unsigned(variable) ? span : span / 2) - 1;
 }
 
 std::vector<double> NetcdfFile::stored_numbers(int variable, const std::string& name) const {
@@ -404,10 +307,10 @@ std::vector<double> NetcdfFile::missing_values(int variable) const {
   for (const char* name : {"_FillValue", "missing_value", "MissingValue"})
     for (const double value : stored_numbers(variable, name))
       if (!std::isnan(value)) values.push_back(value);
-  if (values.empty() && (type == NC_FLOAT || type == NC_DOUBLE)) values.push_back(-32767);
-  if (auto fill = default_fill(type)) {
-    make_unsigned(variable, &*fill, 1);
+  if (values.empty() && is_float(type)) values.push_back(-32767);
+  if (const auto fill = number_type(type).fill) {
     values.push_back(*fill);
+    make_unsigned(variable, &values.back(), 1);
   }
   std::sort(values.begin(), values.end());
   values.erase(std::unique(values.begin(), values.end()), values.end());
@@ -415,7 +318,7 @@ std::vector<double> NetcdfFile::missing_values(int variable) const {
 }
 
 void NetcdfFile::refuse_attribute(int variable, const std::string& name, const std::string& why) const {
-  const bool is_global = variable == NC_GLOBAL;
+  const bool is_global = variable == whole_file;
   const std::string of = is_global ? "global" : variable_name(variable);
   throw Error(
       Error::Code::variable,
@@ -433,7 +336,7 @@ std::array<double, 2> NetcdfFile::valid_range(int variable) const {
   } attributes[] = {{"valid_range", 0, 2}, {"valid_min", 0, 1}, {"valid_max", 1, 1}};
   const int type = type_of(variable);
   const bool is_packed =
-      type != NC_FLOAT && type != NC_DOUBLE &&
+      !is_float(type) &&
       !(text_attribute(variable, "scale_factor") + text_attribute(variable, "add_offset")).empty();
   std::array<double, 2> range{-infinity, infinity};
   for (const auto& each : attributes) {
@@ -442,7 +345,7 @@ std::array<double, 2> NetcdfFile::valid_range(int variable) const {
     const std::vector<double> numbers = stored_numbers(variable, each.name);
     if (numbers.size() != each.count)
       refuse_attribute(variable, each.name, each.count == 1 ? "is not one number" : "is not two numbers");
-    if (is_packed && (attribute->type == NC_FLOAT || attribute->type == NC_DOUBLE))
+    if (is_packed && is_float(attribute->type))
       refuse_attribute(
           variable, each.name,
           "has another type than the packed integers, so that it cannot be told whether it is of "
@@ -455,34 +358,29 @@ std::array<double, 2> NetcdfFile::valid_range(int variable) const {
 
 void NetcdfFile::bring_into_memory(RecordBlock records) const {
   const std::size_t end = records.first + records.count;
-  if (!is_brought(record_bytes_) || records.count == 0 || end <= brought_) return;
+  if (!is_brought(layout_.record_bytes) || records.count == 0 || end <= brought_) return;
   const std::size_t first = std::max(records.first, brought_);
   brought_ = end;
-  std::ifstream file(path_, std::ios::binary);
-  file.seekg(static_cast<std::streamoff>(records_begin_ + first * record_bytes_));
-  std::vector<char> bytes(classic_buffer_bytes);
-  for (std::size_t left = (end - first) * record_bytes_; left > 0 && file;) {  // the library tells of trouble
-    const std::size_t some = std::min(left, bytes.size());
-    file.read(bytes.data(), static_cast<std::streamsize>(some));
-    left -= some;
-  }
+  const int file = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+  posix_fadvise(file, static_cast<off_t>(layout_.records_begin + first * layout_.record_bytes),
+                static_cast<off_t>((end - first) * layout_.record_bytes), POSIX_FADV_WILLNEED);
+  ::close(file);
 }
 
-void NetcdfFile::read(int variable, RecordBlock records, double* out) const {
-  fit_chunk_cache(variable);
-  const std::vector<int> dimensions = dimensions_of(variable);
-  int unlimited = -1;
-  check(nc_inq_unlimdim(id_, &unlimited), "cannot read its dimensions");
-  if (!dimensions.empty() && dimensions.front() == unlimited) bring_into_memory(records);
+void NetcdfFile::read(int number, RecordBlock records, double* out) const {
+  fit_chunk_cache(number);
   std::vector<std::size_t> start, count;
-  for (const int dimension : dimensions) {
-    start.push_back(start.empty() ? records.first : 0);
-    count.push_back(count.empty() ? records.count : dimension_length(dimension));
-  }
-  check(nc_get_vara_double(id_, variable, start.data(), count.data(), out),
-        "cannot read " + variable_name(variable));
+  attempt("cannot read " + variable_name(number), [&] {
+    for (const NcDim& each : variable(number).getDims()) {
+      const bool is_first = start.empty();
+      if (is_first && each.isUnlimited()) bring_into_memory(records);
+      start.push_back(is_first ? records.first : 0);
+      count.push_back(is_first ? records.count : each.getSize());
+    }
+    variable(number).getVar(start, count, out);
+  });
   require_unchanged();
-  make_unsigned(variable, out, elements(count));
+  make_unsigned(number, out, elements(count));
 }
 
 }  // namespace pcor::internal

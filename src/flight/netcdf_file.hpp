@@ -6,59 +6,61 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include <pcor/words/error.hpp>
+#include "flight/classic_netcdf.hpp"
 #include "flight/file_state.hpp"
 #include "flight/flight_file.hpp"
+#include "flight/netcdf_c.hpp"
 
 namespace pcor::internal {
 
 /// True where the first bytes are those of a netCDF file, classic or HDF5.
 bool is_netcdf(const std::filesystem::path& path);
 
-/// An open netCDF file: the netCDF C library behind errors of ours.
-class NetcdfFile final : public FlightFile {
+/// An open netCDF file, read by netcdf-cxx4, whose exceptions become those of this library.
+class NetcdfFile : public FlightFile {
  public:
   /// Opens for reading. The library opens a file by its name more than once, and another program may replace
   /// or change it meanwhile: what is read is of the file as it was here, or an error.
   /// @throws Error if the file is damaged or truncated.
-  static NetcdfFile open(const std::filesystem::path& path);
-
-  /// Creates a file, over what is there; `mode` is that of nc_create. Messages call it `shown_path`.
-  static NetcdfFile create(const std::filesystem::path& path, const std::filesystem::path& shown_path,
-                           int mode);
-
-  NetcdfFile(NetcdfFile&& other) noexcept;
-  NetcdfFile& operator=(NetcdfFile&&) = delete;
+  explicit NetcdfFile(std::filesystem::path path);
   ~NetcdfFile() override;
 
-  int id() const { return id_; }
+  FileKind kind() const { return kind_; }
+  bool is_hdf5() const { return kind_ == FileKind::netcdf4 || kind_ == FileKind::netcdf4_classic; }
 
-  /// @throws Error "<path>: <doing>: <reason>; <what to do>" unless `status` is NC_NOERR.
-  void check(int status, const std::string& doing) const;
+  /// A variable by its number. That of `whole_file` has the attributes of the file.
+  netCDF::NcVar variable(int number) const { return {file_, number}; }
+  netCDF::NcDim dimension(int number) const { return {file_, number}; }
+
+  /// Runs `work`, which may throw exceptions of netcdf-cxx4.
+  /// @throws Error "<path>: <doing>: <reason>; <what to do>" or std::bad_alloc.
+  template <class Work>
+  auto attempt(std::string_view doing, const Work& work) const {
+    try {
+      return work();
+    } catch (const netCDF::exceptions::NcException& error) {
+      fail(error, doing);
+    }
+  }
 
   /// To be called after values were read. @throws Error if the file was replaced or changed since it was
   /// opened.
   void require_unchanged() const;
 
-  /// Closes for good; errors that the library kept until now are thrown.
-  void close();
-
-  /// Has HDF5 hold two chunks of a variable in memory, so that a compressed one is not unpacked for every
-  /// block of records, and not much more, since it keeps what it read of every variable. To be called before
-  /// the first value is read; a second call does nothing.
+  /// Has HDF5 hold two chunks of a variable of numbers or letters in memory, so that a compressed one is not
+  /// unpacked for every block of records, and not much more, since it keeps what it read of every variable.
+  /// To be called before the first value is read; a second call does nothing.
   void fit_chunk_cache(int variable) const;
 
+  /// An nc_type.
   int type_of(int variable) const;
 
-  /// @param variable or NC_GLOBAL. @throws Error "<path>: the attribute <name> of <variable> <why>; ..."
+  /// @param variable or `whole_file`. @throws Error "<path>: the attribute <name> of <variable> <why>; ..."
   [[noreturn]] void refuse_attribute(int variable, const std::string& name, const std::string& why) const;
-
-  /// What an attribute is made of.
-  struct Attribute {
-    int type = 0;  ///< an nc_type
-    std::size_t length = 0;
-  };
 
   /// Nothing where there is no such attribute. @throws Error or std::bad_alloc where the library cannot tell
   std::optional<Attribute> find_attribute(int variable, const std::string& name) const;
@@ -80,7 +82,20 @@ class NetcdfFile final : public FlightFile {
   std::array<double, 2> valid_range(int variable) const override;
   void read(int variable, RecordBlock records, double* out) const override;
 
+ protected:
+  /// A file that is created by `file_`.
+  NetcdfFile(std::filesystem::path path, FileKind kind) : path_(std::move(path)), kind_(kind) {}
+
+  /// The error for a status of the library. @param message without what to do
+  virtual Error error_of(int status, const std::string& message) const;
+
+  std::filesystem::path path_;
+  BufferedFile file_;
+  FileKind kind_ = FileKind::classic;
+
  private:
+  [[noreturn]] void fail(const netCDF::exceptions::NcException& error, std::string_view doing) const;
+
   /// Whether the values are unsigned integers: by their type, or because the attribute _Unsigned says so.
   bool is_unsigned(int variable) const;
 
@@ -98,18 +113,8 @@ class NetcdfFile final : public FlightFile {
   /// allows may be: no function of the library finds what is called so
   std::string allowed(const std::string& name, const char* what) const;
 
-  enum class Use { reading, writing };
-
-  NetcdfFile(int id, std::filesystem::path path, Use use, FileState state = {})
-      : id_(id), path_(std::move(path)), use_(use), state_(state) {}
-
-  int id_;
-  std::filesystem::path path_;
-  Use use_;
-  FileState state_;  // as it was opened for reading
-  // Of a classic file with records.
-  std::size_t record_bytes_ = 0;
-  std::size_t records_begin_ = 0;    // in bytes from that of the file
+  FileState state_;                  // as it was opened for reading
+  ClassicLayout layout_;             // of a classic file
   mutable std::size_t brought_ = 0;  // behind the last record that was brought into memory
   mutable std::set<int> fitted_;     // variables whose chunk cache is fit
 };
@@ -117,8 +122,8 @@ class NetcdfFile final : public FlightFile {
 /// The product of some lengths.
 std::size_t elements(const std::vector<std::size_t>& shape);
 
-/// What a netCDF status means in words.
-std::string netcdf_reason(int status);
+/// What an error of netcdf-cxx4 means in words.
+std::string netcdf_reason(const netCDF::exceptions::NcException& error);
 
 /// How much of a classic file the library keeps in memory, bytes, but where records are large. They lie one
 /// after the other, each with all the variables, and the library moves whole buffers, so that a block of

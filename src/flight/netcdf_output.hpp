@@ -2,66 +2,55 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <map>
 #include <string>
 #include <vector>
 
-#include <pcor/flight/flight_writer.hpp>
 #include "flight/netcdf_file.hpp"
 
 namespace pcor::internal {
 
-/// How an open netCDF file is stored.
-FileKind kind_of(const NetcdfFile& file);
-
-/// A new netCDF file whose variables lie over an unlimited `Time`.
-class NetcdfOutput {
+/// A new netCDF file whose variables lie over an unlimited `Time`. Callers use `attempt`: the functions below
+/// may throw exceptions of netcdf-cxx4.
+class NetcdfOutput final : public NetcdfFile {
  public:
   /// Creates it, over what is there. Messages call it `shown_path`.
   NetcdfOutput(const std::filesystem::path& path, const std::filesystem::path& shown_path, FileKind kind);
 
-  int id() const { return file_.id(); }
-  const NetcdfFile& file() const { return file_; }
-  int time_dimension() const { return time_dimension_; }
-  bool is_hdf5() const { return is_hdf5_; }
-  bool has(const std::string& name) const { return file_.find_variable(name).has_value(); }
-
-  /// @throws Error with the reason unless `status` is NC_NOERR.
-  void check(int status) const { file_.check(status, "cannot be written"); }
+  const netCDF::NcDim& time() const { return time_; }
+  bool has(const std::string& name) const { return find_variable(name).has_value(); }
 
   /// Whether a dimension of this name has another length already.
   bool has_other_length(const std::string& dimension, std::size_t length) const;
 
   /// The dimension of this name and length, a new one if there is none. @throws Error if it has another
   /// length.
-  int dimension(const std::string& name, std::size_t length);
+  netCDF::NcDim dimension_of(const std::string& name, std::size_t length);
 
   /// The dimensions of a time series of `rate` samples a record: (Time) or (Time, spsN).
-  std::vector<int> dimensions_of_series(std::size_t rate);
+  std::vector<netCDF::NcDim> dimensions_of_series(std::size_t rate);
 
   /// Adds a variable, stored in chunks of about a thousand records if it lies over Time. Gives its number.
-  int add_variable(const std::string& name, int type, const std::vector<int>& dimensions);
+  int add_variable(const std::string& name, netCDF::NcType type,
+                   const std::vector<netCDF::NcDim>& dimensions);
 
-  /// Nothing is put where there is no text.
+  /// Nothing is put where there is no text. @param variable or `whole_file`
   void put_text(int variable, const std::string& name, const std::string& text) const;
 
+  /// Removes an attribute if it is there.
+  void drop(int variable, const std::string& attribute) const;
+
   /// Ends the definition; no variable may be added after it.
-  void end_definition();
-  bool is_defining() const { return is_defining_; }
+  void end_definition() { file_.enddef(); }
 
-  /// Removes attributes that turned out to have no value: variables and names.
-  void remove(const std::vector<std::pair<int, std::string>>& attributes) const;
-
-  void close() { file_.close(); }
+  /// Closes for good; errors that the library kept until now are thrown.
+  void close() {
+    attempt("cannot be closed", [&] { file_.close(); });
+  }
 
  private:
-  void store_in_chunks(int variable, int type, const std::vector<int>& dimensions) const;
+  Error error_of(int status, const std::string& message) const override;
 
-  NetcdfFile file_;
-  bool is_hdf5_;
-  bool is_defining_ = true;
-  int time_dimension_ = 0;
-  std::map<std::string, int> dimensions_;  // but Time
+  netCDF::NcDim time_;
 };
 
 }  // namespace pcor::internal

@@ -74,7 +74,7 @@ TEST_F(FailingLibrary, SaysWhatCanBeDoneWithAnAttributeThatItCannotRead) {
 }
 
 TEST_F(FailingLibrary, IsNotTakenForAVariableThatIsNotThere) {
-  const NetcdfFile file = NetcdfFile::open(flight_);
+  const NetcdfFile file(flight_);
   EXPECT_TRUE(file.find_variable("PSFD"));
   fail("PSFD", NC_EHDFERR);
   EXPECT_THROW(file.find_variable("PSFD"), Error);

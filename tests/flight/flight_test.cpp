@@ -188,8 +188,7 @@ TEST_F(FlightTest, ANameThatIsLongerThanNetcdfAllowsIsRefused) {
   EXPECT_THAT(refusal(), HasSubstr("is truncated or damaged: its header cannot be read"));
   std::filesystem::copy_file(seeds / "long_names_hdf5.nc", path(),
                              std::filesystem::copy_options::overwrite_existing);
-  EXPECT_THAT(refusal(),
-              AllOf(HasSubstr("an attribute is called 'aaaa"), HasSubstr("netCDF allows 256 bytes")));
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("is called '"), HasSubstr("netCDF allows 256 bytes")));
 }
 
 TEST_F(FlightTest, AnEmptyTimeDimensionIsRefused) {

@@ -12,7 +12,7 @@
 #include <limits>
 #include <sstream>
 
-#include "flight/netcdf_output.hpp"
+#include "flight/netcdf_file.hpp"
 #include "support/netcdf_file.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -53,9 +53,7 @@ OutputVariable pressure(const std::string& name = "PSXC", int rate = 1) {
   return variable;
 }
 
-FileKind kind_of(const std::filesystem::path& path) {
-  return pcor::internal::kind_of(pcor::internal::NetcdfFile::open(path));
-}
+FileKind kind_of(const std::filesystem::path& path) { return pcor::internal::NetcdfFile(path).kind(); }
 
 std::string contents(const std::filesystem::path& path) {
   std::ostringstream text;
@@ -473,6 +471,22 @@ TEST_F(FlightWriterTest, AnAttributeThatTheTypeOfItsVariableCannotHoldIsNamed) {
   EXPECT_THAT(message_of<Error>([&] { writer.copy("STATE"); }),
               AllOf(HasSubstr("the attribute missing_value of STATE cannot be copied"),
                     HasSubstr("ncatted -a missing_value,STATE,d,,")));
+}
+
+/// The library lists it and does not find it.
+TEST_F(FlightWriterTest, AnAttributeWhoseNameIsNoTextIsNamed) {
+  {
+    NetcdfMaker maker(input, 0);
+    maker.time({100});
+    maker.text(maker.series("PSFD", "hPa", {850}), "Category", "Pressure");
+  }
+  std::string bytes = contents(input);
+  bytes[bytes.find("Category")] = '\xff';
+  std::ofstream(input, std::ios::binary) << bytes;
+  const Flight flight(input);
+  FlightWriter writer(output, flight, {});
+  EXPECT_THAT(message_of<Error>([&] { writer.copy("PSFD"); }),
+              HasSubstr("of PSFD has a name that netCDF does not allow"));
 }
 
 TEST_F(FlightWriterTest, FlagsMustBeWholeNumbers) {

@@ -50,7 +50,7 @@ TEST_P(RecordsOfAClassicFile, AreReadInAnyOrderOfBlocks) {
   const auto layout = layout_of_classic(path);
   ASSERT_TRUE(layout);
   EXPECT_EQ(layout->records_begin + records * layout->record_bytes, std::filesystem::file_size(path));
-  const NetcdfFile file = NetcdfFile::open(path);
+  const NetcdfFile file(path);
   for (const RecordBlock block : {RecordBlock{4, 2}, {0, 3}, {6, 1}, {0, records}, {2, 0}, {1, 5}}) {
     for (int variable = 0; variable < 4; ++variable) {
       const std::size_t each = variable % 2 == 0 ? wide : 1;

@@ -3,7 +3,8 @@
 
 Every folder of include/pcor, src and tests is a room of floors.txt or a workshop (tests of the whole); a room includes
 rooms of lower floors and itself; no files include each other in a circle; a header of src, which is not installed, is
-included by no installed one and keeps its names in pcor::internal; and no include climbs through "..".
+included by no installed one and keeps its names in pcor::internal; no include climbs through ".."; and one file of src
+calls the netCDF C library.
 docs/rooms.md describes the same rooms.
 """
 import pathlib
@@ -39,6 +40,9 @@ for folder in ("include", "src", "tests", "tools", "benchmarks"):
         opens = re.findall(r"^namespace (pcor(?:::\w+)*) \{", text, re.MULTILINE)
         if folder == "src" and path.suffix == ".hpp" and any(not each.startswith("pcor::internal") for each in opens):
             trouble.append(f"{where}: what is not installed belongs in pcor::internal")
+        calls_c_library = re.search(r"\bnc_[a-z_0-9]+\s*\(|#\s*include\s*<netcdf\.h>", text)
+        if folder == "src" and calls_c_library and path.name != "netcdf_c.cpp":
+            trouble.append(f"{where}: calls the netCDF C library; use netcdf-cxx4, and what that lacks from flight/netcdf_c.hpp")
         if folder == "include" and any(each.startswith("pcor::internal") for each in opens):
             trouble.append(f"{where}: an installed header has names in pcor::internal")
 
