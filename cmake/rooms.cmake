@@ -2,5 +2,5 @@
 # may include which.
 set(pcor_realtime_rooms physics model effects realtime)
 set(pcor_model_rooms words units laws)
-set(pcor_offline_rooms numerics team regimes report flight simulate batch roles residuals process compare diagnose checks inspect fit
+set(pcor_offline_rooms numerics team regimes report flight simulate batch roles residuals process campaign compare diagnose checks inspect fit
   improve temperature)

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include <pcor/effects/catalogue.hpp>
-#include "diagnose/columns.hpp"
+#include "campaign/columns.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/triangular_factor.hpp"
 

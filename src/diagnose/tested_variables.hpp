@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/columns.hpp"
+#include "campaign/columns.hpp"
 #include "diagnose/flight_files.hpp"
 
 namespace pcor::internal {

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include <pcor/flight/same_aircraft.hpp>
 #include <pcor/words/error.hpp>
+#include "campaign/model_parameters.hpp"
 #include "fit/before_and_after.hpp"
 #include "fit/fit_covariance.hpp"
 #include "fit/fitted_model.hpp"
@@ -299,10 +299,8 @@ RefitResult fit(const Sources& sources, const ModelFile& model, const References
   result.notes = notes_of(result, task, fitted, covariance.matrix, compared);
   result.model = fitted_model(model, 0, result, options.loss, fitted_flights);
   if (options.fit_reference) {
-    const auto own = std::accumulate(
-        model.model.effects.begin(), model.model.effects.end(), std::size_t{0},
-        [](std::size_t sum, const ModelEffect& effect) { return sum + effect.parameters.size(); });
-    result.reference = fitted_model(*reference.model(), own, result, options.loss, fitted_flights);
+    result.reference =
+        fitted_model(*reference.model(), parameter_count(model.model), result, options.loss, fitted_flights);
   }
   return result;
 }
