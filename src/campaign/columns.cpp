@@ -1,7 +1,6 @@
 #include "campaign/columns.hpp"
 
 #include <ceres/jet.h>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -10,12 +9,12 @@
 
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/realtime/chain.hpp>
-#include <pcor/words/error.hpp>
 #include "campaign/linear_rows.hpp"
 #include "campaign/model_parameters.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "residuals/moving_columns.hpp"
+#include "roles/model_inputs.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -133,13 +132,6 @@ System system_of(ModelFile model, const CandidateModels& set, bool of_reference,
   system.end = first + parameter_count(system.model.model);
   system.first_place = system.end - system.places().size();
   return system;
-}
-
-Chain chain_of(const Model& model, const std::vector<Quantity>& roles, const std::string& name) {
-  BindingError why;
-  std::optional<Chain> chain = Chain::build(model, roles, &why);
-  if (!chain) throw Error(Error::Code::model, fmt::format("{}: {}", name, why.message()));
-  return std::move(*chain);
 }
 
 /// Puts the columns of the candidates of one system at some samples: what each coefficient adds at its place,
@@ -322,7 +314,7 @@ FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended,
     const std::vector<Evaluation> evaluations =
         evaluations_of(set, reference, !is_own, system.places(), *extended);
     put_candidates(
-        chain_of(with_all, inputs.roles, extended->name), inputs, evaluations, needed, at_places,
+        chain_of(with_all, inputs.roles), inputs, evaluations, needed, at_places,
         [&](std::size_t sample, const State<double>& state) {
           for (auto& [quantity, values] : columns.quantities) {
             if (is_own) values[sample] = state[quantity];

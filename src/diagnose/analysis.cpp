@@ -55,10 +55,10 @@ Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::ui
   }
   first_bins_ = part(binned_.bins, 0, flights_.size());
   const auto normal = share_.sum_of_each_flight<Eigen::MatrixXd>([this](std::size_t f) {
+    const auto base = binned_.columns[f].leftCols(base_);
     Eigen::MatrixXd part(base_, base_ + 1);
-    part.leftCols(base_) =
-        binned_.columns[f].leftCols(base_).transpose() * binned_.columns[f].leftCols(base_);
-    part.rightCols(1) = binned_.columns[f].leftCols(base_).transpose() * binned_.residuals[f];
+    part.leftCols(base_) = base.transpose() * base;
+    part.rightCols(1) = base.transpose() * binned_.residuals[f];
     return part;
   });
   // Slow effects and slow drift contend for the same part of the residuals, so noise is found from both ends:
