@@ -51,15 +51,14 @@ Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::ui
   binned_ = in_bins(share_, columns.flights, [&](std::size_t f) { return columns.flights[f].given; });
   for (std::size_t f = 0; f < columns.flights.size(); ++f) {
     FlightColumns& flight = columns.flights[f];
-    columns_.push_back(binned_columns(flight, binned_.bins[f]));
-    residuals_.push_back(binned_.bins[f].means(flight.given));
     (flight.reference == 0 ? flights_ : further_).push_back(std::move(flight));
   }
   first_bins_ = part(binned_.bins, 0, flights_.size());
   const auto normal = share_.sum_of_each_flight<Eigen::MatrixXd>([this](std::size_t f) {
+    const auto base = binned_.columns[f].leftCols(base_);
     Eigen::MatrixXd part(base_, base_ + 1);
-    part.leftCols(base_) = columns_[f].leftCols(base_).transpose() * columns_[f].leftCols(base_);
-    part.rightCols(1) = columns_[f].leftCols(base_).transpose() * residuals_[f];
+    part.leftCols(base_) = base.transpose() * base;
+    part.rightCols(1) = base.transpose() * binned_.residuals[f];
     return part;
   });
   // Slow effects and slow drift contend for the same part of the residuals, so noise is found from both ends:
@@ -122,13 +121,13 @@ std::vector<Eigen::Index> Analysis::places_of(const std::vector<std::size_t>& gr
 std::vector<Eigen::MatrixXd> Analysis::all_columns_of(const std::vector<std::size_t>& groups) const {
   const std::vector<Eigen::Index> places = places_of(groups);
   std::vector<Eigen::MatrixXd> result;
-  for (const Eigen::MatrixXd& columns : columns_) result.emplace_back(columns(Eigen::all, places));
+  for (const Eigen::MatrixXd& columns : binned_.columns) result.emplace_back(columns(Eigen::all, places));
   return result;
 }
 
 Eigen::VectorXd Analysis::left_of(std::size_t flight, const std::vector<std::size_t>& groups,
                                   const Eigen::VectorXd& estimate) const {
-  return residuals_[flight] - columns_[flight](Eigen::all, places_of(groups)) * estimate;
+  return binned_.residuals[flight] - binned_.columns[flight](Eigen::all, places_of(groups)) * estimate;
 }
 
 std::vector<double> Analysis::added(std::size_t flight, const std::vector<std::size_t>& groups,
@@ -173,9 +172,9 @@ void Analysis::replace_outliers(const std::vector<std::size_t>& groups, const Ei
     flight.residual =
         without_outliers(flight.given, predicted, flight.samples->time, flight.samples->step, count);
     // A record that is in no bin has no prediction; it does not count anyway.
-    residuals_[f] = binned_.bins[f].means(flight.residual);
+    binned_.residuals[f] = binned_.bins[f].means(flight.residual);
   }
-  first_residuals_ = part(residuals_, 0, flights_.size());
+  first_residuals_ = part(binned_.residuals, 0, flights_.size());
 }
 
 void Analysis::for_each_reference(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate,
@@ -183,7 +182,7 @@ void Analysis::for_each_reference(const std::vector<std::size_t>& groups, const 
   const std::vector<Eigen::Index> places = places_of(groups);
   noise_ = noise_of_flights(
       share_, binned_,
-      {[&](std::size_t f) -> Eigen::MatrixXd { return columns_[f](Eigen::all, places); },
+      {[&](std::size_t f) -> Eigen::MatrixXd { return binned_.columns[f](Eigen::all, places); },
        [&](std::size_t f) { return left_of(f, groups, estimate); }, digest_of(packed(estimate))},
       find);
   first_noise_ = noise_of_first_reference(binned_, noise_);
@@ -211,7 +210,7 @@ void Analysis::find_noise(const std::vector<std::size_t>& groups, const Eigen::V
 }
 
 void Analysis::keep_coefficients(const std::vector<std::size_t>& groups, const Eigen::VectorXd& estimate) {
-  coefficients_ = Eigen::VectorXd::Zero(columns_.front().cols());
+  coefficients_ = Eigen::VectorXd::Zero(binned_.columns.front().cols());
   coefficients_.head(base_) = estimate.head(base_);
   Eigen::Index place = base_;
   for (const std::size_t group : groups) {
@@ -222,7 +221,8 @@ void Analysis::keep_coefficients(const std::vector<std::size_t>& groups, const E
 }
 
 void Analysis::find_search() {
-  scores_ = std::make_unique<Scores>(find_scores(share_, binned_.bins, columns_, residuals_, noise_));
+  scores_ =
+      std::make_unique<Scores>(find_scores(share_, binned_.bins, binned_.columns, binned_.residuals, noise_));
   white_noise_.assign(binned_.bins.size(), {});
   for (std::size_t f = 0; f < binned_.bins.size(); ++f) {
     if (share_.owns(f)) white_noise_[f] = scores_->left(f, coefficients_);
@@ -248,9 +248,9 @@ Scores Analysis::scores_with(const std::vector<Eigen::MatrixXd>& more) const {
   std::vector<Eigen::MatrixXd> columns;
   for (std::size_t f = 0; f < more.size(); ++f) {
     Eigen::MatrixXd& both = columns.emplace_back(more[f].rows(), base_ + more[f].cols());
-    both << columns_[f].leftCols(base_), more[f];
+    both << binned_.columns[f].leftCols(base_), more[f];
   }
-  Scores scores = find_scores(share_, binned_.bins, columns, residuals_, noise_);
+  Scores scores = find_scores(share_, binned_.bins, columns, binned_.residuals, noise_);
   take_out_common_noise(scores);
   return scores;
 }
@@ -262,8 +262,8 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
   std::vector<Eigen::MatrixXd> white(binned_.bins.size());
   // The sums of the parts side by side.
   const auto information = share_.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
-    Eigen::MatrixXd all(columns_[f].rows(), width);
-    all << columns_[f](Eigen::all, places), residuals_[f];
+    Eigen::MatrixXd all(binned_.columns[f].rows(), width);
+    all << binned_.columns[f](Eigen::all, places), binned_.residuals[f];
     white[f] = whitened(all, binned_.bins[f], noise_[f], 0);
     Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(width, width * as_index(held_out_parts));
     for (Eigen::Index i = 0; i < white[f].rows(); ++i) {

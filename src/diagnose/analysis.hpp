@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "diagnose/binned_flights.hpp"
-#include "diagnose/columns.hpp"
+#include "campaign/binned_flights.hpp"
+#include "campaign/columns.hpp"
 #include "diagnose/flight_columns.hpp"
 #include "diagnose/scores.hpp"
 #include "diagnose/search.hpp"
@@ -119,8 +119,6 @@ class Analysis {
   Eigen::Index base_ = 0;
   BinnedFlights binned_{};
   std::vector<Binning> first_bins_{};
-  std::vector<Eigen::MatrixXd> columns_{};  // base and candidates, in bins
-  std::vector<Eigen::VectorXd> residuals_{};
   std::vector<Eigen::VectorXd> first_residuals_{};
   std::vector<NoiseModel> noise_{};
   NoiseModel first_noise_{};

@@ -11,6 +11,7 @@
 #include <pcor/residuals/residuals.hpp>
 #include <pcor/units/units.hpp>
 #include <pcor/words/error.hpp>
+#include "campaign/model_parameters.hpp"
 #include "flight/trouble_with_values.hpp"
 #include "residuals/moving_columns.hpp"
 #include "roles/model_inputs.hpp"
@@ -279,21 +280,6 @@ void add_those_of_the_references(CandidateSet& set, const References& references
 }
 
 }  // namespace
-
-Where where_of(const ModelEffect& effect) {
-  return effect.is_formula() ? effect.where : effect_facts[effect_named(effect.id)].where;
-}
-
-std::vector<std::size_t> free_parameters(const ModelFile& model) {
-  std::vector<std::size_t> free;
-  std::size_t number = 0;
-  for (std::size_t e = 0; e < model.model.effects.size(); ++e) {
-    for (std::size_t p = 0; p < model.model.effects[e].parameters.size(); ++p, ++number) {
-      if (!model.fit(e, p).fixed) free.push_back(number);
-    }
-  }
-  return free;
-}
 
 CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffect>& formulas,
                              const FlightSet& flights, const References& references,

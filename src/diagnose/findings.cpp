@@ -8,6 +8,7 @@
 #include <set>
 
 #include <pcor/effects/catalogue.hpp>
+#include "campaign/model_parameters.hpp"
 #include "diagnose/rms.hpp"
 #include "diagnose/shape_doubt.hpp"
 #include "numerics/decompositions.hpp"

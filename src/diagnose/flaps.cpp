@@ -34,29 +34,6 @@ std::vector<double> all_given(const FlightColumns& flight) {
   return given;
 }
 
-/// Whether columns have a value at every sample of a flight, and say something.
-struct Columns {
-  bool are_finite = true;
-  bool vary = false;
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(are_finite, vary);
-  }
-};
-
-Columns columns_of(const FlightColumns& flight, const std::vector<double>& given, Eigen::Index first,
-                   Eigen::Index count) {
-  Columns columns;
-  for (std::size_t i = 0; i < given.size(); ++i) {
-    if (std::isnan(given[i])) continue;
-    const auto values = flight.candidates.row(as_index(i)).segment(first, count);
-    columns.are_finite = columns.are_finite && values.allFinite();
-    columns.vary = columns.vary || values.cwiseAbs().maxCoeff() > 0.0F;
-  }
-  return columns;
-}
-
 /// A candidate that may be tested, and its columns.
 struct Wanted {
   const Candidate* candidate;
@@ -102,27 +79,25 @@ FlapsCandidates find_flaps_candidates(const CandidateSet& set, const TeamColumns
     samples += count;
   if (samples < fewest_with_flaps_out) return flaps;
   std::vector<Wanted> wanted;
-  Eigen::Index first = 0;
-  for (const Candidate& candidate : set.candidates) {
-    const Eigen::Index count = as_index(candidate.tested.size());
+  for (std::size_t c = 0; c < set.candidates.size(); ++c) {
+    const Candidate& candidate = set.candidates[c];
     const bool reads = reads_flaps(candidate.effect, flights.front().samples->flaps_variable);
-    if (reads || looks_like_flaps(candidate.effect)) wanted.push_back({&candidate, reads, first, count});
-    first += count;
+    if (reads || looks_like_flaps(candidate.effect))
+      wanted.push_back({&candidate, reads, as_index(set.first_column(c)), as_index(candidate.tested.size())});
   }
-  const auto found = columns.share.of_each_flight<std::vector<Columns>>([&](std::size_t f) {
-    std::vector<Columns> of_flight(wanted.size());
+  const auto found = columns.share.of_each_flight<std::vector<Testability>>([&](std::size_t f) {
+    std::vector<Testability> of_flight(wanted.size());
     if (flights[f].reference != 0) return of_flight;
     const std::vector<double> given = all_given(flights[f]);
     for (std::size_t k = 0; k < wanted.size(); ++k)
-      of_flight[k] = columns_of(flights[f], given, wanted[k].first, wanted[k].count);
+      of_flight[k] = testability_of(flights[f], given, wanted[k].first, wanted[k].count);
     return of_flight;
   });
   std::vector<Eigen::Index> kept;
   for (std::size_t k = 0; k < wanted.size(); ++k) {
-    const auto are_finite = [k](const std::vector<Columns>& of_flight) { return of_flight[k].are_finite; };
-    const auto vary = [k](const std::vector<Columns>& of_flight) { return of_flight[k].vary; };
-    if (!std::all_of(found.begin(), found.end(), are_finite) ||
-        std::none_of(found.begin(), found.end(), vary))
+    const auto misses = [k](const std::vector<Testability>& of_flight) { return of_flight[k].missing > 0; };
+    const auto varies = [k](const std::vector<Testability>& of_flight) { return of_flight[k].varies; };
+    if (std::any_of(found.begin(), found.end(), misses) || std::none_of(found.begin(), found.end(), varies))
       continue;
     for (Eigen::Index c = 0; c < wanted[k].count; ++c) kept.push_back(wanted[k].first + c);
     flaps.candidates.push_back(*wanted[k].candidate);

@@ -17,51 +17,17 @@
 namespace pcor::internal {
 namespace {
 
-/// What a flight says of whether candidates can be tested.
-struct Testability {
-  std::size_t used = 0;                // samples
-  std::vector<std::size_t> missing{};  // of each candidate, of these
-  std::vector<bool> varies{};          // of each candidate
-
-  template <class Archive>
-  void serialize(Archive& archive) {
-    archive(used, missing, varies);
-  }
-};
-
-Testability testability_of(const FlightColumns& flight, const std::vector<Candidate>& candidates) {
-  Testability found;
-  std::vector<std::size_t> used;
-  for (std::size_t i = 0; i < flight.given.size(); ++i) {
-    if (!std::isnan(flight.given[i])) used.push_back(i);
-  }
-  found.used = used.size();
-  Eigen::Index first = 0;
-  for (const Candidate& candidate : candidates) {
-    const Eigen::Index count = as_index(candidate.tested.size());
-    std::size_t missing = 0;
-    bool varies = false;
-    for (const std::size_t i : used) {
-      const auto values = flight.candidates.row(as_index(i)).segment(first, count);
-      missing += values.allFinite() ? 0 : 1;
-      varies = varies || values.cwiseAbs().maxCoeff() > 0.0F;
-    }
-    found.missing.push_back(missing);
-    found.varies.push_back(varies);
-    first += count;
-  }
-  return found;
-}
-
 /// Why a candidate cannot be tested on these columns; empty where it can.
-std::string trouble_of(const std::vector<FlightColumns>& flights, const std::vector<Testability>& found,
-                       std::size_t candidate) {
+/// @param found of each flight what it says of each candidate
+std::string trouble_of(const std::vector<FlightColumns>& flights,
+                       const std::vector<std::vector<Testability>>& found, std::size_t candidate) {
   bool varies = false;
   for (std::size_t f = 0; f < flights.size(); ++f) {
-    varies = varies || found[f].varies[candidate];
-    if (found[f].missing[candidate] > 0) {
+    const Testability& of_flight = found[f][candidate];
+    varies = varies || of_flight.varies;
+    if (of_flight.missing > 0) {
       return fmt::format("an input has no value, or an impossible one, in {} of {} samples of {}",
-                         found[f].missing[candidate], found[f].used, flights[f].samples->name);
+                         of_flight.missing, of_flight.samples, flights[f].samples->name);
     }
   }
   if (!varies)
@@ -98,6 +64,19 @@ bool is_like_one_of(const ModelFile& model, const Candidate& candidate) {
 }
 
 }  // namespace
+
+Testability testability_of(const FlightColumns& flight, const std::vector<double>& given, Eigen::Index first,
+                           Eigen::Index count) {
+  Testability found;
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    if (std::isnan(given[i])) continue;
+    const auto values = flight.candidates.row(as_index(i)).segment(first, count);
+    ++found.samples;
+    found.missing += values.allFinite() ? 0 : 1;
+    found.varies = found.varies || values.cwiseAbs().maxCoeff() > 0.0F;
+  }
+  return found;
+}
 
 References usable_references(const References& references, std::vector<std::string>& notes) {
   References result;
@@ -189,8 +168,14 @@ void leave_out_empty(TeamColumns& columns) {
 }
 
 void drop_untestable(CandidateSet& set, TeamColumns& columns) {
-  const auto found = columns.share.of_each_flight<Testability>(
-      [&](std::size_t number) { return testability_of(columns.flights[number], set.candidates); });
+  const auto found = columns.share.of_each_flight<std::vector<Testability>>([&](std::size_t number) {
+    const FlightColumns& flight = columns.flights[number];
+    std::vector<Testability> of_each;
+    for (std::size_t c = 0; c < set.candidates.size(); ++c)
+      of_each.push_back(testability_of(flight, flight.given, as_index(set.first_column(c)),
+                                       as_index(set.candidates[c].tested.size())));
+    return of_each;
+  });
   std::vector<Eigen::Index> kept;
   std::vector<Candidate> candidates;
   Eigen::Index first = 0;

@@ -6,14 +6,30 @@
 
 #include <pcor/campaign/flight_set.hpp>
 #include <pcor/diagnose/diagnose.hpp>
+#include "campaign/columns.hpp"
 #include "diagnose/candidates.hpp"
-#include "diagnose/columns.hpp"
 #include "diagnose/search.hpp"
 
 namespace pcor::internal {
 
 /// Fewer samples tell nothing.
 inline constexpr std::size_t fewest_samples = 300;
+
+/// What a flight says of whether a candidate can be tested.
+struct Testability {
+  std::size_t samples = 0;  ///< that are used
+  std::size_t missing = 0;  ///< of these, those without a value of some column
+  bool varies = false;
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(samples, missing, varies);
+  }
+};
+
+/// @param given has a value where a sample is used @param first of the columns of the candidate
+Testability testability_of(const FlightColumns& flight, const std::vector<double>& given, Eigen::Index first,
+                           Eigen::Index count);
 
 /// The references that a diagnosis can use, those that tell of each sample first; a note on each of the
 /// others. @throws Error if none tells of each sample.

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <pcor/regimes/regimes.hpp>
-#include "diagnose/columns.hpp"
+#include "campaign/columns.hpp"
 #include "diagnose/scores.hpp"
 
 namespace pcor::internal {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <pcor/campaign/flight_set.hpp>
-#include "diagnose/columns.hpp"
+#include "campaign/columns.hpp"
 
 namespace pcor::internal {
 

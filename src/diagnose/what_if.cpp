@@ -6,9 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
+#include <numeric>
 #include <utility>
 
 #include <pcor/words/error.hpp>
+#include "campaign/linear_rows.hpp"
+#include "campaign/model_parameters.hpp"
 #include "diagnose/flight_columns.hpp"
 #include "diagnose/separation.hpp"
 #include "diagnose/step_dates.hpp"
@@ -89,12 +93,6 @@ void keep(CandidateSet& set, const std::vector<WhatIfCandidate>& wanted) {
 /// could be tested.
 std::vector<WhatIfCandidate> put_in_order(CandidateSet& set, TeamColumns& flights,
                                           const std::vector<WhatIfCandidate>& wanted) {
-  std::vector<Eigen::Index> begins;
-  Eigen::Index width = 0;
-  for (const Candidate& candidate : set.candidates) {
-    begins.push_back(width);
-    width += as_index(candidate.tested.size());
-  }
   std::vector<WhatIfCandidate> found;
   std::vector<Candidate> candidates;
   std::vector<Eigen::Index> columns;
@@ -104,7 +102,7 @@ std::vector<WhatIfCandidate> put_in_order(CandidateSet& set, TeamColumns& flight
     found.push_back(each);
     candidates.push_back(set.candidates[place]);
     for (std::size_t k = 0; k < candidates.back().tested.size(); ++k)
-      columns.push_back(begins[place] + as_index(k));
+      columns.push_back(as_index(set.first_column(place) + k));
   }
   set.candidates = std::move(candidates);
   for (FlightColumns& flight : flights.flights)
@@ -147,71 +145,45 @@ TeamColumns held_out_columns(const FlightSet& files, std::size_t fitted, const T
       });
 }
 
-/// The residual with effects at coefficients that are not small: as a refit with them has it.
-class WithEffects {
- public:
-  WithEffects(const ModelFile& model, const CandidateSet& set, const MaskOptions& mask)
-      : model_(model), set_(set), mask_(mask) {}
-
-  std::vector<double> operator()(const FlightColumns& flight, const std::vector<std::size_t>& groups,
-                                 const Eigen::VectorXd& values) const {
-    const Reference& reference = *set_.references[flight.reference];
-    if (!reference.is_of_one_sample()) return {};
-    ModelFile with = model_;
-    with.variables = set_.extended.variables;
-    with.units = set_.extended.units;
-    std::vector<std::size_t> wanted = free_parameters(model_);
-    const std::vector<std::size_t> own = wanted;
-    std::size_t place = 0;
-    for (const ModelEffect& effect : model_.model.effects) place += effect.parameters.size();
-    std::vector<std::pair<std::size_t, double>> added;
-    for (const std::size_t group : groups) {
-      const Candidate& candidate = set_.candidates[group];
-      if (candidate.is_shared || candidate.is_of_reference() || candidate.memory != 0.0) return {};
-      with.model.effects.push_back(candidate.effect);
-      const Eigen::Index first = as_index(set_.base.size() + columns_before(group));
-      for (std::size_t k = 0; k < candidate.tested.size(); ++k) {
-        added.emplace_back(place + candidate.tested[k].place, values[first + as_index(k)]);
-        wanted.push_back(added.back().first);
-      }
-      place += candidate.effect.parameters.size();
+/// The residual of a flight with effects at coefficients that are not small: as a refit with them has it.
+ResidualAt residual_with(const ModelFile& model, const CandidateSet& set, const FlightColumns& flight,
+                         const std::vector<std::size_t>& groups) {
+  const Reference& reference = *set.references[flight.reference];
+  if (!reference.is_of_one_sample()) return {};
+  ModelFile with = model;
+  with.variables = set.extended.variables;
+  with.units = set.extended.units;
+  // Which parameter of the residual each of the free coefficients is, and its number among all of the panel.
+  std::vector<std::size_t> free = free_parameters(model);
+  std::vector<std::size_t> number(free.size());
+  std::iota(number.begin(), number.end(), 0);
+  for (const std::size_t group : groups) {
+    const Candidate& candidate = set.candidates[group];
+    if (candidate.is_shared || candidate.is_of_reference() || candidate.memory != 0.0) return {};
+    for (std::size_t k = 0; k < candidate.tested.size(); ++k) {
+      free.push_back(parameter_count(with.model) + candidate.tested[k].place);
+      number.push_back(set.base.size() + set.first_column(group) + k);
     }
-    with.fits.resize(with.model.effects.size());
-    const Residuals residuals(flight.samples, with, reference, mask_);
-    std::vector<double> parameters = residuals.parameters();
-    for (std::size_t k = 0; k < own.size(); ++k) parameters[own[k]] = values[as_index(k)];
-    for (const auto& [parameter, value] : added) parameters[parameter] = value;
-    std::vector<std::size_t> records;
-    for (std::size_t i = 0; i < flight.given.size(); ++i) {
-      if (!std::isnan(flight.given[i])) records.push_back(i);
-    }
-    // What a refit takes: the residual itself where it is linear, else in the measure of the laser.
-    const bool is_linear =
-        reference.model() != nullptr || !reference.is_static_pressure() ||
-        std::all_of(wanted.begin(), wanted.end(), [&](std::size_t p) { return residuals.is_linear()[p]; });
-    std::vector<double> found(records.size());
-    if (is_linear)
-      residuals.evaluate(records.data(), records.size(), parameters.data(), {}, found.data(), nullptr);
-    else
-      residuals.evaluate_at_sensor(records.data(), records.size(), parameters.data(), {}, found.data(),
-                                   nullptr);
-    std::vector<double> result(flight.given.size(), nan);
-    for (std::size_t k = 0; k < records.size(); ++k) result[records[k]] = found[k];
-    if (std::any_of(found.begin(), found.end(), [](double x) { return !std::isfinite(x); })) return {};
+    with.model.effects.push_back(candidate.effect);
+  }
+  with.fits.resize(with.model.effects.size());
+  std::vector<std::size_t> records;
+  for (std::size_t i = 0; i < flight.given.size(); ++i) {
+    if (!std::isnan(flight.given[i])) records.push_back(i);
+  }
+  const auto rows =
+      std::make_shared<const LinearRows>(Residuals(flight.samples, with, reference, flight.mask), with,
+                                         reference, RowsSetup{Inputs::none, free});
+  return [=](const Eigen::VectorXd& values) -> std::vector<double> {
+    std::vector<double> parameters = rows->residuals().parameters();
+    for (std::size_t k = 0; k < free.size(); ++k) parameters[free[k]] = values[as_index(number[k])];
+    const Eigen::VectorXd found = rows->evaluate(records, parameters.data(), {});
+    if (!found.allFinite()) return {};
+    std::vector<double> result(rows->residuals().size(), nan);
+    for (std::size_t k = 0; k < records.size(); ++k) result[records[k]] = found[as_index(k)];
     return result;
-  }
-
- private:
-  std::size_t columns_before(std::size_t group) const {
-    std::size_t count = 0;
-    for (std::size_t g = 0; g < group; ++g) count += set_.candidates[g].tested.size();
-    return count;
-  }
-
-  const ModelFile& model_;
-  const CandidateSet& set_;
-  const MaskOptions& mask_;
-};
+  };
+}
 
 WhatIfSums as_sums(const SumOfProducts& sum) {
   WhatIfSums sums;
@@ -368,7 +340,6 @@ WhatIf what_if(const FlightSet& flights, const ModelFile& model, const Reference
   CandidateSet set = find_candidates(model, formulas, files, usable_references(all_references, notes),
                                      dates_for(wanted, files));
   keep(set, wanted);
-  const MaskOptions& mask = options.diagnose.mask;
   TeamColumns columns = columns_of_flights(files, flights.size(), model, set, options.diagnose, notes);
   leave_out_empty(columns);
   if (columns.flights.empty()) throw Error("no sample is left to try effects on");
@@ -418,7 +389,9 @@ WhatIf what_if(const FlightSet& flights, const ModelFile& model, const Reference
   }
   const WhatIfFit fit(std::move(columns), std::move(others), panel.coefficients,
                       groups_of(model, ordered.candidates), are_found, options.is_robust,
-                      WithEffects(model, ordered, mask));
+                      [&](const FlightColumns& flight, const std::vector<std::size_t>& groups) {
+                        return residual_with(model, ordered, flight, groups);
+                      });
   fit.describe(panel.coefficients);
   for (const WhatIfFit::Weights& each : fit.weights())
     panel.weights.push_back({each.found, as_sums(each.parts), each.inflation});

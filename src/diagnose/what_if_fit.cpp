@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include <pcor/numerics/noise.hpp>
+#include "campaign/larger_rms.hpp"
 #include "diagnose/analysis.hpp"
 #include "diagnose/scores.hpp"
 #include "diagnose/separation.hpp"
@@ -178,7 +180,7 @@ SumOfProducts& SumOfProducts::operator+=(const SumOfProducts& other) {
 
 WhatIfFit::WhatIfFit(TeamColumns flights, TeamColumns others,
                      const std::vector<WhatIfCoefficient>& coefficients, std::vector<ColumnGroup> groups,
-                     const std::vector<std::size_t>& found, bool is_robust, const ResidualAt& residual_at)
+                     const std::vector<std::size_t>& found, bool is_robust, const ResidualWith& residual_with)
     : flights_(std::move(flights)), others_(std::move(others)), groups_(std::move(groups)) {
   base_ = flights_.flights.front().base.cols();
   given_.resize(as_index(coefficients.size()));
@@ -197,18 +199,23 @@ WhatIfFit::WhatIfFit(TeamColumns flights, TeamColumns others,
   }
   sum_held_out();
   for (const ColumnGroup& group : groups_) told_.push_back(places_of(group, base_));
-  for (const std::vector<std::size_t>& some : subsets_of(found)) settle(some, is_robust, residual_at);
+  for (const std::vector<std::size_t>& some : subsets_of(found)) settle(some, is_robust, residual_with);
 }
 
 /// Where slow noise makes the fit leave more than the coefficients that are given, it is no noise but what
 /// the model lacks, and the fit follows it, as a refit does.
-void WhatIfFit::settle(const std::vector<std::size_t>& found, bool is_robust, const ResidualAt& residual_at) {
-  constexpr double larger = 1.02;
+void WhatIfFit::settle(const std::vector<std::size_t>& found, bool is_robust,
+                       const ResidualWith& residual_with) {
+  std::vector<std::optional<ResidualAt>> residuals(flights_.flights.size());
+  const auto residual_of = [&](std::size_t f) -> const ResidualAt& {
+    if (!residuals[f]) residuals[f] = residual_with(flights_.flights[f], found);
+    return *residuals[f];
+  };
   weights_.push_back({found, {}, 1.0});
-  const Eigen::VectorXd with_drift = find_sums(found, is_robust, true, residual_at);
+  const Eigen::VectorXd with_drift = find_sums(found, is_robust, true, residual_of);
   sum_records();
-  if (rms_of(with_drift) > larger * rms_of(given_)) {
-    find_sums(found, is_robust, false, residual_at);
+  if (is_larger(rms_of(with_drift), rms_of(given_))) {
+    find_sums(found, is_robust, false, residual_of);
     sum_records();
   }
   weights_.back().inflation = inflation_;
@@ -221,11 +228,9 @@ std::vector<Eigen::Index> WhatIfFit::free_columns(const std::vector<std::size_t>
 }
 
 /// The residual at the start, such that a step by the derivatives leads to what it really is at `values`.
-std::vector<double> WhatIfFit::residual_for(const FlightColumns& flight,
-                                            const std::vector<std::size_t>& groups,
-                                            const Eigen::VectorXd& values,
+std::vector<double> WhatIfFit::residual_for(const FlightColumns& flight, const Eigen::VectorXd& values,
                                             const ResidualAt& residual_at) const {
-  const std::vector<double> there = residual_at(flight, groups, start_ + values);
+  const std::vector<double> there = residual_at ? residual_at(start_ + values) : std::vector<double>();
   if (there.empty()) return flight.given;
   std::vector<double> residual = flight.given;
   for (std::size_t i = 0; i < residual.size(); ++i) {
@@ -235,36 +240,30 @@ std::vector<double> WhatIfFit::residual_for(const FlightColumns& flight,
 }
 
 Eigen::VectorXd WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool is_robust, bool drifts,
-                                     const ResidualAt& residual_at) {
+                                     const std::function<const ResidualAt&(std::size_t)>& residual_of) {
   const FlightShare& share = flights_.share;
   const std::vector<FlightColumns>& flights = flights_.flights;
   Eigen::VectorXd values = given_;
   Scores scores;
   for (int round = 0; round <= rounds; ++round) {
-    std::vector<std::vector<double>> series(flights.size());
     binned_ = in_bins(share, flights, [&](std::size_t f) {
-      series[f] = round > 0 ? residual_for(flights[f], found, values, residual_at) : flights[f].given;
-      if (is_robust && round > 0) series[f] = calm(flights[f], series[f], values);
-      return series[f];
+      if (round == 0) return flights[f].given;
+      const std::vector<double> residual = residual_for(flights[f], values, residual_of(f));
+      return is_robust ? calm(flights[f], residual, values) : residual;
     });
-    std::vector<Eigen::MatrixXd> columns;
-    std::vector<Eigen::VectorXd> residuals;
-    for (std::size_t f = 0; f < flights.size(); ++f) {
-      columns.push_back(binned_columns(flights[f], binned_.bins[f]));
-      residuals.push_back(binned_.bins[f].means(series[f]));
-    }
     if (round == 0) {
       scores.share = share;
       scores.rows.clear();
-      for (std::size_t f = 0; f < flights.size(); ++f)
-        scores.rows.emplace_back(columns[f].rows(), columns[f].cols() + 1) << columns[f], residuals[f];
+      for (std::size_t f = 0; f < flights.size(); ++f) {
+        const Eigen::MatrixXd& columns = binned_.columns[f];
+        scores.rows.emplace_back(columns.rows(), columns.cols() + 1) << columns, binned_.residuals[f];
+      }
       sum_up(scores);
       values = solved(scores.information, free_columns(found), values);
       continue;
     }
-    const std::vector<NoiseModel> noise =
-        noise_after(values, columns, residuals, free_columns(found), drifts && round == rounds);
-    scores = find_scores(share, binned_.bins, columns, residuals, noise);
+    const std::vector<NoiseModel> noise = noise_after(values, free_columns(found), drifts && round == rounds);
+    scores = find_scores(share, binned_.bins, binned_.columns, binned_.residuals, noise);
     const Search search(scores, base_, groups_);
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       told_[g].clear();
@@ -294,15 +293,13 @@ Eigen::VectorXd WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool
   return values;
 }
 
-std::vector<NoiseModel> WhatIfFit::noise_after(const Eigen::VectorXd& values,
-                                               const std::vector<Eigen::MatrixXd>& columns,
-                                               const std::vector<Eigen::VectorXd>& residuals,
-                                               const Places& free, bool drifts) const {
+std::vector<NoiseModel> WhatIfFit::noise_after(const Eigen::VectorXd& values, const Places& free,
+                                               bool drifts) const {
   const std::size_t threads = Workers(flights_.share.team(), 0).threads;
   return noise_of_flights(
       flights_.share, binned_,
-      {[&](std::size_t f) -> Eigen::MatrixXd { return columns[f](Eigen::all, free); },
-       [&](std::size_t f) -> Eigen::VectorXd { return residuals[f] - columns[f] * values; },
+      {[&](std::size_t f) -> Eigen::MatrixXd { return binned_.columns[f](Eigen::all, free); },
+       [&](std::size_t f) -> Eigen::VectorXd { return binned_.residuals[f] - binned_.columns[f] * values; },
        digest_of(packed(values))},
       [&](const auto& bins, const auto& fitted, const auto& left) {
         return drifts ? find_noise(bins, fitted, left, threads).model : estimate_noise(bins, left);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <pcor/report/report.hpp>
-#include "diagnose/binned_flights.hpp"
+#include "campaign/binned_flights.hpp"
 #include "diagnose/flight_columns.hpp"
 #include "diagnose/flown_regimes.hpp"
 #include "diagnose/search.hpp"
@@ -14,10 +14,13 @@
 
 namespace pcor::internal {
 
-/// The residual of every record of a flight with some groups in the model, as a refit sees it, at values of
-/// all coefficients; empty where only its derivatives are known.
-using ResidualAt = std::function<std::vector<double>(
-    const FlightColumns& flight, const std::vector<std::size_t>& groups, const Eigen::VectorXd& values)>;
+/// The residual of every record of a flight, as a refit sees it, at values of all coefficients; empty where
+/// only its derivatives are known.
+using ResidualAt = std::function<std::vector<double>(const Eigen::VectorXd& values)>;
+
+/// That of a flight with some groups in the model; none where only its derivatives are known.
+using ResidualWith =
+    std::function<ResidualAt(const FlightColumns& flight, const std::vector<std::size_t>& groups)>;
 
 /// Products of (columns, residual) with themselves, summed over so many samples.
 struct SumOfProducts {
@@ -43,7 +46,7 @@ class WhatIfFit {
   /// @param found the groups with which the noise is found, and with some of them
   WhatIfFit(TeamColumns flights, TeamColumns others, const std::vector<WhatIfCoefficient>& coefficients,
             std::vector<ColumnGroup> groups, const std::vector<std::size_t>& found, bool is_robust,
-            const ResidualAt& residual_at);
+            const ResidualWith& residual_with);
 
   const TeamColumns& flights() const { return flights_; }
   const TeamColumns& others() const { return others_; }
@@ -87,16 +90,15 @@ class WhatIfFit {
 
  private:
   std::vector<Eigen::Index> free_columns(const std::vector<std::size_t>& groups) const;
-  void settle(const std::vector<std::size_t>& found, bool is_robust, const ResidualAt& residual_at);
+  void settle(const std::vector<std::size_t>& found, bool is_robust, const ResidualWith& residual_with);
   /// Gives the coefficients with the groups that were found.
+  /// @param residual_of gives the residual of an own flight with these
   Eigen::VectorXd find_sums(const std::vector<std::size_t>& found, bool is_robust, bool drifts,
-                            const ResidualAt& residual_at);
-  std::vector<double> residual_for(const FlightColumns& flight, const std::vector<std::size_t>& groups,
-                                   const Eigen::VectorXd& values, const ResidualAt& residual_at) const;
-  std::vector<NoiseModel> noise_after(const Eigen::VectorXd& values,
-                                      const std::vector<Eigen::MatrixXd>& columns,
-                                      const std::vector<Eigen::VectorXd>& residuals,
-                                      const std::vector<Eigen::Index>& free, bool drifts) const;
+                            const std::function<const ResidualAt&(std::size_t flight)>& residual_of);
+  std::vector<double> residual_for(const FlightColumns& flight, const Eigen::VectorXd& values,
+                                   const ResidualAt& residual_at) const;
+  std::vector<NoiseModel> noise_after(const Eigen::VectorXd& values, const std::vector<Eigen::Index>& free,
+                                      bool drifts) const;
   double rms_of(const Eigen::VectorXd& values) const;
   void sum_records();
   void sum_held_out();

@@ -33,14 +33,11 @@ struct Compared {
   }
 };
 
-Compared compared(const Residuals& residuals, const FitTask& task, const Eigen::VectorXd& values,
-                  double training_share) {
+Compared compared(const LinearRows& rows, const FitTask& task, const Eigen::VectorXd& values) {
+  const Residuals& residuals = rows.residuals();
   const FlightSamples& samples = residuals.samples();
   const std::vector<double> before = residuals.values(own_parameters(residuals, task, task.start).data());
   const std::vector<double> after = residuals.values(own_parameters(residuals, task, values).data());
-  const std::vector<std::size_t> fitted = used_samples(residuals.mask(), training_share);
-  std::vector<std::size_t> held_out = used_samples(residuals.mask());
-  held_out.erase(held_out.begin(), held_out.begin() + static_cast<std::ptrdiff_t>(fitted.size()));
   const NoiseFloor noise = noise_of_flight(samples, only_where(after, residuals.mask(), Mask::none));
   Compared result;
   const auto add = [&](const std::vector<std::size_t>& part, bool held) {
@@ -60,8 +57,8 @@ Compared compared(const Residuals& residuals, const FitTask& task, const Eigen::
       result.fitted_blocks = means;
     }
   };
-  add(fitted, false);
-  add(held_out, true);
+  add(rows.used(), false);
+  add(rows.held_out(), true);
   return result;
 }
 
@@ -70,7 +67,10 @@ std::vector<Compared> held_out(const FitTask& task, const Eigen::VectorXd& value
   const FlightSet& flights = task.options.holdout;
   return flights.share().of_each_flight<Compared>([&](std::size_t number) {
     const auto samples = flights.samples(number, task.model, task.reference, task.options.mask);
-    return compared(Residuals(samples, task.model, task.reference, task.options.mask), task, values, 0.0);
+    constexpr double fitted = 0.0;  // part of the samples
+    const LinearRows rows(Residuals(samples, task.model, task.reference, task.options.mask), task.model,
+                          task.reference, {Inputs::none, {}, fitted});
+    return compared(rows, task, values);
   });
 }
 
@@ -80,7 +80,7 @@ std::vector<Compared> compared(FitFlights& flights, const Eigen::VectorXd& value
   const FitTask& task = flights.task();
   std::vector<Compared> each = flights.of_each(
       [&](std::size_t, FitFlight& fit) {
-        Compared one = compared(fit.residuals(), task, values, task.options.training_share);
+        Compared one = compared(fit.linear_rows(), task, values);
         more(fit.residuals(), one);
         return one;
       },

@@ -2,25 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <optional>
 
+#include "campaign/model_parameters.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/spikes.hpp"
-#include "residuals/masks.hpp"
 #include "residuals/moving_columns.hpp"
 
 namespace pcor::internal {
 
 namespace {
-
-/// How many parameters of residuals are the model's own; those of the reference's model stand behind them.
-std::size_t parameters_of_model(const FitTask& task) {
-  std::size_t count = task.model.model.additions.size();
-  for (const ModelEffect& effect : task.model.model.effects) count += effect.parameters.size();
-  return count;
-}
 
 /// Where the coefficients of an effect begin among those of a model's effects; nothing where it has none.
 std::optional<std::size_t> place_of(const ModelFile& model, const std::string& effect) {
@@ -50,15 +42,42 @@ std::vector<Alike> alike_in(const FitTask& task) {
         alike.push_back({first + *place + i, neutral[i]});
     };
     add(task.model, 0);
-    add(*other, parameters_of_model(task));
+    add(*other, parameter_count(task.model.model));
   }
   return alike;
+}
+
+/// The wanted parameters on which the residuals of a flight depend.
+struct Known {
+  std::vector<std::size_t> parameters{};
+  std::vector<std::size_t> columns{};  ///< their places among the wanted ones, and that of the residual
+};
+
+Known known_of(const std::vector<std::size_t>& wanted, const Residuals& residuals, const FitTask& task) {
+  const std::vector<Alike> alike = alike_in(task);
+  Known known;
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    const bool is_alike =
+        std::any_of(alike.begin(), alike.end(), [&](const Alike& each) { return each.place == wanted[k]; });
+    if (is_alike || wanted[k] >= shared_parameters(residuals, task)) continue;
+    known.parameters.push_back(wanted[k]);
+    known.columns.push_back(k);
+  }
+  known.columns.push_back(wanted.size());
+  return known;
+}
+
+/// Nothing depends on what a reference does not know. @param rows of the known parameters
+Eigen::MatrixXd with_all_columns(const Eigen::MatrixXd& rows, const Known& known) {
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(rows.rows(), as_index(known.columns.back()) + 1);
+  all(Eigen::all, known.columns) = rows;
+  return all;
 }
 
 }  // namespace
 
 std::size_t shared_parameters(const Residuals& residuals, const FitTask& task) {
-  return task.shares_system ? residuals.parameters().size() : parameters_of_model(task);
+  return task.shares_system ? residuals.parameters().size() : parameter_count(task.model.model);
 }
 
 Eigen::VectorXd own_parameters(const Residuals& residuals, const FitTask& task,
@@ -75,84 +94,49 @@ FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask
     : task_(&task),
       setup_(&setup),
       moving_(samples->model.moving.empty() ? nullptr : std::make_shared<FlightSamples>(*samples)),
-      residuals_(moving_ ? moving_ : std::move(samples), task.model, task.reference, task.options.mask),
-      static_pressure_(residuals_.samples().model.find(Quantity::static_pressure)) {
-  const FlightSamples& flight = residuals_.samples();
-  kept_ = used_samples(residuals_.mask(), task.options.training_share);
-  if (!setup.regimes.empty()) {
-    // Of each sample the number of its interval; the first that holds it counts.
-    std::vector<int> inside(residuals_.size(), -1);
-    for (const Interval& interval : flight.intervals) {
-      if (std::find(setup.regimes.begin(), setup.regimes.end(), interval.regime) == setup.regimes.end())
-        continue;
-      bool any = false;
-      for (const std::size_t i : kept_) {
-        if (inside[i] >= 0 || flight.time[i] < interval.begin || flight.time[i] >= interval.end) continue;
-        inside[i] = static_cast<int>(offset_count_);
-        any = true;
-      }
-      if (any) ++offset_count_;
-    }
-    kept_.erase(std::remove_if(kept_.begin(), kept_.end(), [&](std::size_t i) { return inside[i] < 0; }),
-                kept_.end());
-    for (const std::size_t i : kept_) offset_.push_back(inside[i]);
-  }
-  linear_ = task.reference.model() != nullptr || !task.reference.is_static_pressure() ||
-            std::all_of(setup.wanted.begin(), setup.wanted.end(),
-                        [this](std::size_t parameter) { return residuals_.is_linear()[parameter]; });
-  if (const auto common = residuals_.at_common_pressures())
-    at_common_pressures_.emplace(common, task.model, task.reference, task.options.mask);
-}
+      rows_(Residuals(moving_ ? moving_ : std::move(samples), task.model, task.reference, task.options.mask),
+            task.model, task.reference,
+            {Inputs::recorded, setup.wanted, task.options.training_share, setup.regimes}),
+      static_pressure_(rows_.samples().model.find(Quantity::static_pressure)) {}
 
 void FitFlight::prepare(const Eigen::VectorXd& parameters) {
   if (parameters.size() == prepared_parameters_.size() && parameters == prepared_parameters_) return;
   prepared_parameters_ = parameters;
-  const FlightSamples& flight = residuals_.samples();
+  const FlightSamples& flight = rows_.samples();
+  const Eigen::VectorXd own = own_parameters(residuals(), *task_, parameters);
   if (moving_) {
-    const Eigen::VectorXd own = own_parameters(residuals_, *task_, parameters);
     // As recorded at a higher rate the airspeed stays that of the model as it was read.
     FastSeries& speed = moving_->model.along_beam;
     if (speed.in_record == 1 && !speed.values.empty())
       speed.values = airspeed_along_beam(task_->model, moving_->model, own.data());
     find_moving_columns(task_->model.model, own.data(), flight.time, flight.step, moving_->model);
   }
-  std::vector<double> residual(kept_.size());
-  for (std::size_t first = 0; first < kept_.size(); first += samples_per_chunk) {
-    const std::size_t count = std::min(samples_per_chunk, kept_.size() - first);
-    evaluate(residuals_, first, count, parameters, {}, residual.data() + first, nullptr);
-  }
+  const Eigen::VectorXd residual = rows_.evaluate(kept(), own.data(), {});
   std::vector<double> series(flight.time.size(), nan);
-  for (std::size_t i = 0; i < kept_.size(); ++i) series[kept_[i]] = residual[i];
+  for (std::size_t i = 0; i < kept().size(); ++i) series[kept()[i]] = residual[as_index(i)];
   spikes_ = 0;
   if (task_->options.loss != Loss::none) {
     const std::vector<double> nothing(series.size(), 0.0);
     const std::vector<double> calm = without_outliers(series, nothing, flight.time, flight.step, spikes_);
-    for (const std::size_t i : kept_) {
+    for (const std::size_t i : kept()) {
       if (calm[i] != series[i]) series[i] = nan;
     }
   }
-  bins_ =
-      Binning(series, flight.time, flight.step, std::max(task_->reference.window(), Binning::usual_width));
-  bin_.assign(kept_.size(), -1);
-  in_bin_ = Eigen::VectorXd::Zero(as_index(bins_.size()));
-  std::size_t i = 0;
-  for (std::size_t k = 0; k < bins_.records().size(); ++k) {
-    while (kept_[i] != bins_.records()[k]) ++i;
-    bin_[i] = bins_.bins()[k];
-    in_bin_[bin_[i]] += 1.0;
-  }
+  bins_ = rows_.bins(series);
   whitening_.reset();
   kept_rows_.resize(0, 0);
-  if (linear_) kept_rows_ = means(parameters, setup_->wanted);
+  if (rows_.is_linear()) kept_rows_ = means(parameters, setup_->wanted);
   whiten_what_stays();
 }
 
 /// Rows of what is linear, and derivatives by the offsets, each of the pressure in its interval.
 void FitFlight::whiten_what_stays() {
   kept_white_rows_ = white(kept_rows_);
-  Eigen::MatrixXd offsets = Eigen::MatrixXd::Zero(as_index(bins_.size()), as_index(offset_count_));
-  for (std::size_t i = 0; i < offset_.size(); ++i) {
-    if (bin_[i] >= 0) offsets(bin_[i], offset_[i]) -= static_pressure(i) / in_bin_[bin_[i]];
+  Eigen::MatrixXd offsets = Eigen::MatrixXd::Zero(as_index(bins_.size()), as_index(this->offsets()));
+  for (std::size_t k = 0; k < bins_.records().size() && this->offsets() > 0; ++k) {
+    const std::size_t record = bins_.records()[k];
+    const Eigen::Index bin = bins_.bins()[k];
+    offsets(bin, as_index(rows_.intervals()[record])) -= (*static_pressure_)[record] / bins_.counts()[bin];
   }
   white_offsets_ = white(offsets);
 }
@@ -164,65 +148,12 @@ void FitFlight::set_noise(const FitNoise& noise, std::size_t flight) {
   whiten_what_stays();
 }
 
-/// Through the chain; for LAMS, where some effect is not at the static ports, in the laser's own measure.
-void FitFlight::evaluate(const Residuals& residuals, std::size_t first, std::size_t count,
-                         const Eigen::VectorXd& parameters, const std::vector<std::size_t>& wanted,
-                         double* residual, double* derivatives) const {
-  const std::size_t* const samples = kept_.data() + first;
-  const Eigen::VectorXd own = own_parameters(residuals, *task_, parameters);
-  const std::size_t shared = shared_parameters(residuals, *task_);
-  std::vector<std::size_t> known;
-  std::copy_if(wanted.begin(), wanted.end(), std::back_inserter(known),
-               [shared](std::size_t parameter) { return parameter < shared; });
-  if (linear_) {
-    residuals.evaluate(samples, count, own.data(), known, residual, derivatives);
-  } else {
-    residuals.evaluate_at_sensor(samples, count, own.data(), known, residual, derivatives);
-  }
-  // Nothing depends on what this reference does not know.
-  std::size_t from = known.size();
-  for (std::size_t k = wanted.size(); k-- > 0 && from <= k;) {
-    double* const column = derivatives + k * count;
-    if (wanted[k] < shared) {
-      --from;
-      std::copy_n(derivatives + from * count, count, column);
-    } else {
-      std::fill_n(column, count, 0.0);
-    }
-  }
-  for (const Alike& alike : alike_in(*task_)) {
-    const auto place = std::find(wanted.begin(), wanted.end(), alike.place);
-    if (place != wanted.end())
-      std::fill_n(derivatives + (place - wanted.begin()) * as_index(count), count, 0.0);
-  }
-}
-
 /// Means over the bins of derivatives and residual.
-Eigen::MatrixXd FitFlight::means(const Residuals& residuals, const Eigen::VectorXd& parameters,
-                                 const std::vector<std::size_t>& wanted) const {
-  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(as_index(bins_.size()), as_index(wanted.size()) + 1);
-  std::vector<double> store((wanted.size() + 1) * samples_per_chunk);
-  for (std::size_t first = 0; first < kept_.size(); first += samples_per_chunk) {
-    const std::size_t count = std::min(samples_per_chunk, kept_.size() - first);
-    double* const residual = store.data() + wanted.size() * count;
-    evaluate(residuals, first, count, parameters, wanted, residual, store.data());
-    for (std::size_t c = 0; c <= wanted.size(); ++c) {
-      const double* const column = store.data() + c * count;
-      for (std::size_t i = 0; i < count; ++i) {
-        if (bin_[first + i] >= 0) sums(bin_[first + i], as_index(c)) += column[i];
-      }
-    }
-  }
-  return in_bin_.cwiseInverse().asDiagonal() * sums;
-}
-
-/// The same, with the derivatives of two static systems at common pressures.
 Eigen::MatrixXd FitFlight::means(const Eigen::VectorXd& parameters,
                                  const std::vector<std::size_t>& wanted) const {
-  if (!at_common_pressures_) return means(residuals_, parameters, wanted);
-  Eigen::MatrixXd result = means(*at_common_pressures_, parameters, wanted);
-  result.rightCols(1) = means(residuals_, parameters, {});
-  return result;
+  const Known known = known_of(wanted, residuals(), *task_);
+  const Eigen::VectorXd own = own_parameters(residuals(), *task_, parameters);
+  return with_all_columns(rows_.means(bins_, own.data(), known.parameters), known);
 }
 
 /// Linear rows at the parameters that were prepared, with the residual at others.
@@ -232,12 +163,12 @@ Eigen::MatrixXd FitFlight::moved(Eigen::MatrixXd rows, const Eigen::VectorXd& pa
 }
 
 Eigen::MatrixXd FitFlight::rows(const Eigen::VectorXd& parameters) const {
-  return linear_ ? moved(kept_rows_, parameters) : means(parameters, setup_->wanted);
+  return rows_.is_linear() ? moved(kept_rows_, parameters) : means(parameters, setup_->wanted);
 }
 
 Eigen::MatrixXd FitFlight::white_rows(const Eigen::VectorXd& parameters, const ScaledLoss& loss) const {
-  Eigen::MatrixXd result = linear_ ? moved(kept_white_rows_, parameters) : white(rows(parameters));
-  if (offset_count_ == 0) return result;
+  Eigen::MatrixXd result = rows_.is_linear() ? moved(kept_white_rows_, parameters) : white(rows(parameters));
+  if (offsets() == 0) return result;
   Eigen::VectorXd innovations = without_offsets(result.rightCols(1), Eigen::VectorXd::Ones(result.rows()));
   for (const ScaledLoss& each : {loss.convex(), loss}) {
     constexpr int most_rounds = 200;
@@ -253,7 +184,7 @@ Eigen::MatrixXd FitFlight::white_rows(const Eigen::VectorXd& parameters, const S
 
 Eigen::MatrixXd FitFlight::without_offsets(const Eigen::MatrixXd& columns,
                                            const Eigen::VectorXd& weights) const {
-  if (offset_count_ == 0) return columns;
+  if (offsets() == 0) return columns;
   const Eigen::MatrixXd weighted = weights.asDiagonal() * white_offsets_;
   return columns - white_offsets_ * (pseudo_inverse(white_offsets_.transpose() * weighted) *
                                      (weighted.transpose() * columns));
@@ -265,18 +196,12 @@ Eigen::MatrixXd FitFlight::white_columns(const Eigen::VectorXd& parameters,
 }
 
 Eigen::MatrixXd FitFlight::unweighted_factor(const Eigen::VectorXd& parameters) const {
-  const std::vector<std::size_t>& wanted = setup_->wanted;
-  const std::vector<double> ones(samples_per_chunk, 1.0);
-  std::vector<double> store((wanted.size() + 1) * samples_per_chunk);
-  TriangularFactor factor(as_index(wanted.size()) + 1);
-  for (std::size_t first = 0; first < kept_.size(); first += samples_per_chunk) {
-    const std::size_t count = std::min(samples_per_chunk, kept_.size() - first);
-    std::vector<const double*> columns;
-    for (std::size_t c = 0; c <= wanted.size(); ++c) columns.push_back(store.data() + c * count);
-    evaluate(residuals_, first, count, parameters, wanted, store.data() + wanted.size() * count,
-             store.data());
-    factor.add(columns, ones.data(), count);
-  }
+  const Known known = known_of(setup_->wanted, residuals(), *task_);
+  const Eigen::VectorXd own = own_parameters(residuals(), *task_, parameters);
+  const Eigen::MatrixXd rows =
+      with_all_columns(rows_.evaluate(kept(), own.data(), known.parameters, true), known);
+  TriangularFactor factor(rows.cols());
+  factor.add(rows, Eigen::VectorXd::Ones(rows.rows()));
   return factor.factor();
 }
 
@@ -284,7 +209,7 @@ std::size_t FitFlight::outliers(const Eigen::VectorXd& parameters, double limit)
   const Eigen::VectorXd innovations = white_rows(parameters, {}).rightCols(1);
   auto count = static_cast<double>(spikes_);
   for (Eigen::Index i = 0; i < innovations.size(); ++i) {
-    if (std::abs(innovations[i]) > limit) count += in_bin_[i];
+    if (std::abs(innovations[i]) > limit) count += bins_.counts()[i];
   }
   return static_cast<std::size_t>(count);
 }

@@ -100,8 +100,7 @@ std::vector<FitFlights*> FitFlights::joint() {
 }
 
 bool FitFlights::stays_as_prepared() const {
-  return has_moving_columns() || task_.reference.model() != nullptr ||
-         !task_.reference.is_static_pressure() || !seeing_.empty();
+  return has_moving_columns() || keeps_derivatives(task_.reference) || !seeing_.empty();
 }
 
 bool FitFlights::has_moving_columns() const {
@@ -162,11 +161,8 @@ Reduction FitFlights::reduce(const Eigen::VectorXd& parameters, const ScaledLoss
       const Eigen::MatrixXd taken = (rows - left).leftCols(fitted);
       part.taken_up = taken.array().square().matrix().transpose() * weight;
     }
-    const Eigen::VectorXd scale = weight.cwiseSqrt();
-    std::vector<const double*> columns;
-    for (Eigen::Index k = 0; k <= fitted; ++k) columns.push_back(left.col(k).data());
     TriangularFactor factor(fitted + 1);
-    factor.add(columns, scale.data(), part.bins);
+    factor.add(left, weight.cwiseSqrt());
     part.factor = factor.factor();
     return part;
   };

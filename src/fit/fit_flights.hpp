@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <pcor/residuals/residuals.hpp>
+#include "campaign/linear_rows.hpp"
 #include "fit/fit_task.hpp"
 #include "fit/loss_function.hpp"
 #include "numerics/noise_model.hpp"
@@ -21,9 +22,6 @@
 #include "numerics/whitening.hpp"
 
 namespace pcor::internal {
-
-/// Passes over a flight take so many samples at a time, which fit into the processor's cache.
-inline constexpr std::size_t samples_per_chunk = 1024;
 
 /// What a stage of a fit takes from the flights.
 struct FitSetup {
@@ -64,12 +62,13 @@ class FitFlight {
  public:
   FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask& task, const FitSetup& setup);
 
-  const Residuals& residuals() const { return residuals_; }
-  const std::vector<std::size_t>& kept() const { return kept_; }
+  const LinearRows& linear_rows() const { return rows_; }
+  const Residuals& residuals() const { return rows_.residuals(); }
+  const std::vector<std::size_t>& kept() const { return rows_.used(); }
   /// How many intervals have an offset of their own.
-  std::size_t offsets() const { return offset_count_; }
+  std::size_t offsets() const { return rows_.interval_count(); }
   const Binning& bins() const { return bins_; }
-  double static_pressure(std::size_t kept) const { return (*static_pressure_)[kept_[kept]]; }
+  double static_pressure(std::size_t kept) const { return (*static_pressure_)[rows_.used()[kept]]; }
 
   /// Finds samples that depart from their neighbours at these parameters, which are left out from now on, and
   /// prepares the bins of the others. With a loss of least squares none is left out.
@@ -105,29 +104,17 @@ class FitFlight {
   std::size_t outliers(const Eigen::VectorXd& parameters, double limit) const;
 
  private:
-  void evaluate(const Residuals& residuals, std::size_t first, std::size_t count,
-                const Eigen::VectorXd& parameters, const std::vector<std::size_t>& wanted, double* residual,
-                double* derivatives) const;
-  Eigen::MatrixXd means(const Residuals& residuals, const Eigen::VectorXd& parameters,
-                        const std::vector<std::size_t>& wanted) const;
   Eigen::MatrixXd means(const Eigen::VectorXd& parameters, const std::vector<std::size_t>& wanted) const;
   void whiten_what_stays();
   Eigen::MatrixXd moved(Eigen::MatrixXd rows, const Eigen::VectorXd& parameters) const;
 
   const FitTask* task_;
   const FitSetup* setup_;
-  std::shared_ptr<FlightSamples> moving_;  // those of `residuals_`, where columns hang on coefficients
-  Residuals residuals_;
-  std::optional<Residuals> at_common_pressures_;  // of two static systems
-  const std::vector<double>* static_pressure_;    // of the samples
-  std::vector<std::size_t> kept_;
-  std::vector<int> offset_;  // of each kept sample
-  std::size_t offset_count_ = 0;
+  std::shared_ptr<FlightSamples> moving_;  // those of `rows_`, where columns hang on coefficients
+  LinearRows rows_;
+  const std::vector<double>* static_pressure_;  // of the samples
   std::size_t spikes_ = 0;
   Binning bins_;
-  std::vector<Eigen::Index> bin_;  // of each kept sample; -1 for those that are left out
-  Eigen::VectorXd in_bin_;         // samples in each bin
-  bool linear_ = false;
   Eigen::VectorXd prepared_parameters_;
   std::optional<Whitening> whitening_;
   // Where the residual counts as linear in all that is wanted: rows at `prepared_parameters_`.

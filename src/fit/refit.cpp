@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include <pcor/words/error.hpp>
+#include "campaign/model_parameters.hpp"
 #include "fit/before_and_after.hpp"
 #include "fit/fit_covariance.hpp"
 #include "fit/fitted_model.hpp"
@@ -264,10 +264,8 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelFile& model, const R
   result.notes = notes_of(result, task, fitted, covariance.matrix, compared);
   result.model = fitted_model(model, 0, result, options.loss, fitted_flights.title());
   if (options.fit_reference) {
-    const auto own = std::accumulate(
-        model.model.effects.begin(), model.model.effects.end(), std::size_t{0},
-        [](std::size_t sum, const ModelEffect& effect) { return sum + effect.parameters.size(); });
-    result.reference = fitted_model(*reference.model(), own, result, options.loss, fitted_flights.title());
+    result.reference = fitted_model(*reference.model(), parameter_count(model.model), result, options.loss,
+                                    fitted_flights.title());
   }
   return result;
 }

@@ -6,13 +6,13 @@
 #include <cmath>
 
 #include <pcor/words/utc.hpp>
+#include "campaign/larger_rms.hpp"
 #include "fit/loss_function.hpp"
 #include "residuals/flight_statistics.hpp"
 
 namespace pcor::internal {
 namespace {
 
-constexpr double larger = 1.02;
 constexpr double larger_elsewhere =
     1.05;  // by chance a fit of half a flight is worse on the rest by some per cent
 constexpr double much_larger = 1.1;
@@ -59,7 +59,7 @@ Run longest_run(const FitFlight& fit, const Eigen::VectorXd& values) {
 }  // namespace
 
 std::string why_worse(const RefitResult& result, double bulk_rms_before) {
-  if (result.rms > larger * result.rms_before && result.bulk_rms > larger * bulk_rms_before) {
+  if (is_larger(result.rms, result.rms_before) && is_larger(result.bulk_rms, bulk_rms_before)) {
     return fmt::format(
         "the fit leaves a larger rms, {:.3f} hPa, than the coefficients of the file, {:.3f} hPa, on the "
         "samples that were fitted",

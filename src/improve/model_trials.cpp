@@ -5,9 +5,9 @@
 
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/roles/with_effects.hpp>
+#include "campaign/linear_rows.hpp"
 #include "numerics/missing.hpp"
 #include "residuals/flight_statistics.hpp"
-#include "residuals/masks.hpp"
 #include "residuals/packed_residuals.hpp"
 #include "team/flight_share.hpp"
 
@@ -71,17 +71,14 @@ TrialFlight tried_on(const FlightSet& flights, std::size_t number, const ModelFi
                      const TrialReference& trial, const RefitOptions& options, bool held_out) {
   TrialFlight flight;
   flight.samples = flights.samples(number, whole, trial.reference, options.mask);
-  const Residuals residuals(flight.samples, whole, trial.reference, options.mask);
-  flight.held_out = used_samples(residuals.mask());
-  if (!held_out) {
-    flight.fitted = used_samples(residuals.mask(), options.training_share);
-    flight.held_out.erase(flight.held_out.begin(),
-                          flight.held_out.begin() + static_cast<std::ptrdiff_t>(flight.fitted.size()));
-  }
+  const LinearRows rows(Residuals(flight.samples, whole, trial.reference, options.mask), whole,
+                        trial.reference, {Inputs::none, {}, held_out ? 0.0 : options.training_share});
+  flight.fitted = rows.used();
+  flight.held_out = rows.held_out();
   for (const std::vector<double>& coefficients : trial.coefficients) {
-    flight.residuals.push_back(residuals.values(coefficients.data()));
+    flight.residuals.push_back(rows.residuals().values(coefficients.data()));
     flight.static_pressures.push_back(
-        residuals.quantity(Quantity::corrected_static_pressure, coefficients.data()));
+        rows.residuals().quantity(Quantity::corrected_static_pressure, coefficients.data()));
   }
   return flight;
 }

@@ -47,6 +47,8 @@ class Binning {
   /// The records that are in bins, and the bin of each.
   const std::vector<std::size_t>& records() const { return record_; }
   const std::vector<Eigen::Index>& bins() const { return bin_; }
+  /// How many records each bin has.
+  const Eigen::VectorXd& counts() const { return count_; }
 
   /// Without the records: with what is a mean over a bin already, nobody needs them.
   template <class Archive>

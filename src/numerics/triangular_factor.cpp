@@ -4,18 +4,14 @@
 
 namespace pcor::internal {
 
-void TriangularFactor::add(const std::vector<const double*>& by_columns, const double* scale,
-                           std::size_t count) {
-  for (std::size_t from = 0; from < count;) {
+void TriangularFactor::add(const Eigen::MatrixXd& rows, const Eigen::VectorXd& scale) {
+  for (Eigen::Index from = 0; from < rows.rows();) {
     if (filled_ == block) reduce();
-    const Eigen::Index part = std::min(block - filled_, as_index(count - from));
-    const Eigen::Map<const Eigen::ArrayXd> scales(scale + from, part);
-    for (Eigen::Index c = 0; c < columns(); ++c) {
-      const Eigen::Map<const Eigen::ArrayXd> column(by_columns[static_cast<std::size_t>(c)] + from, part);
-      rows_.col(c).segment(columns() + filled_, part) = (scales * column).matrix();
-    }
+    const Eigen::Index part = std::min(block - filled_, rows.rows() - from);
+    rows_.middleRows(columns() + filled_, part) =
+        scale.segment(from, part).asDiagonal() * rows.middleRows(from, part);
     filled_ += part;
-    from += static_cast<std::size_t>(part);
+    from += part;
   }
 }
 

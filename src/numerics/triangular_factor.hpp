@@ -15,8 +15,8 @@ class TriangularFactor {
  public:
   explicit TriangularFactor(Eigen::Index columns) : rows_(Eigen::MatrixXd::Zero(columns + block, columns)) {}
 
-  /// Adds `count` rows, given by columns, each row times its scale.
-  void add(const std::vector<const double*>& by_columns, const double* scale, std::size_t count);
+  /// Adds rows, each times its scale.
+  void add(const Eigen::MatrixXd& rows, const Eigen::VectorXd& scale);
 
   /// Adds the rows of another factor.
   void add(const Eigen::MatrixXd& factor);

@@ -81,10 +81,16 @@ struct Residuals::Implementation {
 
 Residuals::Residuals(std::shared_ptr<const FlightSamples> samples, const ModelFile& model,
                      const Reference& reference, const MaskOptions& options)
-    : implementation_(std::make_unique<Implementation>(std::move(samples), model, reference)) {
+    : Residuals(std::move(samples), model, reference, std::vector<Mask>()) {
   const Implementation& own = *implementation_;
   implementation_->mask =
       find_masks({this->samples(), own.model, *own.reference, values(parameters().data())}, options);
+}
+
+Residuals::Residuals(std::shared_ptr<const FlightSamples> samples, const ModelFile& model,
+                     const Reference& reference, std::vector<Mask> mask)
+    : implementation_(std::make_unique<Implementation>(std::move(samples), model, reference)) {
+  implementation_->mask = std::move(mask);
 }
 
 Residuals::Residuals(Residuals&&) noexcept = default;

@@ -30,6 +30,9 @@ class Residuals {
   /// @throws Error if the model, or that of the reference, cannot be used on the samples.
   Residuals(std::shared_ptr<const FlightSamples> samples, const ModelFile& model, const Reference& reference,
             const MaskOptions& options = {});
+  /// The same with masks that are known: they were found on these samples, or on others of the same flight.
+  Residuals(std::shared_ptr<const FlightSamples> samples, const ModelFile& model, const Reference& reference,
+            std::vector<Mask> mask);
   Residuals(Residuals&&) noexcept;
   Residuals& operator=(Residuals&&) noexcept;
   ~Residuals();

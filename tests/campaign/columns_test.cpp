@@ -1,5 +1,5 @@
-// Columns of a diagnosis against differences of residuals through the whole chain, and what can be tested.
-#include "diagnose/columns.hpp"
+// Columns of a diagnosis against differences of residuals through the whole chain.
+#include "campaign/columns.hpp"
 
 #include <gmock/gmock.h>
 #include <pcor/effects/catalogue.hpp>
@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnose/candidates.hpp"
 #include "support/short_flight.hpp"
 
 using namespace pcor::internal;
@@ -23,16 +24,12 @@ using namespace pcor::internal;
 using pcor::FlightSamples;
 using pcor::ModelEffect;
 using pcor::ModelFile;
-using pcor::NotTestable;
 using pcor::Quantity;
 using pcor::Residuals;
 using pcor::internal::Candidate;
 using pcor::internal::CandidateSet;
 using pcor::internal::FlightColumns;
 using pcor::test::laser_model;
-using pcor::test::short_flight;
-using testing::HasSubstr;
-using testing::StrEq;
 
 namespace {
 
@@ -213,22 +210,6 @@ std::set<std::string> expect_differences(const Made& made,
   return without_trace;
 }
 
-const NotTestable* reason_for(const CandidateSet& set, const std::string& effect) {
-  for (const NotTestable& each : set.not_testable) {
-    if (each.effect == effect) return &each;
-  }
-  return nullptr;
-}
-
-bool has_candidate(const CandidateSet& set, const std::string& effect) {
-  return std::any_of(set.candidates.begin(), set.candidates.end(),
-                     [&](const Candidate& candidate) { return candidate.effect.id == effect; });
-}
-
-CandidateSet candidates_of_file(const ModelFile& model, const std::vector<ModelEffect>& formulas = {}) {
-  return pcor::internal::find_candidates(model, formulas, {short_flight()}, {pcor::lams_reference()});
-}
-
 }  // namespace
 
 TEST(Columns, OfEveryCandidateAreDifferencesThroughTheWholeChain) {
@@ -356,120 +337,4 @@ TEST(Columns, FewMissingValuesAreBridgedAndManyAreNot) {
   EXPECT_TRUE(few.allFinite());
   EXPECT_EQ(few[115], few[99]);
   EXPECT_FALSE(with_gap(60).allFinite());
-}
-
-TEST(Candidates, AreTheCatalogueThatTheModelLacks) {
-  const CandidateSet set = candidates_of_file(laser_model());
-  for (const char* own : {"static-constant", "static-alpha", "static-qp"}) {
-    EXPECT_FALSE(has_candidate(set, own));
-    EXPECT_EQ(reason_for(set, own), nullptr);
-  }
-  std::size_t effects = 0;
-  for (const Candidate& candidate : set.candidates) effects += candidate.is_variant ? 0 : 1;
-  EXPECT_EQ(effects + set.not_testable.size() + 3, pcor::catalogue_size);
-  for (const Candidate& candidate : set.candidates) {
-    const pcor::EffectFacts& facts = pcor::effect_facts[pcor::effect_named(candidate.effect.id)];
-    EXPECT_FALSE(candidate.tested.empty());
-    for (const pcor::internal::CandidateParameter& parameter : candidate.tested) {
-      EXPECT_FALSE(facts.parameters[parameter.place].shape);
-      EXPECT_EQ(candidate.effect.parameters[parameter.place], facts.parameters[parameter.place].neutral);
-      EXPECT_LE(parameter.bounds.lower, 0.0) << candidate.effect.id;
-      EXPECT_GE(parameter.bounds.upper, 0.0) << candidate.effect.id;
-    }
-  }
-}
-
-TEST(Candidates, WithAShapeAreTriedInSeveral) {
-  const CandidateSet set = candidates_of_file(laser_model());
-  std::vector<double> onsets;
-  for (const Candidate& candidate : set.candidates) {
-    if (candidate.effect.id != "static-transonic") continue;
-    EXPECT_EQ(candidate.is_variant, !onsets.empty());
-    onsets.push_back(candidate.effect.parameters[1]);
-  }
-  ASSERT_GE(onsets.size(), 3U);
-  EXPECT_EQ(onsets.front(), 0.82);
-  for (const double onset : onsets) {
-    EXPECT_GT(onset, 0.7);
-    EXPECT_LT(onset, 0.95);
-  }
-}
-
-TEST(Candidates, ReadTheUsualVariables) {
-  const CandidateSet set = candidates_of_file(laser_model());
-  const std::map<Quantity, std::string>& variables = set.extended.variables;
-  EXPECT_EQ(variables.at(Quantity::cabin_pressure), "PCAB");
-  EXPECT_EQ(variables.at(Quantity::transducer_temperature), "TBAY");
-  EXPECT_EQ(variables.at(Quantity::sideslip_differential_pressure), "BDIFR");
-  // What the model has named stays.
-  EXPECT_EQ(variables.at(Quantity::static_pressure), "PSFD");
-  EXPECT_EQ(variables.at(Quantity::recovery_temperature), "TTRR");
-}
-
-TEST(Candidates, WithoutTheirInputsAreNotTestable) {
-  const CandidateSet set = candidates_of_file(laser_model());
-  const NotTestable* torque = reason_for(set, "speedbrake-thrust");
-  ASSERT_NE(torque, nullptr);
-  EXPECT_THAT(torque->reason, HasSubstr("engine_torque"));
-  ModelFile named = laser_model();
-  named.variables[Quantity::engine_torque] = "ENGTRQ";
-  EXPECT_TRUE(has_candidate(candidates_of_file(named), "speedbrake-thrust"));
-}
-
-TEST(Candidates, OfHumidityFollowTheGasConstants) {
-  const CandidateSet moist = candidates_of_file(laser_model());
-  ASSERT_NE(reason_for(moist, "humidity-neglected"), nullptr);
-  EXPECT_THAT(reason_for(moist, "humidity-neglected")->reason, HasSubstr("moist"));
-  EXPECT_TRUE(has_candidate(moist, "humidity-error"));
-  ModelFile model = laser_model();
-  model.model.moist = false;
-  const CandidateSet dry = candidates_of_file(model);
-  ASSERT_NE(reason_for(dry, "humidity-error"), nullptr);
-  EXPECT_THAT(reason_for(dry, "humidity-error")->reason, HasSubstr("dry"));
-  EXPECT_TRUE(has_candidate(dry, "humidity-neglected"));
-}
-
-TEST(Candidates, OnOtherSystemsAreOneForEachSystem) {
-  const pcor::FlightSet files{short_flight()};
-  const auto number_of = [&files](const std::vector<std::string>& others, const std::string& id) {
-    pcor::References references{pcor::lams_reference()};
-    for (const std::string& other : others) references.push_back(pcor::read_reference(other, laser_model()));
-    for (const Candidate& candidate : find_candidates(laser_model(), {}, files, references).candidates) {
-      if (candidate.id == id) return candidate.numbers_in_others;
-    }
-    return std::vector<std::optional<std::size_t>>();
-  };
-  const std::string pair = "total:PSFRD+QCFR";
-  const std::string avionics = "total:PS_A+QC_A";
-  EXPECT_TRUE(number_of({pair}, "reference:psfd-bias")[1]);
-  EXPECT_THAT(number_of({pair, avionics}, "reference:psfd-bias"), testing::IsEmpty());
-  const auto of_pair = number_of({pair, avionics}, "reference:PSFRD+QCFR:psfd-bias");
-  ASSERT_THAT(of_pair, testing::SizeIs(3));
-  EXPECT_TRUE(of_pair[1]);
-  EXPECT_FALSE(of_pair[2]);
-  const auto of_avionics = number_of({pair, avionics}, "reference:PS_A+QC_A:psfd-bias");
-  ASSERT_THAT(of_avionics, testing::SizeIs(3));
-  EXPECT_FALSE(of_avionics[1]);
-  EXPECT_TRUE(of_avionics[2]);
-  // Two references of one system have its effects in common, whatever its law is in either.
-  const std::string law = std::string("static:") + PCOR_SOURCE_DIR + "/data/models/c130-psfrd-eq18.toml";
-  const auto of_both = number_of({law, pair}, "reference:psfd-bias");
-  ASSERT_THAT(of_both, testing::SizeIs(3));
-  EXPECT_TRUE(of_both[1]);
-  EXPECT_TRUE(of_both[2]);
-}
-
-TEST(Candidates, OfFormulasNeedTheirVariables) {
-  ModelEffect good = formula();
-  ModelEffect bad = formula();
-  bad.id = "try-2";
-  bad.formula = "k * NO_SUCH_VARIABLE + c";
-  const CandidateSet set = candidates_of_file(laser_model(), {good, bad});
-  EXPECT_TRUE(has_candidate(set, "try-1"));
-  ASSERT_NE(reason_for(set, "try-2"), nullptr);
-  EXPECT_THAT(reason_for(set, "try-2")->reason, HasSubstr("has no variable NO_SUCH_VARIABLE"));
-  // One that the model has is part of the model.
-  ModelFile with = laser_model();
-  with.model.effects.push_back(good);
-  EXPECT_FALSE(has_candidate(candidates_of_file(with, {good}), "try-1"));
 }

@@ -1,7 +1,8 @@
-#include "diagnose/binned_flights.hpp"
+#include "campaign/binned_flights.hpp"
 
 #include <algorithm>
 
+#include "campaign/linear_rows.hpp"
 #include "numerics/binned_rows.hpp"
 #include "numerics/triangular_factor.hpp"
 
@@ -20,8 +21,6 @@ std::vector<std::size_t> few_of(const std::vector<NoiseFlight>& flights, std::si
 
 }  // namespace
 
-std::vector<std::size_t> BinnedFlights::few() const { return few_of(outlines, 0, first_count()); }
-
 std::size_t BinnedFlights::first_count() const {
   return static_cast<std::size_t>(
       std::find_if(reference.begin(), reference.end(), [](std::size_t r) { return r != 0; }) -
@@ -29,16 +28,20 @@ std::size_t BinnedFlights::first_count() const {
 }
 
 BinnedFlights in_bins(const FlightShare& share, const std::vector<FlightColumns>& flights,
-                      const std::function<std::vector<double>(std::size_t flight)>& series_of) {
+                      const std::function<std::vector<double>(std::size_t flight)>& residual_of) {
   BinnedFlights binned;
   binned.bins.resize(flights.size());
-  for (const FlightColumns& flight : flights) binned.reference.push_back(flight.reference);
+  binned.residuals.resize(flights.size());
   binned.outlines = share.of_each_flight<NoiseFlight>([&](std::size_t f) {
-    const FlightColumns& flight = flights[f];
-    const Binning& bins = binned.bins[f] = Binning(series_of(f), flight.samples->time, flight.samples->step,
-                                                   std::max(flight.window, Binning::usual_width));
+    const std::vector<double> residual = residual_of(f);
+    const Binning& bins = binned.bins[f] = bins_of(*flights[f].samples, flights[f].window, residual);
+    binned.residuals[f] = bins.means(residual);
     return NoiseFlight{bins.size() > 0 ? bins.time().front() : 0.0, bins.size()};
   });
+  for (std::size_t f = 0; f < flights.size(); ++f) {
+    binned.reference.push_back(flights[f].reference);
+    binned.columns.push_back(binned_columns(flights[f], binned.bins[f]));
+  }
   return binned;
 }
 

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "diagnose/columns.hpp"
+#include "campaign/columns.hpp"
 #include "numerics/binning.hpp"
 #include "numerics/noise_flights.hpp"
 #include "numerics/noise_model.hpp"
@@ -18,18 +18,18 @@ namespace pcor::internal {
 /// member has the bins of its own flights; of the others it knows which there are, and its bins are none.
 struct BinnedFlights {
   std::vector<Binning> bins{};
-  std::vector<std::size_t> reference{};  ///< of each flight
-  std::vector<NoiseFlight> outlines{};   ///< of all flights
+  std::vector<Eigen::MatrixXd> columns{};    ///< base and candidates, in bins
+  std::vector<Eigen::VectorXd> residuals{};  ///< hPa, in bins
+  std::vector<std::size_t> reference{};      ///< of each flight
+  std::vector<NoiseFlight> outlines{};       ///< of all flights
 
-  /// Of the flights against the first reference the few from which what flights have in common is learnt.
-  std::vector<std::size_t> few() const;
   /// The flights against the first reference: the first so many.
   std::size_t first_count() const;
 };
 
-/// The bins in which a series of each own flight has values, hPa. @param series_of gives it
+/// The bins in which a residual of each own flight has values, hPa. @param residual_of gives it
 BinnedFlights in_bins(const FlightShare& share, const std::vector<FlightColumns>& flights,
-                      const std::function<std::vector<double>(std::size_t flight)>& series_of);
+                      const std::function<std::vector<double>(std::size_t flight)>& residual_of);
 
 /// What a noise is found from, in bins.
 struct BinnedFit {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <pcor/residuals/residuals.hpp>
-#include "diagnose/candidates.hpp"
+#include "campaign/candidate.hpp"
 #include "numerics/binning.hpp"
 #include "residuals/packed_residuals.hpp"
 
@@ -55,7 +55,7 @@ FlightColumns outline_of(const FlightColumns& flight);
 /// @param first_part only the first part of the samples is used, 0 to 1
 /// @throws Error if the model cannot be used on the samples.
 FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended, const ModelFile& model,
-                           const CandidateSet& set, std::size_t reference, const MaskOptions& mask,
+                           const CandidateModels& set, std::size_t reference, const MaskOptions& mask,
                            double first_part);
 
 /// Base and candidates of a flight side by side, in bins.

@@ -1,0 +1,334 @@
+#include "campaign/columns.hpp"
+
+#include <ceres/jet.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/realtime/chain.hpp>
+#include "campaign/linear_rows.hpp"
+#include "campaign/model_parameters.hpp"
+#include "numerics/missing.hpp"
+#include "numerics/triangular_factor.hpp"
+#include "residuals/moving_columns.hpp"
+#include "roles/model_inputs.hpp"
+
+namespace pcor::internal {
+namespace {
+
+constexpr int jet_width = 3;
+using Jet = ceres::Jet<double, jet_width>;
+
+/// One evaluation of a candidate: its derivatives by some of the tested parameters.
+struct Evaluation {
+  std::size_t effect;            // number in the extended model of its system
+  Eigen::Index place = 0;        // among the places of all candidates
+  std::size_t first_column = 0;  // of the parameters
+  std::size_t width = 0;
+  std::vector<Jet> parameters{};
+  Quantity memory = Quantity::count;  // what the candidate remembers over a time of its own,
+  std::vector<double> remembered{};   // instead of what the samples have; empty where it is not known
+};
+
+/// One of the systems that a residual is made of, and where its parameters stand among those of the residual:
+/// those of its effects, then one for each place at which candidates add something.
+struct System {
+  ModelFile model{};
+  std::vector<std::size_t> free{};
+  std::size_t first_place = 0;
+  std::size_t end = 0;  // behind the last place
+
+  const std::vector<Where>& places() const { return model.model.additions; }
+};
+
+/// The evaluations of the candidates of one system.
+std::vector<Evaluation> evaluations_of(const CandidateModels& set, std::size_t reference, bool of_reference,
+                                       const std::vector<Where>& places, const FlightSamples& samples) {
+  std::vector<Evaluation> evaluations;
+  for (std::size_t c = 0; c < set.candidates.size(); ++c) {
+    const Candidate& candidate = set.candidates[c];
+    if (candidate.is_of_reference() != of_reference || candidate.is_shared) continue;
+    const std::optional<std::size_t> number =
+        of_reference ? candidate.numbers_in_others[reference] : candidate.number;
+    if (!number) continue;
+    Evaluation evaluation{*number};
+    const auto place = std::find(places.begin(), places.end(), where_of(candidate.effect));
+    evaluation.place = place - places.begin();
+    if (candidate.memory != 0.0) {  // what is found over none the samples have
+      evaluation.memory = memory_of(candidate.effect).of;
+      evaluation.remembered =
+          remembered(evaluation.memory, samples.model, samples.time, samples.step, candidate.memory);
+    }
+    const std::vector<double>& neutral = candidate.effect.parameters;
+    for (std::size_t first = 0; first < candidate.tested.size(); first += jet_width) {
+      evaluation.first_column = set.first_column(c) + first;
+      evaluation.width = std::min<std::size_t>(jet_width, candidate.tested.size() - first);
+      evaluation.parameters = std::vector<Jet>(neutral.begin(), neutral.end());
+      for (std::size_t k = 0; k < evaluation.width; ++k)
+        evaluation.parameters[candidate.tested[first + k].place].v[as_index(k)] = 1.0;
+      evaluations.push_back(evaluation);
+    }
+  }
+  return evaluations;
+}
+
+/// Gives the few places without a value that of the one before (of the one after at the begin); many stay.
+void bridge(Eigen::Ref<Eigen::VectorXf> column, const std::vector<std::size_t>& used) {
+  constexpr double most = 0.1;  // part of the samples
+  std::size_t missing = 0;
+  for (const std::size_t i : used) missing += std::isfinite(column[as_index(i)]) ? 0 : 1;
+  if (missing == 0 || static_cast<double>(missing) > most * static_cast<double>(used.size())) return;
+  const auto first = std::find_if(used.begin(), used.end(),
+                                  [&](std::size_t i) { return std::isfinite(column[as_index(i)]); });
+  float last = column[as_index(*first)];
+  for (const std::size_t i : used) {
+    if (std::isfinite(column[as_index(i)])) last = column[as_index(i)];
+    column[as_index(i)] = last;
+  }
+}
+
+/// The samples used, and those between them that are not because flaps are out.
+std::vector<std::size_t> with_flaps_out(const LinearRows& rows) {
+  if (rows.used().empty()) return {};
+  const std::size_t end = rows.held_out().empty() ? rows.mask().size() : rows.used().back() + 1;
+  std::vector<std::size_t> result;
+  for (std::size_t i = 0; i < end; ++i) {
+    if (rows.mask()[i] == Mask::none || rows.mask()[i] == Mask::flaps) result.push_back(i);
+  }
+  return result;
+}
+
+/// The samples and those that are at most `reach` before or after one of them, of `size`.
+std::vector<std::size_t> with_neighbours(const std::vector<std::size_t>& samples, std::size_t reach,
+                                         std::size_t size) {
+  std::vector<std::size_t> result;
+  for (const std::size_t sample : samples) {
+    const std::size_t first = sample - std::min(sample, reach);
+    for (std::size_t i = result.empty() ? first : std::max(first, result.back() + 1);
+         i < std::min(sample + reach + 1, size); ++i)
+      result.push_back(i);
+  }
+  return result;
+}
+
+/// The places of the candidates of one system.
+std::vector<Where> places_of(const CandidateModels& set, bool of_reference) {
+  std::vector<Where> places;
+  for (const Candidate& candidate : set.candidates) {
+    if (candidate.is_of_reference() != of_reference) continue;
+    const Where where = where_of(candidate.effect);
+    if (std::find(places.begin(), places.end(), where) == places.end()) places.push_back(where);
+  }
+  return places;
+}
+
+System system_of(ModelFile model, const CandidateModels& set, bool of_reference, std::size_t first) {
+  System system{std::move(model)};
+  system.model.model.additions = places_of(set, of_reference);
+  for (const std::size_t parameter : free_parameters(system.model)) system.free.push_back(first + parameter);
+  system.end = first + parameter_count(system.model.model);
+  system.first_place = system.end - system.places().size();
+  return system;
+}
+
+/// Puts the columns of the candidates of one system at some samples: what each coefficient adds at its place,
+/// through the chain of the system.
+/// @param at_places of each place the derivative of the residual by what is added there, at these samples; of
+/// none what is added is wanted itself, with the sign turned
+/// @param see gets the state of each sample
+template <class See>
+void put_candidates(const Chain& chain, const ModelSamples& inputs,
+                    const std::vector<Evaluation>& evaluations, const std::vector<std::size_t>& samples,
+                    const Eigen::Ref<const Eigen::MatrixXd>& at_places, const See& see,
+                    Eigen::MatrixXf& columns) {
+  std::vector<std::pair<Quantity, const double*>> read;
+  for (const Quantity input : chain.inputs()) read.emplace_back(input, inputs.find(input)->data());
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const std::size_t sample = samples[k];
+    State<double> state;
+    NoQualityFlags flags;
+    for (const auto& [quantity, series] : read) state[quantity] = series[sample];
+    chain.measure(state, chain.parameters().data(), flags);
+    for (const Evaluation& each : evaluations) {
+      const bool remembers = !each.remembered.empty();
+      const double usual = remembers ? state[each.memory] : 0.0;
+      if (remembers) state[each.memory] = each.remembered[sample];
+      const Jet value = chain.effect_value(each.effect, state, each.parameters.data());
+      if (remembers) state[each.memory] = usual;
+      const double at_place = at_places.cols() == 0 ? 1.0 : at_places(as_index(k), each.place);
+      for (std::size_t p = 0; p < each.width; ++p)
+        columns(as_index(sample), as_index(each.first_column + p)) =
+            static_cast<float>(-at_place * value.v[as_index(p)]);
+    }
+    see(sample, state);
+  }
+}
+
+/// Makes of columns with what each coefficient adds at its place, sample by sample, those of residuals that
+/// are made of their neighbours. @param first_place among the parameters of the residuals
+void sum_over_neighbours(const Residuals& residuals, const std::vector<Evaluation>& evaluations,
+                         std::size_t first_place, const std::vector<std::size_t>& used,
+                         const std::vector<std::size_t>& needed, Eigen::MatrixXf& columns) {
+  std::vector<Direction> directions;
+  std::vector<Eigen::Index> numbers;
+  for (const Evaluation& each : evaluations) {
+    for (std::size_t p = 0; p < each.width; ++p) {
+      const Eigen::Index number = numbers.emplace_back(as_index(each.first_column + p));
+      auto column = columns.col(number);
+      bridge(column, needed);
+      Direction& direction = directions.emplace_back();
+      direction.parameter = first_place + static_cast<std::size_t>(each.place);
+      direction.rate.assign(residuals.size(), 0.0);
+      for (const std::size_t i : needed) direction.rate[i] = static_cast<double>(column[as_index(i)]);
+      column.setZero();
+    }
+  }
+  std::vector<double> derivatives(directions.size() * used.size());
+  residuals.differentiate_along(used.data(), used.size(), residuals.parameters().data(), directions,
+                                derivatives.data());
+  for (std::size_t c = 0; c < numbers.size(); ++c) {
+    for (std::size_t k = 0; k < used.size(); ++k)
+      columns(as_index(used[k]), numbers[c]) = static_cast<float>(derivatives[c * used.size() + k]);
+  }
+}
+
+/// The systems of a residual, the own one first.
+std::vector<System> systems_of(const ModelFile& model, const CandidateModels& set, std::size_t reference) {
+  std::vector<System> systems{system_of(model, set, false, 0)};
+  if (!set.others[reference]) return systems;
+  ModelFile other = *set.others[reference];
+  other.model.effects.resize(set.effects_of_others[reference]);
+  systems.push_back(system_of(std::move(other), set, true, systems.front().end));
+  return systems;
+}
+
+/// Puts the columns of candidates on both systems where the residual knows one of them alone, and bridges the
+/// others.
+void complete(const CandidateModels& set, bool two_systems, const std::vector<std::size_t>& used,
+              Eigen::MatrixXf& columns) {
+  Eigen::Index column = 0;
+  Eigen::Index source = 0;  // of what both systems share, on the own one
+  for (const Candidate& candidate : set.candidates) {
+    if (!candidate.is_shared) source = column;
+    for (Eigen::Index c = 0; c < as_index(candidate.tested.size()); ++c, ++column) {
+      if (candidate.is_shared && !two_systems)
+        columns.col(column) = columns.col(source + c);
+      else if (!candidate.is_shared)
+        bridge(columns.col(column), used);
+    }
+  }
+}
+
+}  // namespace
+
+const std::vector<double>& FlightColumns::quantity(Quantity wanted) const {
+  static const std::vector<double> none;
+  const auto found = std::find_if(quantities.begin(), quantities.end(),
+                                  [wanted](const auto& each) { return each.first == wanted; });
+  return found == quantities.end() ? none : found->second;
+}
+
+Eigen::MatrixXd binned_columns(const FlightColumns& flight, const Binning& bins) {
+  const Eigen::Index base = flight.base.cols();
+  Eigen::MatrixXd columns(as_index(bins.size()), base + flight.candidates.cols());
+  for (Eigen::Index c = 0; c < base; ++c) columns.col(c) = bins.means(flight.base.col(c));
+  for (Eigen::Index c = 0; c < flight.candidates.cols(); ++c)
+    columns.col(base + c) = bins.means(flight.candidates.col(c));
+  return columns;
+}
+
+FlightColumns outline_of(const FlightColumns& flight) {
+  FlightColumns outline;
+  outline.file = flight.file;
+  outline.reference = flight.reference;
+  outline.window = flight.window;
+  auto samples = std::make_shared<FlightSamples>();
+  samples->name = flight.samples->name;
+  samples->flaps_variable = flight.samples->flaps_variable;
+  samples->notes = flight.samples->notes;
+  outline.samples = std::move(samples);
+  outline.base.resize(0, flight.base.cols());
+  outline.candidates.resize(0, flight.candidates.cols());
+  for (const auto& each : flight.quantities)
+    outline.quantities.emplace_back(each.first, std::vector<double>());
+  return outline;
+}
+
+FlightColumns find_columns(const std::shared_ptr<const FlightSamples>& extended, const ModelFile& model,
+                           const CandidateModels& set, std::size_t reference, const MaskOptions& mask,
+                           double first_part) {
+  const std::vector<System> systems = systems_of(model, set, reference);
+  const System& own = systems.front();
+  std::shared_ptr<const Reference> held_against = set.references[reference];
+  if (systems.size() > 1) held_against = held_against->with_model(systems.back().model);
+  const LinearRows rows(Residuals(extended, own.model, *held_against, mask), own.model, *held_against,
+                        {Inputs::noise_free, {}, first_part});
+  const Residuals& residuals = rows.residuals();
+  const double* const start = residuals.parameters().data();
+  const bool of_neighbours = residuals.reach() > 0;
+  const std::vector<std::size_t> used = of_neighbours ? rows.used() : with_flaps_out(rows);
+  const std::vector<std::size_t> needed = with_neighbours(used, residuals.reach(), residuals.size());
+
+  FlightColumns columns;
+  columns.reference = reference;
+  columns.window = held_against->window();
+  columns.samples = extended;
+  columns.mask = rows.mask();
+  columns.exact = residuals.values(start);
+  std::vector<std::size_t> wanted;
+  for (const System& system : systems) {
+    wanted.insert(wanted.end(), system.free.begin(), system.free.end());
+    for (std::size_t place = system.first_place; place < system.end && !of_neighbours; ++place)
+      wanted.push_back(place);
+  }
+  const Eigen::MatrixXd found = rows.evaluate(used, start, wanted);
+  columns.given.assign(residuals.size(), nan);
+  columns.flaps_out = columns.given;
+  for (std::size_t k = 0; k < used.size(); ++k) {
+    const bool is_in = columns.mask[used[k]] == Mask::none;
+    (is_in ? columns.given : columns.flaps_out)[used[k]] = found(as_index(k), found.cols() - 1);
+  }
+  columns.residual = columns.given;
+  columns.base.setZero(as_index(residuals.size()), as_index(set.base.size()));
+  columns.candidates.setZero(as_index(residuals.size()), as_index(set.first_column(set.candidates.size())));
+  for (const Quantity quantity :
+       {Quantity::attack, Quantity::sideslip, Quantity::static_pressure_rate, Quantity::dynamic_pressure_rate,
+        Quantity::normal_acceleration, Quantity::roll})
+    columns.quantities.emplace_back(quantity, std::vector<double>(residuals.size(), nan));
+  Eigen::Index next = 0;  // of what was found
+  for (const System& system : systems) {
+    const bool is_own = &system == &own;
+    const std::size_t first = is_own ? 0 : set.base_of_others[reference];
+    for (std::size_t c = 0; c < system.free.size(); ++c, ++next) {
+      for (std::size_t k = 0; k < used.size(); ++k)
+        columns.base(as_index(used[k]), as_index(first + c)) = static_cast<float>(-found(as_index(k), next));
+    }
+    const Eigen::Index places = of_neighbours ? 0 : as_index(system.places().size());
+    const auto at_places = found.middleCols(next, places);
+    next += places;
+    const ModelSamples& inputs = is_own ? rows.inputs().model : rows.inputs().reference;
+    const Model& with_all = is_own ? set.extended.model : set.others[reference]->model;
+    const std::vector<Evaluation> evaluations =
+        evaluations_of(set, reference, !is_own, system.places(), *extended);
+    put_candidates(
+        chain_of(with_all, inputs.roles), inputs, evaluations, needed, at_places,
+        [&](std::size_t sample, const State<double>& state) {
+          for (auto& [quantity, values] : columns.quantities) {
+            if (is_own) values[sample] = state[quantity];
+          }
+        },
+        columns.candidates);
+    if (of_neighbours)
+      sum_over_neighbours(residuals, evaluations, system.first_place, used, needed, columns.candidates);
+  }
+  complete(set, systems.size() > 1, used, columns.candidates);
+  for (const Quantity quantity : {Quantity::corrected_mach, Quantity::ambient_temperature})
+    columns.quantities.emplace_back(quantity, residuals.quantity(quantity, start));
+  columns.corrected_pressure = residuals.quantity(Quantity::corrected_static_pressure, start);
+  return columns;
+}
+
+}  // namespace pcor::internal

@@ -1,0 +1,122 @@
+#include "campaign/linear_rows.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "numerics/triangular_factor.hpp"
+#include "residuals/masks.hpp"
+
+namespace pcor::internal {
+namespace {
+
+/// Takes out the samples that are made of neighbours which are not to be used.
+void mask_by_neighbours(std::vector<Mask>& masks, std::size_t reach) {
+  const std::vector<Mask> own = masks;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    // Where the residual alone is missing, what it is made of is there.
+    if (own[i] == Mask::none || own[i] == Mask::reference) continue;
+    for (std::size_t k = i - std::min(i, reach); k < std::min(i + reach + 1, own.size()); ++k) {
+      if (masks[k] == Mask::none) masks[k] = Mask::reference;
+    }
+  }
+}
+
+/// Parameters behind those of the residual, of a system that it does not know, do not count as linear.
+bool are_linear(const std::vector<std::size_t>& parameters, const std::vector<bool>& linear) {
+  return std::all_of(parameters.begin(), parameters.end(),
+                     [&](std::size_t parameter) { return parameter < linear.size() && linear[parameter]; });
+}
+
+}  // namespace
+
+bool keeps_derivatives(const Reference& reference) {
+  return reference.model() != nullptr || !reference.is_static_pressure();
+}
+
+Binning bins_of(const FlightSamples& samples, double window, const std::vector<double>& series) {
+  return {series, samples.time, samples.step, std::max(window, Binning::usual_width)};
+}
+
+LinearRows::LinearRows(Residuals residuals, const ModelFile& model, const Reference& reference,
+                       const RowsSetup& setup)
+    : residuals_(std::move(residuals)),
+      window_(reference.window()),
+      linear_(keeps_derivatives(reference) || are_linear(setup.free, residuals_.is_linear())),
+      at_sensor_(setup.inputs == Inputs::noise_free || !linear_),
+      mask_(residuals_.mask()) {
+  choose_inputs(model, reference, setup.inputs);
+  if (setup.inputs == Inputs::noise_free && residuals_.reach() > 0)
+    mask_by_neighbours(mask_, residuals_.reach());
+  used_ = used_samples(mask_, setup.first_part);
+  held_out_ = used_samples(mask_);
+  held_out_.erase(held_out_.begin(), held_out_.begin() + static_cast<std::ptrdiff_t>(used_.size()));
+  if (!setup.regimes.empty()) keep_regimes(setup.regimes);
+}
+
+/// No column should hold noise of its own row. Today that is so of two systems, of which the derivatives are
+/// those at common pressures, and of the laser's noise in a diagnosis. A fit takes its columns at the
+/// recorded samples otherwise, and pressures, temperature and their rates are recorded ones everywhere. The
+/// next step is one kind of inputs for all, predicted from sensors that the residual is not made of: it
+/// belongs here.
+void LinearRows::choose_inputs(const ModelFile& model, const Reference& reference, Inputs inputs) {
+  if (inputs == Inputs::none) return;
+  std::shared_ptr<const FlightSamples> elsewhere = residuals_.at_common_pressures();
+  if (!elsewhere && inputs == Inputs::noise_free) {
+    if (auto predicted = residuals_.predicted_sensor(residuals_.parameters().data())) {
+      auto noiseless = std::make_shared<FlightSamples>(samples());
+      for (auto& [quantity, values] : noiseless->model.columns) {
+        if (quantity == predicted->first) values = std::move(predicted->second);
+      }
+      elsewhere = std::move(noiseless);
+    }
+  }
+  if (elsewhere) derived_.emplace(std::move(elsewhere), model, reference, residuals_.mask());
+}
+
+/// Of the used samples those in wanted regimes stay. The first interval that holds a sample counts.
+void LinearRows::keep_regimes(const std::vector<Regime>& regimes) {
+  const std::vector<double>& time = samples().time;
+  constexpr auto outside = static_cast<std::size_t>(-1);
+  intervals_.assign(time.size(), outside);
+  for (const Interval& interval : samples().intervals) {
+    if (std::find(regimes.begin(), regimes.end(), interval.regime) == regimes.end()) continue;
+    bool any = false;
+    for (const std::size_t i : used_) {
+      if (intervals_[i] != outside || time[i] < interval.begin || time[i] >= interval.end) continue;
+      intervals_[i] = interval_count_;
+      any = true;
+    }
+    if (any) ++interval_count_;
+  }
+  used_.erase(
+      std::remove_if(used_.begin(), used_.end(), [&](std::size_t i) { return intervals_[i] == outside; }),
+      used_.end());
+}
+
+Eigen::MatrixXd LinearRows::evaluate(const std::vector<std::size_t>& samples, const double* parameters,
+                                     const std::vector<std::size_t>& wanted, bool as_recorded) const {
+  Eigen::MatrixXd result(as_index(samples.size()), as_index(wanted.size()) + 1);
+  const auto put = [&](const Residuals& residuals, const std::vector<std::size_t>& derivatives) {
+    const auto evaluate = at_sensor_ ? &Residuals::evaluate_at_sensor : &Residuals::evaluate;
+    (residuals.*evaluate)(samples.data(), samples.size(), parameters, derivatives, result.rightCols(1).data(),
+                          result.data());
+  };
+  const bool elsewhere = derived_ && !as_recorded && !wanted.empty();
+  put(elsewhere ? *derived_ : residuals_, wanted);
+  if (elsewhere) put(residuals_, {});  // the residual alone
+  return result;
+}
+
+Eigen::MatrixXd LinearRows::means(const Binning& bins, const double* parameters,
+                                  const std::vector<std::size_t>& wanted) const {
+  const Eigen::MatrixXd rows = evaluate(used_, parameters, wanted);
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(as_index(bins.size()), rows.cols());
+  std::size_t i = 0;
+  for (std::size_t k = 0; k < bins.records().size(); ++k) {
+    while (used_[i] != bins.records()[k]) ++i;
+    sums.row(bins.bins()[k]) += rows.row(as_index(i));
+  }
+  return bins.counts().cwiseInverse().asDiagonal() * sums;
+}
+
+}  // namespace pcor::internal

@@ -1,0 +1,28 @@
+#include "campaign/model_parameters.hpp"
+
+#include <pcor/effects/catalogue.hpp>
+
+namespace pcor::internal {
+
+std::size_t parameter_count(const Model& model) {
+  std::size_t count = model.additions.size();
+  for (const ModelEffect& effect : model.effects) count += effect.parameters.size();
+  return count;
+}
+
+std::vector<std::size_t> free_parameters(const ModelFile& model) {
+  std::vector<std::size_t> free;
+  std::size_t number = 0;
+  for (std::size_t e = 0; e < model.model.effects.size(); ++e) {
+    for (std::size_t p = 0; p < model.model.effects[e].parameters.size(); ++p, ++number) {
+      if (!model.fit(e, p).fixed) free.push_back(number);
+    }
+  }
+  return free;
+}
+
+Where where_of(const ModelEffect& effect) {
+  return effect.is_formula() ? effect.where : effect_facts[effect_named(effect.id)].where;
+}
+
+}  // namespace pcor::internal
