@@ -185,14 +185,16 @@ ResidualAt residual_with(const ModelFile& model, const CandidateSet& set, const 
   };
 }
 
-WhatIfSums as_sums(const SumOfProducts& sum) {
-  WhatIfSums sums;
-  sums.samples = sum.count;
-  for (Eigen::Index i = 0; i < sum.products.rows(); ++i) {
-    for (Eigen::Index j = 0; j <= i; ++j) sums.products.push_back(sum.products(i, j));
+/// Row by row.
+std::vector<double> lower_triangle(const Eigen::MatrixXd& matrix) {
+  std::vector<double> values;
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    for (Eigen::Index j = 0; j <= i; ++j) values.push_back(matrix(i, j));
   }
-  return sums;
+  return values;
 }
+
+WhatIfSums as_sums(const SumOfProducts& sum) { return {lower_triangle(sum.products), sum.count}; }
 
 std::vector<WhatIfSums> as_sums(const std::vector<SumOfProducts>& all) {
   std::vector<WhatIfSums> sums;
@@ -394,7 +396,7 @@ WhatIf what_if(const FlightSet& flights, const ModelFile& model, const Reference
                       });
   fit.describe(panel.coefficients);
   for (const WhatIfFit::Weights& each : fit.weights())
-    panel.weights.push_back({each.found, as_sums(each.parts), each.inflation});
+    panel.weights.push_back({each.found, as_sums(each.parts), lower_triangle(each.score_covariance)});
   panel.alike = as_sums(fit.alike());
   panel.outliers = as_sums(fit.outliers());
   if (fit.held_out().count > 0.0) panel.held_out = as_sums(fit.held_out());

@@ -7,13 +7,13 @@
 #include <utility>
 
 #include <pcor/numerics/noise.hpp>
-#include "campaign/larger_rms.hpp"
 #include "diagnose/analysis.hpp"
 #include "diagnose/scores.hpp"
 #include "diagnose/separation.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
+#include "numerics/noise_covariance.hpp"
 #include "numerics/robust_weights.hpp"
 #include "numerics/spikes.hpp"
 #include "numerics/triangular_factor.hpp"
@@ -81,42 +81,21 @@ std::vector<Eigen::VectorXd> in_deviations(const FlightShare& share, const std::
   return left;
 }
 
-/// Gives the rows the weights of a loss at its minimum, which `values` become.
-void weigh(Scores& scores, const Places& free, Eigen::VectorXd& values, double (*weight)(double)) {
+/// Gives the rows the weights of Huber's loss at its minimum, which `values` become.
+void weigh(Scores& scores, const Places& free, Eigen::VectorXd& values) {
   constexpr int most_steps = 50;
   constexpr double enough = 1e-3;  // of what the flights leave open
   const std::vector<Eigen::MatrixXd> rows = scores.rows;
   for (int step = 0; step < most_steps; ++step) {
     const std::vector<Eigen::VectorXd> ratios = in_deviations(scores.share, rows, values);
     for (std::size_t f = 0; f < rows.size(); ++f)
-      scores.rows[f] = ratios[f].unaryExpr(weight).cwiseSqrt().asDiagonal() * rows[f];
+      scores.rows[f] = ratios[f].unaryExpr(&huber_weight).cwiseSqrt().asDiagonal() * rows[f];
     sum_up(scores);
     const Eigen::VectorXd before = values;
     values = solved(scores.information, free, values);
     const Eigen::VectorXd length = scores.information.diagonal().head(values.size()).cwiseSqrt();
     if (length.cwiseProduct(values - before).cwiseAbs().maxCoeff() < enough) return;
   }
-}
-
-/// By how much the variances of a fit with Tukey's loss are larger than those of least squares of the rows
-/// with its weights (Huber and Ronchetti 2009, Robust Statistics, section 7.6). @param rows without weights
-double inflation_by_weights(const FlightShare& share, const std::vector<Eigen::MatrixXd>& rows,
-                            const Eigen::VectorXd& values) {
-  enum { count, weights, slopes, squares, weighted_squares, sums };
-  const std::vector<Eigen::VectorXd> all_ratios = in_deviations(share, rows, values);
-  const auto sum = share.sum_of_each_flight<Eigen::VectorXd>([&](std::size_t flight) {
-    Eigen::VectorXd part = Eigen::VectorXd::Zero(sums);
-    for (const double ratio : all_ratios[flight]) {
-      const double weight = tukey_weight(ratio);
-      part[count] += 1.0;
-      part[weights] += weight;
-      part[slopes] += tukey_slope(ratio);
-      part[squares] += weight * weight * ratio * ratio;
-      part[weighted_squares] += weight * ratio * ratio;
-    }
-    return part;
-  });
-  return sum[count] * sum[weights] * sum[squares] / (sum[slopes] * sum[slopes]) / sum[weighted_squares];
 }
 
 /// Which of some groups a reader may have switched on: all subsets of a few; of many what comes first, as
@@ -202,8 +181,6 @@ WhatIfFit::WhatIfFit(TeamColumns flights, TeamColumns others,
   for (const std::vector<std::size_t>& some : subsets_of(found)) settle(some, is_robust, residual_with);
 }
 
-/// Where slow noise makes the fit leave more than the coefficients that are given, it is no noise but what
-/// the model lacks, and the fit follows it, as a refit does.
 void WhatIfFit::settle(const std::vector<std::size_t>& found, bool is_robust,
                        const ResidualWith& residual_with) {
   std::vector<std::optional<ResidualAt>> residuals(flights_.flights.size());
@@ -211,14 +188,9 @@ void WhatIfFit::settle(const std::vector<std::size_t>& found, bool is_robust,
     if (!residuals[f]) residuals[f] = residual_with(flights_.flights[f], found);
     return *residuals[f];
   };
-  weights_.push_back({found, {}, 1.0});
-  const Eigen::VectorXd with_drift = find_sums(found, is_robust, true, residual_of);
+  weights_.push_back({found, {}, {}});
+  find_sums(found, is_robust, residual_of);
   sum_records();
-  if (is_larger(rms_of(with_drift), rms_of(given_))) {
-    find_sums(found, is_robust, false, residual_of);
-    sum_records();
-  }
-  weights_.back().inflation = inflation_;
 }
 
 std::vector<Eigen::Index> WhatIfFit::free_columns(const std::vector<std::size_t>& groups) const {
@@ -239,12 +211,14 @@ std::vector<double> WhatIfFit::residual_for(const FlightColumns& flight, const E
   return residual;
 }
 
-Eigen::VectorXd WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool is_robust, bool drifts,
-                                     const std::function<const ResidualAt&(std::size_t)>& residual_of) {
+void WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool is_robust,
+                          const std::function<const ResidualAt&(std::size_t)>& residual_of) {
   const FlightShare& share = flights_.share;
   const std::vector<FlightColumns>& flights = flights_.flights;
   Eigen::VectorXd values = given_;
   Scores scores;
+  Scores with_noise;
+  std::vector<NoiseModel> noise;
   for (int round = 0; round <= rounds; ++round) {
     binned_ = in_bins(share, flights, [&](std::size_t f) {
       if (round == 0) return flights[f].given;
@@ -262,19 +236,21 @@ Eigen::VectorXd WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool
       values = solved(scores.information, free_columns(found), values);
       continue;
     }
-    const std::vector<NoiseModel> noise = noise_after(values, free_columns(found), drifts && round == rounds);
-    scores = find_scores(share, binned_.bins, binned_.columns, binned_.residuals, noise);
-    const Search search(scores, base_, groups_);
+    noise = noise_after(values, free_columns(found), round == rounds);
+    with_noise = find_scores(share, binned_.bins, binned_.columns, binned_.residuals, noise);
+    const Search search(with_noise, base_, groups_);
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       told_[g].clear();
       for (const Eigen::Index column : search.told(g)) told_[g].push_back(base_ + groups_[g].first + column);
     }
+    scores =
+        find_scores(share, binned_.bins, binned_.columns, binned_.residuals, weights_after(values, noise));
     values = solved(scores.information, free_columns(found), values);
     if (!is_robust) continue;
-    const std::vector<Eigen::MatrixXd> rows = scores.rows;
-    weigh(scores, free_columns(found), values, round < rounds ? huber_weight : tukey_weight);
-    inflation_ = inflation_by_weights(share, rows, values);
+    weigh(scores, free_columns(found), values);
   }
+  weights_.back().score_covariance = share.sum_of_each_flight<Eigen::MatrixXd>(
+      [&](std::size_t f) { return score_covariance(f, scores.rows[f], noise[f]); });
   std::vector<SumOfProducts>& parts = weights_.back().parts;
   parts = share
               .sum_of_each_flight<SumsOfProducts>([&](std::size_t f) {
@@ -287,10 +263,59 @@ Eigen::VectorXd WhatIfFit::find_sums(const std::vector<std::size_t>& found, bool
               })
               .kinds;
   for (SumOfProducts& part : parts) part.products = part.products.selfadjointView<Eigen::Lower>();
-  regimes_ = flown_regimes(scores, [&](std::size_t f) { return FlightInBins{flights[f], binned_.bins[f]}; });
+  regimes_ = flown_regimes(with_noise, [&](std::size_t f) {
+    return FlightInBins{flights[f], binned_.bins[f]};
+  });
   whole_.products = scores.information;
   whole_.count = static_cast<double>(scores.row_count);
-  return values;
+  with_noise_.products = with_noise.information;
+  with_noise_.count = static_cast<double>(with_noise.row_count);
+}
+
+/// The covariance of the scores of a flight, weighted columns' residual. @param rows weighted
+Eigen::MatrixXd WhatIfFit::score_covariance(std::size_t flight, const Eigen::MatrixXd& rows,
+                                            const NoiseModel& noise) const {
+  const Eigen::MatrixXd& columns = binned_.columns[flight];
+  // Of references of many samples the rows have no memory, and a variance of one.
+  if (flights_.flights[flight].window > 0.0) {
+    const Eigen::MatrixXd own = rows.leftCols(columns.cols());
+    return own.transpose() * own;
+  }
+  Eigen::VectorXd weight = Eigen::VectorXd::Zero(columns.rows());
+  for (Eigen::Index i = 0; i < weight.size(); ++i) {
+    const double squares = columns.row(i).squaredNorm() + std::pow(binned_.residuals[flight][i], 2);
+    if (squares > 0.0) weight[i] = rows.row(i).squaredNorm() / squares;
+  }
+  if (weight.size() == 0) return Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
+  return noise_covariance(weight.asDiagonal() * columns, binned_.bins[flight], noise, 0);
+}
+
+/// The weights of a refit, as noise without memory: by the root of the samples in a bin over the deviation of
+/// the residuals against its reference. References of many samples have their noise.
+std::vector<NoiseModel> WhatIfFit::weights_after(const Eigen::VectorXd& values,
+                                                 std::vector<NoiseModel> noise) const {
+  for (std::size_t first = 0; first < noise.size();) {
+    std::size_t last = first;
+    std::vector<double> left;
+    for (; last < noise.size() && binned_.reference[last] == binned_.reference[first]; ++last) {
+      const Eigen::VectorXd own = binned_.residuals[last] - binned_.columns[last] * values;
+      left.insert(left.end(), own.begin(), own.end());
+    }
+    const bool is_of_one_sample = !(flights_.flights[first].window > 0.0);
+    double deviation =
+        deviation_of_median * median_of_absolute_values(flights_.share.team(), std::move(left));
+    if (!(deviation > 0.0)) deviation = 1.0;
+    for (; first < last; ++first) {
+      if (!is_of_one_sample) continue;
+      noise[first] = {};
+      const Eigen::VectorXd counts = binned_.bins[first].counts();
+      noise[first].level = {
+          counts.size() > 0
+              ? Eigen::VectorXd(deviation * (counts / counts.maxCoeff()).cwiseSqrt().cwiseInverse())
+              : counts};
+    }
+  }
+  return noise;
 }
 
 std::vector<NoiseModel> WhatIfFit::noise_after(const Eigen::VectorXd& values, const Places& free,
@@ -304,21 +329,6 @@ std::vector<NoiseModel> WhatIfFit::noise_after(const Eigen::VectorXd& values, co
       [&](const auto& bins, const auto& fitted, const auto& left) {
         return drifts ? find_noise(bins, fitted, left, threads).model : estimate_noise(bins, left);
       });
-}
-
-/// Over all samples that take part.
-double WhatIfFit::rms_of(const Eigen::VectorXd& values) const {
-  Eigen::VectorXd change(values.size() + 1);
-  change << -values, 1.0;
-  double squares = 0.0;
-  double count = 0.0;
-  const auto add = [&](const SumOfProducts& sum) {
-    squares += change.dot(sum.products.selfadjointView<Eigen::Lower>() * change);
-    count += sum.count;
-  };
-  for (const SumOfProducts& part : alike_) add(part);
-  add(outliers_);
-  return std::sqrt(squares / count);
 }
 
 void WhatIfFit::sum_records() {
@@ -357,21 +367,21 @@ void WhatIfFit::sum_held_out() {
 }
 
 Eigen::MatrixXd WhatIfFit::information() const {
-  return whole_.products.topLeftCorner(given_.size(), given_.size());
+  return with_noise_.products.topLeftCorner(given_.size(), given_.size());
 }
 
 double WhatIfFit::variance(const std::vector<std::size_t>& groups) const {
   const Places free = free_columns(groups);
   Eigen::VectorXd change(given_.size() + 1);
-  change << -solved(whole_.products, free, given_), 1.0;
-  return inflation_ * change.dot(whole_.products * change) /
-         std::max(whole_.count - static_cast<double>(free.size()), 1.0);
+  change << -solved(with_noise_.products, free, given_), 1.0;
+  return change.dot(with_noise_.products * change) /
+         std::max(with_noise_.count - static_cast<double>(free.size()), 1.0);
 }
 
 WhatIfFit::Fitted WhatIfFit::fitted(const std::vector<std::size_t>& groups) const {
   const Places free = free_columns(groups);
   Fitted result{solved(whole_.products, free, given_), Eigen::VectorXd::Zero(given_.size())};
-  const Eigen::MatrixXd normal = whole_.products(free, free);
+  const Eigen::MatrixXd normal = with_noise_.products(free, free);
   const Eigen::VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd inverse =
       pseudo_inverse(Eigen::MatrixXd(scale.asDiagonal() * normal * scale.asDiagonal()), least_eigenvalue);

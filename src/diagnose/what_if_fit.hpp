@@ -61,7 +61,7 @@ class WhatIfFit {
   struct Weights {
     std::vector<std::size_t> found;
     std::vector<SumOfProducts> parts;
-    double inflation = 1.0;  ///< of variances, by weights that come from the residuals
+    Eigen::MatrixXd score_covariance;  ///< of the columns' products with the residual, by the noise
   };
 
   /// With none of what was found first, with all of it last.
@@ -93,13 +93,15 @@ class WhatIfFit {
   void settle(const std::vector<std::size_t>& found, bool is_robust, const ResidualWith& residual_with);
   /// Gives the coefficients with the groups that were found.
   /// @param residual_of gives the residual of an own flight with these
-  Eigen::VectorXd find_sums(const std::vector<std::size_t>& found, bool is_robust, bool drifts,
-                            const std::function<const ResidualAt&(std::size_t flight)>& residual_of);
+  void find_sums(const std::vector<std::size_t>& found, bool is_robust,
+                 const std::function<const ResidualAt&(std::size_t flight)>& residual_of);
   std::vector<double> residual_for(const FlightColumns& flight, const Eigen::VectorXd& values,
                                    const ResidualAt& residual_at) const;
+  Eigen::MatrixXd score_covariance(std::size_t flight, const Eigen::MatrixXd& rows,
+                                   const NoiseModel& noise) const;
+  std::vector<NoiseModel> weights_after(const Eigen::VectorXd& values, std::vector<NoiseModel> noise) const;
   std::vector<NoiseModel> noise_after(const Eigen::VectorXd& values, const std::vector<Eigen::Index>& free,
                                       bool drifts) const;
-  double rms_of(const Eigen::VectorXd& values) const;
   void sum_records();
   void sum_held_out();
 
@@ -114,8 +116,8 @@ class WhatIfFit {
   BinnedFlights binned_{};
   std::vector<FlownRegime> regimes_{};
   std::vector<Weights> weights_{};
-  SumOfProducts whole_{};
-  double inflation_ = 1.0;
+  SumOfProducts whole_{};       // as a refit weighs the rows
+  SumOfProducts with_noise_{};  // in units of the noise and without its memory
   std::vector<SumOfProducts> alike_{};
   SumOfProducts outliers_{};
   SumOfProducts held_out_{};

@@ -89,26 +89,29 @@ struct BlockSums {
 /// Sums over the bins of one set of equations, of a flight or of all.
 struct Sums {
   std::vector<BlockSums> blocks;
-  Eigen::MatrixXd covariance;  ///< of the sum of the scores
+  Eigen::MatrixXd covariance;  ///< of the sum of the scores by the noise
+  Eigen::MatrixXd misfit;      ///< derivatives of the sum of the scores by the misfit of the law
   double squares = 0.0;        ///< of the influence
   double slopes = 0.0;         ///< of the loss
 
   /// Adds what is of no block.
   void add(const Sums& other) {
     covariance += other.covariance;
+    misfit += other.misfit;
     squares += other.squares;
     slopes += other.slopes;
   }
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(blocks, covariance, squares, slopes);
+    archive(blocks, covariance, misfit, squares, slopes);
   }
 };
 
 /// Of one reference. @param all the parameters of all equations and those that are held
+/// @param misfit of the law; null for a further reference
 Sums sums_of(FitFlights& flights, const FitEquations& equations, const std::vector<std::size_t>& all,
-             const Blocks& blocks) {
+             const Blocks& blocks, const MisfitColumns* misfit) {
   const Solution& solution = equations.solution;
   const ScaledLoss loss(flights.task().options.loss, solution.deviation);
   const NormalLoss normal(loss, solution.deviation);
@@ -122,6 +125,7 @@ Sums sums_of(FitFlights& flights, const FitEquations& equations, const std::vect
     Sums sums;
     sums.blocks.assign(blocks.count(number), nothing);
     sums.covariance = Eigen::MatrixXd::Zero(own, own);
+    sums.misfit = Eigen::MatrixXd::Zero(own, MisfitColumns::count());
     if (fit.bins().size() == 0) return sums;
     const Eigen::VectorXd innovations = fit.white_rows(solution.values, loss).rightCols(1);
     const Eigen::Index count = innovations.size();
@@ -142,12 +146,18 @@ Sums sums_of(FitFlights& flights, const FitEquations& equations, const std::vect
     const double slope = sums.slopes / static_cast<double>(count);
     const Eigen::MatrixXd columns = fit.without_offsets(fit.white_columns(solution.values, all), weight);
     const std::vector<Stretch>& stretches = fit.bins().stretches();
-    const Autoregression memory = count < enough_bins ? Autoregression{{}, std::sqrt(normal.square)}
-                                                      : autoregression(influence, stretches, infinity);
-    std::vector<const double*> pointers;
-    for (const Eigen::Index row : rows) pointers.push_back(columns.col(row).data());
-    const std::vector<double> covariance = covariance_of_sums(memory, pointers, stretches);
-    sums.covariance = Eigen::Map<const Eigen::MatrixXd>(covariance.data(), own, own);
+    if (fit.is_whitened()) {
+      const Autoregression memory = count < enough_bins ? Autoregression{{}, std::sqrt(normal.square)}
+                                                        : autoregression(influence, stretches, infinity);
+      std::vector<const double*> pointers;
+      for (const Eigen::Index row : rows) pointers.push_back(columns.col(row).data());
+      const std::vector<double> covariance = covariance_of_sums(memory, pointers, stretches);
+      sums.covariance = Eigen::Map<const Eigen::MatrixXd>(covariance.data(), own, own);
+    } else {
+      const Eigen::MatrixXd left = columns(Eigen::all, rows);
+      sums.covariance = fit.score_covariance(left, weight);
+      if (misfit != nullptr) sums.misfit = fit.weighted(left, weight).transpose() * (*misfit)(fit);
+    }
     for (Eigen::Index i = 0; i < count; ++i) {
       BlockSums& block = sums.blocks[blocks(number, fit.bins().time()[static_cast<std::size_t>(i)])];
       const Eigen::VectorXd left = columns.row(i)(rows).transpose();
@@ -158,6 +168,7 @@ Sums sums_of(FitFlights& flights, const FitEquations& equations, const std::vect
   };
   Sums whole;
   whole.covariance = Eigen::MatrixXd::Zero(own, own);
+  whole.misfit = Eigen::MatrixXd::Zero(own, MisfitColumns::count());
   for (const Sums& one : flights.of_each(sums_of_flight, solution.values)) {
     whole.add(one);
     whole.blocks.insert(whole.blocks.end(), one.blocks.begin(), one.blocks.end());
@@ -166,10 +177,12 @@ Sums sums_of(FitFlights& flights, const FitEquations& equations, const std::vect
 }
 
 /// Of all references together: the innovations of one tell nothing of those of another.
-Sums sums_of(const FitEquations& equations, const std::vector<std::size_t>& all, const Blocks& blocks) {
+Sums sums_of(const FitEquations& equations, const std::vector<std::size_t>& all, const Blocks& blocks,
+             const MisfitColumns& misfit) {
   Sums whole;
   for (FitFlights* const flights : equations.flights->joint()) {
-    const Sums more = sums_of(*flights, equations, all, blocks);
+    const Sums more =
+        sums_of(*flights, equations, all, blocks, flights == equations.flights ? &misfit : nullptr);
     if (whole.blocks.empty()) {
       whole = more;
       continue;
@@ -185,9 +198,7 @@ Sums sums_of(const FitEquations& equations, const std::vector<std::size_t>& all,
 
 double information_of(FitFlights& flights) {
   double sum = 0.0;
-  for (const double part : flights.of_each([](std::size_t, FitFlight& fit) {
-         return fit.white(Eigen::VectorXd::Ones(as_index(fit.bins().size()))).squaredNorm();
-       }))
+  for (const double part : flights.of_each([](std::size_t, FitFlight& fit) { return fit.information(); }))
     sum += part;
   return sum;
 }
@@ -201,8 +212,8 @@ Eigen::MatrixXd scaled_inverse(const Eigen::MatrixXd& matrix) {
 
 }  // namespace
 
-FitCovariance fit_covariance(const std::vector<FitEquations>& equations,
-                             const std::vector<std::size_t>& held) {
+FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const std::vector<std::size_t>& held,
+                             const Misfit& misfit, const MisfitColumns& misfit_columns) {
   const FitEquations& last = equations.back();
   const FitTask& task = last.flights->task();
   std::vector<std::size_t> all;
@@ -218,12 +229,14 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations,
                                   {Eigen::MatrixXd::Zero(fitted, size), Eigen::VectorXd::Zero(fitted)});
   Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(fitted, size);
   Eigen::MatrixXd score = Eigen::MatrixXd::Zero(fitted, fitted);
+  Eigen::MatrixXd by_misfit = Eigen::MatrixXd::Zero(fitted, MisfitColumns::count());
   const Eigen::Index of_last = as_index(last.parameters.size());
   Eigen::Index first = 0;
   for (const FitEquations& each : equations) {
     const Eigen::Index own = as_index(each.parameters.size());
     if (own == 0) continue;
-    const Sums sums = sums_of(each, all, blocks);
+    const Sums sums = sums_of(each, all, blocks, misfit_columns);
+    by_misfit.middleRows(first, own) = sums.misfit;
     Eigen::MatrixXd here = Eigen::MatrixXd::Zero(own, size);
     for (std::size_t b = 0; b < left_out.size(); ++b) {
       here += sums.blocks[b].derivatives;
@@ -233,8 +246,9 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations,
     derivatives.middleRows(first, own) = here;
     score.block(first, first, own, own) = sums.covariance;
     if (first + own < fitted) {
-      // The last equations weigh all samples by the inverse covariance of the noise, so what the noise does
-      // to them and to an earlier stage together is the derivative of that stage by their parameters.
+      // As of noise without memory, which the last equations weigh by its inverse covariance: the derivative
+      // of the stage by their parameters. What the memory adds is left out: offsets take most of it out of a
+      // stage.
       const Eigen::MatrixXd across = sums.squares / sums.slopes * here.middleCols(fitted - of_last, of_last);
       score.block(first, fitted - of_last, own, of_last) = across;
       score.block(fitted - of_last, first, of_last, own) = across.transpose();
@@ -250,6 +264,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations,
   found.information = information_of(*last.flights);
   found.blocks = left_out.size();
   found.matrix = Eigen::MatrixXd::Zero(size, size);
+  found.by_noise = Eigen::MatrixXd::Zero(fitted, fitted);
   found.jackknife = Eigen::VectorXd::Constant(fitted, nan);
   const Eigen::MatrixXd doubt = task.doubt(held, held);
   found.matrix.bottomRightCorner(size - fitted, size - fitted) = doubt;
@@ -261,8 +276,13 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations,
   if (varying.empty()) return found;
   const Eigen::MatrixXd inverse = scaled_inverse(derivatives(varying, varying));
   const Eigen::MatrixXd carried = -inverse * derivatives(varying, Eigen::all).rightCols(size - fitted);
-  const Eigen::MatrixXd own =
+  Eigen::MatrixXd own =
       inverse * score(varying, varying) * inverse.transpose() + carried * doubt * carried.transpose();
+  found.by_noise(varying, varying) = own;
+  if (misfit.variance.size() > 0) {
+    const Eigen::MatrixXd moved = inverse * by_misfit(varying, Eigen::all);
+    own += moved * misfit.variance.asDiagonal() * moved.transpose();
+  }
   const Eigen::MatrixXd across = carried * doubt;
   for (std::size_t a = 0; a < varying.size(); ++a) {
     for (std::size_t b = 0; b < varying.size(); ++b)
@@ -283,15 +303,6 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations,
   const Eigen::VectorXd errors = (moved.rowwise().squaredNorm() * ((count - 1.0) / count)).cwiseSqrt();
   if (left_out.size() > 2) found.jackknife(varying) = errors;
   return found;
-}
-
-void widen_to_jackknife(FitCovariance& covariance) {
-  for (Eigen::Index k = 0; k < covariance.jackknife.size(); ++k) {
-    const double ratio = covariance.jackknife[k] / std::sqrt(covariance.matrix(k, k));
-    if (!(ratio > 1.0 && std::isfinite(ratio))) continue;
-    covariance.matrix.row(k) *= ratio;
-    covariance.matrix.col(k) *= ratio;
-  }
 }
 
 }  // namespace pcor::internal

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fit/fit_flights.hpp"
+#include "fit/misfit.hpp"
 
 namespace pcor::internal {
 
@@ -20,6 +21,8 @@ struct FitCovariance {
   /// Of the parameters of all equations, in their order, and after them of those that were held at a value of
   /// which the files state the error. Zero for those at a bound.
   Eigen::MatrixXd matrix{};
+  /// Of the parameters of the equations by the noise alone, without the misfit of the law.
+  Eigen::MatrixXd by_noise{};
   /// The standard errors of the parameters of the equations by leaving out one flight, or one part of a
   /// flight, after another: they need no model of the noise.
   Eigen::VectorXd jackknife{};
@@ -32,15 +35,14 @@ struct FitCovariance {
 /// The equations of all stages stand in one system: each says that the derivatives by its parameters are at
 /// right angles to what is left. Their derivatives by all parameters are A, the covariance of their scores is
 /// B, and that of the parameters A^-1 B A^-T (Newey and McFadden 1994, Handbook of Econometrics 4, section
-/// 6). A score is the sum of white derivative times influence (rho' r); what memory the influence still has,
-/// an autoregression tells. What parameters that are held may err by goes on to the others.
+/// 6). A score is the sum of weighted derivative times influence (rho' r). Its covariance is that
+/// of the noise (`noise_covariance`) and of the misfit of the law; for references of many samples that of an
+/// autoregression of the influence. What parameters that are held may err by goes on to the others.
 ///
+/// @param misfit of the law, with its columns
 /// @param equations the last of them of all samples @param held parameters that were not fitted and of which
 ///        the files state an error
-FitCovariance fit_covariance(const std::vector<FitEquations>& equations,
-                             const std::vector<std::size_t>& held);
-
-/// Makes every standard error at least that of the jackknife; correlations stay.
-void widen_to_jackknife(FitCovariance& covariance);
+FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const std::vector<std::size_t>& held,
+                             const Misfit& misfit, const MisfitColumns& misfit_columns);
 
 }  // namespace pcor::internal

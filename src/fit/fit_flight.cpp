@@ -7,6 +7,7 @@
 #include "campaign/model_parameters.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
+#include "numerics/noise_covariance.hpp"
 #include "numerics/spikes.hpp"
 #include "residuals/moving_columns.hpp"
 
@@ -124,6 +125,7 @@ void FitFlight::prepare(const Eigen::VectorXd& parameters) {
   }
   bins_ = rows_.bins(series);
   whitening_.reset();
+  scale_.resize(0);
   kept_rows_.resize(0, 0);
   if (rows_.is_linear()) kept_rows_ = means(parameters, setup_->wanted);
   whiten_what_stays();
@@ -142,10 +144,31 @@ void FitFlight::whiten_what_stays() {
 }
 
 void FitFlight::set_noise(const FitNoise& noise, std::size_t flight) {
-  NoiseModel own = noise.shared;
-  own.level = {level_of_bins(noise.levels[flight], bins_)};
-  whitening_.emplace(bins_, own, 0);
+  noise_ = noise.shared;
+  noise_.level = {level_of_bins(noise.levels[flight], bins_)};
+  if (task_->reference.is_of_one_sample()) {
+    if (bins_.size() > 0) scale_ = (bins_.counts() / bins_.counts().maxCoeff()).cwiseSqrt() / noise.deviation;
+  } else {
+    whitening_.emplace(bins_, noise_, 0);
+  }
   whiten_what_stays();
+}
+
+Eigen::MatrixXd FitFlight::white(const Eigen::MatrixXd& columns) const {
+  if (whitening_) return (*whitening_)(columns);
+  return scale_.size() > 0 ? Eigen::MatrixXd(scale_.asDiagonal() * columns) : columns;
+}
+
+Eigen::MatrixXd FitFlight::score_covariance(const Eigen::MatrixXd& left,
+                                            const Eigen::VectorXd& weight) const {
+  return noise_covariance(weighted(left, weight), bins_, noise_, 0);
+}
+
+double FitFlight::information() const {
+  if (bins_.size() == 0) return 0.0;
+  const Eigen::MatrixXd ones = Eigen::MatrixXd::Ones(as_index(bins_.size()), 1);
+  const auto count = static_cast<double>(bins_.size());
+  return count * count / noise_covariance(ones, bins_, noise_, 0)(0, 0);
 }
 
 /// Means over the bins of derivatives and residual.

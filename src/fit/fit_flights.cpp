@@ -210,8 +210,9 @@ void FitFlights::prepare(const Eigen::VectorXd& parameters) {
   });
 }
 
-void FitFlights::measure_noise(const Eigen::VectorXd& parameters, bool drift) {
-  for (FitFlights* const other : seeing_) other->measure_noise(parameters, drift);
+void FitFlights::measure_noise(const Eigen::VectorXd& parameters, bool slow_parts,
+                               const std::function<Eigen::VectorXd(const FitFlight&)>& misfit) {
+  for (FitFlights* const other : seeing_) other->measure_noise(parameters, slow_parts);
   if (!shares_noise_) noise_.reset();  // what is found anew need not be applied before
   prepare(parameters);
   if (shares_noise_) return;
@@ -223,6 +224,7 @@ void FitFlights::measure_noise(const Eigen::VectorXd& parameters, bool drift) {
             },
             [&](std::size_t number, FitFlight& fit) {
               parts[number] = {fit.bins(), fit.rows(parameters)};
+              if (misfit) parts[number].rows.rightCols(1) -= misfit(fit);
             });
       },
       digest_of(parameters));
@@ -235,16 +237,28 @@ void FitFlights::measure_noise(const Eigen::VectorXd& parameters, bool drift) {
     columns.emplace_back(some[number].rows.leftCols(as_index(setup_.wanted.size())));
   }
   const auto found = std::make_shared<FitNoise>();
+  const bool slow = slow_parts || !task_.reference.is_of_one_sample();
   found->shared =
-      drift ? find_noise(bins, columns, residuals, task_.threads()).model : estimate_noise(bins, residuals);
+      slow ? find_noise(bins, columns, residuals, task_.threads()).model : estimate_noise(bins, residuals);
   found->shared.level.clear();
   found->levels.resize(count());
+  std::vector<std::vector<double>> of_each(count());  // residuals in bins
   task_.flights.share().attempt([&] {
     visit([&](std::size_t number, FitFlight& fit) {
-      found->levels[number] = noise_levels(fit.bins(), fit.rows(parameters).rightCols(1), found->shared);
-      if (cache_[number]) fit.set_noise(*found, number);
+      Eigen::VectorXd residual = fit.rows(parameters).rightCols(1);
+      of_each[number].assign(residual.begin(), residual.end());
+      if (misfit) residual -= misfit(fit);
+      found->levels[number] = noise_levels(fit.bins(), residual, found->shared);
     });
   });
+  std::vector<double> own;
+  for (const std::vector<double>& flight : of_each) own.insert(own.end(), flight.begin(), flight.end());
+  const double deviation =
+      deviation_of_median * median_of_absolute_values(task_.flights.share().team(), std::move(own));
+  if (deviation > 0.0) found->deviation = deviation;
+  for (std::size_t number = 0; number < count(); ++number) {
+    if (cache_[number]) cache_[number]->set_noise(*found, number);
+  }
   noise_ = found;
 }
 

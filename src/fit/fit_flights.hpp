@@ -34,6 +34,7 @@ struct FitSetup {
 
 /// The noise of the flights of a fit: what they share, and the levels of each.
 struct FitNoise {
+  double deviation = 1.0;  ///< robust, of the residuals in bins, hPa: the weight of the reference
   NoiseModel shared{};
   std::vector<std::vector<NoiseLevel>> levels{};
 };
@@ -92,10 +93,30 @@ class FitFlight {
   Eigen::MatrixXd white_columns(const Eigen::VectorXd& parameters,
                                 const std::vector<std::size_t>& wanted) const;
 
-  /// Columns of one row for each bin in units of the noise and without its memory.
-  Eigen::MatrixXd white(const Eigen::MatrixXd& columns) const {
-    return whitening_ ? (*whitening_)(columns) : columns;
+  /// Weighted columns of one row for each bin: by the root of the samples in a bin over the deviation of the
+  /// reference, as least squares of samples weighs them. Where the reference holds many samples together
+  /// (wind, heights), in units of the noise and without its memory.
+  Eigen::MatrixXd white(const Eigen::MatrixXd& columns) const;
+
+  /// Columns in units of the noise and without its memory.
+  Eigen::MatrixXd without_noise(const Eigen::MatrixXd& columns) const {
+    return Whitening(bins_, noise_, 0)(columns);
   }
+
+  /// What the scores are sums with: left' diag(weight) residual = weighted' (residual in hPa).
+  Eigen::MatrixXd weighted(const Eigen::MatrixXd& left, const Eigen::VectorXd& weight) const {
+    return scale_.cwiseProduct(weight).asDiagonal() * left;
+  }
+
+  /// The covariance of sums of the residual's noise, left' diag(weight) residual.
+  /// @param left white columns without offsets
+  Eigen::MatrixXd score_covariance(const Eigen::MatrixXd& left, const Eigen::VectorXd& weight) const;
+
+  /// Whether `white` takes the memory of the noise out.
+  bool is_whitened() const { return whitening_.has_value(); }
+
+  /// The number of independent residuals over their variance, hPa^-2: that of the mean over the flight.
+  double information() const;
 
   /// The factor of rows (derivatives, residual) in hPa, all samples alike.
   Eigen::MatrixXd unweighted_factor(const Eigen::VectorXd& parameters) const;
@@ -116,7 +137,9 @@ class FitFlight {
   std::size_t spikes_ = 0;
   Binning bins_;
   Eigen::VectorXd prepared_parameters_;
-  std::optional<Whitening> whitening_;
+  NoiseModel noise_;                    // of the bins
+  Eigen::VectorXd scale_;               // of each bin; empty before the noise was measured
+  std::optional<Whitening> whitening_;  // where the reference holds many samples together
   // Where the residual counts as linear in all that is wanted: rows at `prepared_parameters_`.
   Eigen::MatrixXd kept_rows_;
   Eigen::MatrixXd kept_white_rows_;
@@ -214,10 +237,12 @@ class FitFlights {
   /// Prepares every flight at these parameters; the noise stays.
   void prepare(const Eigen::VectorXd& parameters);
 
-  /// Prepares every flight, and finds the noise, with its slow parts or without, which weights the bins from
-  /// now on; or keeps that of `share_noise`. What flights share of it is found from sixteen of them at most,
-  /// as far apart as they come.
-  void measure_noise(const Eigen::VectorXd& parameters, bool drift);
+  /// Prepares every flight, and finds the noise and the weight of the reference; or keeps those of
+  /// `share_noise`. What flights share of the noise is found from sixteen of them at most, as far apart as
+  /// they come. @param slow_parts finds slow parts, too, which residuals of many samples always have
+  /// @param misfit of the law in the bins of a flight, hPa, which is no noise; may be empty
+  void measure_noise(const Eigen::VectorXd& parameters, bool slow_parts,
+                     const std::function<Eigen::VectorXd(const FitFlight&)>& misfit = {});
 
   /// Of the slow parts of the noise together, hPa; zero before it was measured.
   double drift_rms() const;

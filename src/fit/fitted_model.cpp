@@ -86,7 +86,7 @@ ModelFile fitted_model(const ModelFile& given, std::size_t first, const RefitRes
                   }));
   file.covariance = std::move(covariance);
   file.uncertainty.static_defect.reset();
-  if (fit.drift_rms > 0.0) file.uncertainty.static_defect = fit.drift_rms;
+  if (fit.left > 0.0) file.uncertainty.static_defect = fit.left;
   file.uncertainty.static_defect_ratio.reset();
   Provenance provenance = provenance_of(fit, loss);
   // How the temperature was calibrated stays: the pressures do not change it.

@@ -16,7 +16,8 @@ struct LossFacts {
   Function (*function)(double deviation);
 };
 
-// The widths have 95 % efficiency on normal noise, in robust deviations.
+// The widths are in robust deviations. Those of Tukey's and Cauchy's loss have 95 % efficiency on normal
+// noise; for Huber's see `huber_width`.
 constexpr std::array<LossFacts, 5> losses{
     {{Loss::tukey, "tukey",
       [](double d) -> Function { return std::make_unique<ceres::TukeyLoss>(internal::tukey_width * d); }},

@@ -100,7 +100,7 @@ void repeat_stages(Fitted& fitted, const FitTask& task, const std::vector<std::v
     const Eigen::VectorXd before = solution.values;
     // The noise hardly changes after the first rounds.
     if (round < 2) {
-      fitted.flights->measure_noise(solution.values, task.options.drift);
+      fitted.flights->measure_noise(solution.values, false);
       solution.deviation = fitted.flights->deviation(solution.values);
     }
     for (FitEquations& each : fitted.equations) {
@@ -145,7 +145,7 @@ Fitted fit_in_stages(const FitTask& task) {
   if (stages.size() > 1) {
     repeat_stages(fitted, task, stages);
     // What comes now, errors, what can be told apart, and what each effect does, is of all samples.
-    fitted.flights->measure_noise(solution.values, task.options.drift);
+    fitted.flights->measure_noise(solution.values, false);
     solution.deviation = fitted.flights->deviation(solution.values);
   }
   if (fitted.equations.empty())
@@ -163,6 +163,7 @@ void list_coefficients(RefitResult& result, const FitTask& task, const Fitted& f
     parameter.start = task.start[as_index(p)];
     parameter.value = fitted.solution.values[as_index(p)];
     parameter.standard_error = nan;
+    parameter.noise_error = nan;
     parameter.jackknife_error = nan;
     parameter.stage = fitted.stage_of[p];
     parameter.fitted = parameter.stage > 0;
@@ -175,6 +176,7 @@ void list_coefficients(RefitResult& result, const FitTask& task, const Fitted& f
     const auto row = covariance.matrix.row(as_index(a));
     if (parameter.fitted && !parameter.at_bound) {
       parameter.standard_error = std::sqrt(row[as_index(a)]);
+      parameter.noise_error = std::sqrt(covariance.by_noise(as_index(a), as_index(a)));
       parameter.jackknife_error = covariance.jackknife[as_index(a)];
     }
     result.covariance_names.push_back(parameter.name);
@@ -225,18 +227,23 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelFile& model, const R
                 const RefitOptions& options) {
   const Reference& reference = first_of(references);
   const FitTask task = task_of(model, references, options, fitted_flights);
-  const Fitted fitted = fit_in_stages(task);
+  Fitted fitted = fit_in_stages(task);
   const Solution& solution = fitted.solution;
   FitFlights& flights = *fitted.flights;
+  const MisfitColumns misfit_columns(flights);
+  const Misfit misfit = find_misfit(flights, misfit_columns, solution);
+  for (const FitEquations& each : fitted.equations) {
+    if (each.flights == &flights) continue;
+    each.flights->share_noise(flights);
+    each.flights->prepare(solution.values);
+  }
 
   RefitResult result;
   result.reference_text = reference_text(flights);
   result.masks = flights.masks();
   result.condition_number = condition_number(unweighted(flights, solution.values), task, fitted.parameters);
-  FitCovariance covariance = fit_covariance(fitted.equations, fitted.held);
+  FitCovariance covariance = fit_covariance(fitted.equations, fitted.held, misfit, misfit_columns);
   result.jackknife_parts = covariance.blocks;
-  // Slow changes that are followed are in no model of the noise; the jackknife sees them.
-  if (!options.drift) widen_to_jackknife(covariance);
   const FitSums sums = sums_at(flights, solution.values, solution.deviation);
   result.samples = sums.samples;
   result.rms = sums.rms_of(sums.squares);
@@ -259,9 +266,11 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelFile& model, const R
   result.flaps_out = compared.flaps_out;
   list_coefficients(result, task, fitted, covariance);
   result.drift_rms = flights.drift_rms();
+  result.left = misfit.left;
   result.worse = why_worse(result, before.rms_of(before.bulk_squares));
-  result.warnings = fit_warnings(flights, result, solution.values, sums.rms_of(squares.least()));
-  result.notes = notes_of(result, task, fitted, covariance.matrix, compared);
+  result.least_squares_rms = sums.rms_of(squares.least());
+  result.warnings = fit_warnings(flights, result, solution.values);
+  result.notes = notes_of(result, task, fitted, covariance.by_noise, compared);
   result.model = fitted_model(model, 0, result, options.loss, fitted_flights.title());
   if (options.fit_reference) {
     result.reference = fitted_model(*reference.model(), parameter_count(model.model), result, options.loss,
@@ -272,27 +281,12 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelFile& model, const R
 
 }  // namespace
 
-/// Slow changes count as drift of the sensors; where that leaves more than the coefficients of the file do,
-/// the fit follows them: then they are what the model lacks.
 RefitResult refit(const FlightSet& flights, const ModelFile& model, const References& references,
                   const RefitOptions& options) {
   require_sense(flights, references, options);
   RefitResult result = fit(flights, model, references, options);
   flights.with(options.holdout).require_unchanged();
-  if (result.worse.empty() || !options.drift || !(result.drift_rms > 0.0)) return result;
-  RefitOptions following = options;
-  following.drift = false;
-  RefitResult other = fit(flights, model, references, following);
-  flights.with(options.holdout).require_unchanged();
-  if (!other.worse.empty()) return result;
-  other.warnings.insert(
-      other.warnings.begin(),
-      fmt::format(
-          "slow changes of the residuals, of {:.2f} hPa, are too large to be drift of the sensors alone: the "
-          "fit follows them, its errors are those by jackknife, and the model lacks something; pcor "
-          "diagnose tells what",
-          result.drift_rms));
-  return other;
+  return result;
 }
 
 }  // namespace pcor

@@ -11,7 +11,8 @@ using namespace internal;
 template <class Archive>
 void serialize(Archive& archive, FittedParameter& parameter) {
   archive(parameter.name, parameter.unit, parameter.start, parameter.value, parameter.standard_error,
-          parameter.jackknife_error, parameter.fitted, parameter.at_bound, parameter.stage);
+          parameter.noise_error, parameter.jackknife_error, parameter.fitted, parameter.at_bound,
+          parameter.stage);
 }
 
 std::vector<std::vector<FittedParameter>> refit_each_alone(const FlightSet& flights, const ModelFile& model,

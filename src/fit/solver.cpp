@@ -99,8 +99,15 @@ class Solver {
         if (stands_still(before)) break;
       }
     }
-    measure(task_.options.drift);
+    measure(false);
     constexpr int rounds = 10;
+    // The weight of each reference is that of its residuals at the solution.
+    for (int round = 0; round < rounds && flights_.joint().size() > 1; ++round) {
+      const Eigen::VectorXd before = unknowns_;
+      settles_with(loss);
+      if (stands_still(before)) break;
+      measure(false);
+    }
     for (int round = 0; round < rounds; ++round) {
       const Eigen::VectorXd before = unknowns_;
       const bool settled = settles_with(loss);

@@ -6,17 +6,15 @@
 #include <cmath>
 
 #include <pcor/words/utc.hpp>
-#include "campaign/larger_rms.hpp"
 #include "fit/loss_function.hpp"
 #include "residuals/flight_statistics.hpp"
 
 namespace pcor::internal {
 namespace {
 
+constexpr double larger = 1.02;
 constexpr double larger_elsewhere =
     1.05;  // by chance a fit of half a flight is worse on the rest by some per cent
-constexpr double much_larger = 1.1;
-constexpr double least_drift = 0.02;     // hPa; of less a pressure is not told
 constexpr double longest_chance = 30.0;  // s of outliers in a row; spikes and gusts are shorter
 constexpr double many_outliers = 0.05;   // of all samples
 
@@ -59,7 +57,7 @@ Run longest_run(const FitFlight& fit, const Eigen::VectorXd& values) {
 }  // namespace
 
 std::string why_worse(const RefitResult& result, double bulk_rms_before) {
-  if (is_larger(result.rms, result.rms_before) && is_larger(result.bulk_rms, bulk_rms_before)) {
+  if (result.rms > larger * result.rms_before && result.bulk_rms > larger * bulk_rms_before) {
     return fmt::format(
         "the fit leaves a larger rms, {:.3f} hPa, than the coefficients of the file, {:.3f} hPa, on the "
         "samples that were fitted",
@@ -77,7 +75,7 @@ std::string why_worse(const RefitResult& result, double bulk_rms_before) {
 }
 
 std::vector<std::string> fit_warnings(FitFlights& flights, const RefitResult& result,
-                                      const Eigen::VectorXd& values, double least_rms) {
+                                      const Eigen::VectorXd& values) {
   std::vector<std::string> warnings;
   if (result.r_squared < 0.0) {
     warnings.push_back(
@@ -105,13 +103,12 @@ std::vector<std::string> fit_warnings(FitFlights& flights, const RefitResult& re
                     "may hide what the model lacks; --loss none fits all of them",
                     100.0 * share));
   }
-  const double drift = flights.drift_rms();
-  if (drift > least_drift && result.rms > much_larger * least_rms) {
-    warnings.push_back(
-        fmt::format("slow changes of the residuals, of {:.2f} hPa, were taken for drift of the sensors and "
-                    "not followed; coefficients that follow them leave an rms of {:.3f} hPa instead of "
-                    "{:.3f}. If they are what the model lacks, pcor diagnose tells; --no-drift follows them",
-                    drift, least_rms, result.rms));
+  if (result.rms > larger * result.least_squares_rms) {
+    warnings.push_back(fmt::format(
+        "plain least squares of all samples would leave an rms of {:.3f} hPa, the fit leaves {:.3f} hPa: "
+        "outliers count less in the fit, or a bound or a prior holds a coefficient; --loss none counts "
+        "all samples alike",
+        result.least_squares_rms, result.rms));
   }
   return warnings;
 }
@@ -130,17 +127,18 @@ std::vector<std::string> error_notes(const RefitResult& result, std::size_t flig
   }
   std::string apart;
   for (const FittedParameter& parameter : result.parameters) {
-    const double ratio = parameter.jackknife_error / parameter.standard_error;
+    const double ratio = parameter.jackknife_error / parameter.noise_error;
     // The doubt of a prior, or of what is held, is no noise, which a jackknife could see.
     if (!(ratio > too_small || (ratio < too_large && !with_doubt))) continue;
     apart += fmt::format("{}{} ({:.2g} against {:.2g})", apart.empty() ? "" : ", ", parameter.name,
-                         parameter.jackknife_error, parameter.standard_error);
+                         parameter.jackknife_error, parameter.noise_error);
   }
   if (!apart.empty()) {
-    notes.push_back(fmt::format(
-        "the standard errors are not borne out by leaving out one {} after another, for {}: the noise is not "
-        "what the fit takes it for, or a few minutes decide; believe the larger one",
-        result.jackknife_parts == flights ? "flight" : "part of the flights", apart));
+    notes.push_back(
+        fmt::format("the standard errors by the noise are not borne out by leaving out one {} after another, "
+                    "for {}: the noise is not "
+                    "what the fit takes it for, or a few minutes decide; believe the larger one",
+                    result.jackknife_parts == flights ? "flight" : "part of the flights", apart));
   }
   return notes;
 }

@@ -17,9 +17,8 @@ std::string why_worse(const RefitResult& result, double bulk_rms_before);
 /// Why a fit should not be trusted, a sentence each: its residuals vary more than delta-p itself; samples
 /// that count as outliers come in a row, which outliers do not; outliers are so many that the loss hides what
 /// the model lacks; or what was taken for slow drift may be what the model lacks.
-/// @param least_rms that any coefficients leave, hPa; NaN where not known
 std::vector<std::string> fit_warnings(FitFlights& flights, const RefitResult& result,
-                                      const Eigen::VectorXd& values, double least_rms);
+                                      const Eigen::VectorXd& values);
 
 /// In words: where the jackknife does not bear out the stated errors, and stages that do not come to rest.
 /// @param with_doubt errors hold that of a prior, or of coefficients that were held

@@ -303,8 +303,9 @@ struct ItemJson {
                          {"note", each.note}});
     json weights = json::array();
     for (const WhatIfWeights& each : panel.weights)
-      weights.push_back(
-          {{"effects", each.effects}, {"parts", sums_json(each.parts)}, {"inflation", each.inflation}});
+      weights.push_back({{"effects", each.effects},
+                         {"parts", sums_json(each.parts)},
+                         {"scores", sums_json(WhatIfSums{each.score_covariance, 0.0})}});
     json separations = json::array();
     for (const WhatIfSeparation& each : panel.separations)
       separations.push_back({{"effect", each.effect}, {"rival", each.rival}, {"text", each.text}});

@@ -276,8 +276,7 @@ class WhatIf {
 
   // By how much chi2 falls from the model fitted again to what is shown now.
   get fallOfNow() {
-    const {weights, squares, variance} = this.now;
-    return (this.fit.fit([], new Map(), this.own, weights).squares - squares) / variance;
+    return this.fit.gain(this.fit.fit([], new Map(), this.own, this.now.weights), this.now);
   }
 
   showFigures() {

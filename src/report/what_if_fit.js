@@ -46,9 +46,9 @@ class Cholesky {
     return x.map((value, i) => value * scale[i]);
   }
 
-  // The diagonal of the inverse.
-  get variances() {
-    return this.lower.map((row, i) => this.solve(row.map((_, j) => j === i ? 1 : 0))[i]);
+  // The rows of the inverse.
+  get inverse() {
+    return this.lower.map((row, i) => this.solve(row.map((_, j) => j === i ? 1 : 0)));
   }
 }
 
@@ -66,9 +66,10 @@ class WhatIfFit {
   constructor({coefficients, own, effects, weights, alike, outliers, heldOut}) {
     Object.assign(this, {coefficients, own, effects});
     const width = coefficients.length + 1;
-    this.weights = weights.map(({effects: taken, parts, inflation}) => {
+    this.weights = weights.map(({effects: taken, parts, scores: covariance}) => {
       const each = parts.map((sums) => wholeSums(sums, width));
-      return {taken, inflation, parts: each, whole: each.reduce((a, b) => combined(a, b))};
+      const scores = wholeSums(covariance, width - 1).matrix;
+      return {taken, scores, parts: each, whole: each.reduce((a, b) => combined(a, b))};
     });
     this.alike = alike.map((sums) => wholeSums(sums, width));
     this.all = [...this.alike, wholeSums(outliers, width)].reduce((a, b) => combined(a, b));
@@ -149,10 +150,13 @@ class WhatIfFit {
 
   told(values, free, factor, weights) {
     const squares = squaresLeft(weights.whole, values);
-    const variance = weights.inflation * squares / Math.max(weights.whole.samples - free.length, 1);
     const errors = new Float64Array(values.length);
-    factor.variances.forEach((one, k) => { errors[free[k]] = Math.sqrt(variance * Math.max(one, 0)); });
-    return {values, errors, free, weights, squares, variance, rms: rmsLeft(this.all, values)};
+    factor.inverse.forEach((row, k) => {
+      const square = row.reduce((sum, a, i) => sum + row.reduce((product, b, j) =>
+        product + a * weights.scores[free[i]][free[j]] * b, 0), 0);
+      errors[free[k]] = Math.sqrt(Math.max(square, 0));
+    });
+    return {values, errors, free, weights, squares, rms: rmsLeft(this.all, values)};
   }
 
   // The rms on what took no part: on what is held out, else on parts of the flights left out in turn.
@@ -173,7 +177,15 @@ class WhatIfFit {
   fall(before, after, byHand, own) {
     const weights = this.weightsOf(after);
     const without = this.fit(before, byHand, own, weights), now = this.fit(after, byHand, own, weights);
-    return (without.squares - now.squares) / now.variance;
+    return this.gain(without, now);
+  }
+
+  // By how much chi2 falls from one fit to another with more coefficients, of the same weights, in units of the noise
+  // with its memory: that of the mean of the scores of what is added.
+  gain(without, {squares, free, weights: {scores, whole}}) {
+    const added = free.filter((c) => !without.free.includes(c));
+    const variance = added.reduce((sum, c) => sum + scores[c][c] / whole.matrix[c][c], 0) / added.length;
+    return added.length ? (without.squares - squares) / variance : 0;
   }
 
   // How alike two changes are in units of the noise that is left with all that was found, -1 to 1.

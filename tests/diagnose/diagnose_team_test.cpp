@@ -109,7 +109,7 @@ void serialize(Archive& archive, pcor::WhatIfSums& sums) {
 
 template <class Archive>
 void serialize(Archive& archive, pcor::WhatIfWeights& weights) {
-  archive(weights.effects, weights.parts, weights.inflation);
+  archive(weights.effects, weights.parts, weights.score_covariance);
 }
 
 template <class Archive>

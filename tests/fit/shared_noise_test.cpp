@@ -39,7 +39,7 @@ std::vector<double> deviations(std::size_t memory) {
   FitFlights flights(task, FitSetup{task.start, {0, 1, 2}});
   flights.measure_noise(task.start, true);
   return flights.of_each([&](std::size_t, FitFlight& fit) {
-    const Eigen::VectorXd innovations = fit.white_rows(task.start, {}).rightCols(1);
+    const Eigen::VectorXd innovations = fit.without_noise(fit.rows(task.start)).rightCols(1);
     return robust_deviation({innovations.begin(), innovations.end()});
   });
 }

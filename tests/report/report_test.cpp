@@ -252,7 +252,7 @@ WhatIfPanel what_if_of(std::size_t samples) {
   panel.own = 1;
   panel.effects = {{"static-lag", "a lag", "found", 0, 1, 1}};
   const WhatIfSums sums{{2.0, 1.0, 3.0, 0.5, 0.25, 4.0}, 10.0};
-  panel.weights = {{{}, {sums}, 1.0}};
+  panel.weights = {{{}, {sums}, {2.0, 1.0, 3.0}}};
   panel.alike = {sums};
   panel.outliers = sums;
   return panel;

@@ -27,7 +27,7 @@ struct Options {
   CandidateOptions candidates;
   std::string model;
   std::string output;
-  std::string loss = "tukey";
+  std::string loss = "huber";
   std::vector<std::string> holdout;
   double training_share = 1.0;
   bool trace_variables = false;
@@ -159,7 +159,7 @@ void run(const Options& options) {
       std::string fit = command_line(options.comparison);
       for (const std::string& flight : options.holdout) fit += " --holdout " + shell_word(flight);
       if (options.training_share < 1.0) fit += fmt::format(" --training-share {}", options.training_share);
-      if (options.loss != "tukey") fit += " --loss " + options.loss;
+      if (options.loss != "huber") fit += " --loss " + options.loss;
       add_commands(tried, options.model, options.comparison.flights.front(), fit);
     }
   }

@@ -31,7 +31,7 @@ struct Options {
   std::string output;
   std::string reference_output;
   std::string table;
-  std::string loss = "tukey";
+  std::string loss = "huber";
   std::vector<std::string> fix;
   std::vector<std::string> free;
   std::vector<std::string> stages;
@@ -40,7 +40,6 @@ struct Options {
   double memory_mib = 512.0;
   bool prior = false;
   bool search = false;
-  bool no_drift = false;
   bool force = false;
 };
 
@@ -84,7 +83,6 @@ RefitOptions refit_options(const Options& options, const FlightSet& holdout) {
   refit.fit_reference = !options.reference_output.empty();
   refit.use_prior = options.prior;
   refit.search = options.search;
-  refit.drift = !options.no_drift;
   refit.training_share = options.training_share;
   refit.holdout = holdout;
   return refit;
@@ -100,11 +98,13 @@ nlohmann::ordered_json effects_as_json(const std::vector<FittedParameter>& param
       effects.push_back({{"id", id},
                          {"parameters", nlohmann::ordered_json::object()},
                          {"stderr", nlohmann::ordered_json::object()},
+                         {"stderr_noise", nlohmann::ordered_json::object()},
                          {"stderr_jackknife", nlohmann::ordered_json::object()},
                          {"start", nlohmann::ordered_json::object()}});
     }
     effects.back()["parameters"][name] = parameter.value;
     effects.back()["stderr"][name] = parameter.standard_error;
+    effects.back()["stderr_noise"][name] = parameter.noise_error;
     effects.back()["stderr_jackknife"][name] = parameter.jackknife_error;
     effects.back()["start"][name] = parameter.start;
     if (parameter.at_bound) effects.back()["at_bound"].push_back(name);
@@ -136,6 +136,10 @@ nlohmann::ordered_json as_json(const RefitResult& result) {
   json["bulk_rms_hpa"] = result.bulk_rms;
   json["noise_rms_hpa"] = result.noise_rms;
   json["drift_rms_hpa"] = result.drift_rms;
+  json["drift_hpa"] = result.drift_rms;
+  json["left_hpa"] = result.left;
+  json["least_squares_rms_hpa"] = result.least_squares_rms;
+  json["estimator"] = std::string(refit_estimator);
   json["r2"] = result.r_squared;
   json["samples"] = result.samples;
   json["outliers"] = result.outliers;
@@ -181,6 +185,11 @@ void print_further(const std::vector<FlightFit>& further) {
 void print_result(const RefitResult& result, const ChosenReferences& references) {
   print_references(references);
   for (const std::string& warning : result.warnings) say("Warning: {}.\n\n", warning);
+  say("{}\n", refit_estimator);
+  if (result.left > 0.0)
+    say("The law lacks {:.2f} hPa (rms) that varies with the flight state; slow drift of the noise: {:.2f} "
+        "hPa.\n",
+        result.left, result.drift_rms);
   say("reference: {}\n", result.reference_text);
   say("fitted to {} samples; not used: {}\n", result.samples, mask_text(result.masks));
   print_flaps_out(result.flaps_out, "the fit");
@@ -412,10 +421,6 @@ std::function<void()> add_refit(CLI::App& program) {
       "fit these coefficients to these regimes alone, each interval with an offset of its own, the "
       "others to all samples, again and again until nothing moves: 'pitch manoeuvre: static-alpha'")
       ->type_name("REGIMES: NAMES");
-  command->add_flag(
-      "--no-drift", options->no_drift,
-      "take no slow change of the residuals for drift of the sensors: the fit follows all of it, and "
-      "its errors are those by jackknife, where they are larger");
   add_list_option(*command, "--holdout", options->holdout, "a flight that is not fitted, but tests the fit")
       ->type_name("T.nc");
   command

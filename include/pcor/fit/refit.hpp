@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace pcor {
@@ -24,14 +25,10 @@ struct FitStage {
 
 struct RefitOptions {
   MaskOptions mask;
-  Loss loss = Loss::tukey;
+  Loss loss = Loss::huber;
   std::vector<std::string> fix{};   ///< parameters, or effects, held besides those that the file fixes
   std::vector<std::string> free{};  ///< parameters, or effects, fitted although the file fixes them
   std::vector<FitStage> stages{};
-  /// Slow changes of the residuals that the model does not follow count as drift of the sensors, which is
-  /// found from the flights. False: they count in full, as least squares has it, and the stated errors do not
-  /// know them.
-  bool drift = true;
   /// The model of a static system that is the reference is fitted together with the model.
   bool fit_reference = false;
   /// Effects of the model that the systems of the references have alike: they cancel where two systems are
@@ -63,6 +60,7 @@ struct FittedParameter {
   /// With the memory and the slow drift of the noise, and with what held coefficients may err by; NaN where
   /// it was not fitted or is at a bound.
   double standard_error = 0.0;
+  double noise_error = 0.0;  ///< of that the part by the noise alone, without the misfit of the law
   /// The standard error that leaving out one flight, or one part of a flight, after another gives, without a
   /// model of the noise.
   double jackknife_error = 0.0;
@@ -104,9 +102,11 @@ struct RefitResult {
   double rms_over_pressure = 0.0;  ///< of residual over static pressure
   double bulk_rms = 0.0;           ///< robust deviation, hPa: without outliers
   double noise_rms = 0.0;          ///< of the noise floor, hPa
-  /// Of slow changes that the model does not follow, hPa: drift of the sensors, or what it lacks. The fitted
-  /// model states it as the standard uncertainty of its delta-p in one sample.
-  double drift_rms = 0.0;
+  double drift_rms = 0.0;          ///< of the slow parts of the noise, hPa: drift of the sensors
+  /// Rms of what the law lacks as a smooth function of the flight state, hPa. The fitted model states it as
+  /// the standard uncertainty of its delta-p in one sample.
+  double left = 0.0;
+  double least_squares_rms = 0.0;  ///< of plain least squares of the same samples, hPa; NaN where not known
   double r_squared = 0.0;
   double rms_before = 0.0;   ///< hPa, with the coefficients of the file
   std::size_t outliers = 0;  ///< samples that depart from what the noise allows after those before them
@@ -127,17 +127,27 @@ struct RefitResult {
   std::vector<std::string> notes{};     ///< what a user should know, a sentence each, the gravest first
 };
 
+/// How coefficients and errors are found, in a sentence.
+inline constexpr std::string_view refit_estimator =
+    "Coefficients by least squares with Huber's loss, four robust deviations wide; errors from the noise "
+    "with its "
+    "drift and from the misfit of the law.";
+
 /// Fits the free coefficients of `model` to the flights, with all references at once: the sum of their
 /// likelihoods, each with a noise of its own. A reference that no free coefficient changes takes no part.
 /// Figures of the result that are of one residual are those of the first reference.
 ///
-/// Generalised least squares with robust weights: residuals and derivatives are averaged over four seconds
-/// and whitened by one model of the noise (an autoregression whose level changes every five minutes, and slow
-/// drift), which is found from the residuals by restricted likelihood, its memory from those of sixteen
-/// flights at most; the loss is of the innovations. From the coefficients of the file the linear problem is
-/// solved in closed form; then Ceres does the full one, with bounds and loss. Every pass reduces each flight
-/// to a triangular factor, and the factors add up.
-/// Standard errors are those of the loss on this noise; beside each stands that of a jackknife.
+/// Coefficients: least squares with Huber's loss of residuals in bins of four seconds, each bin weighted by
+/// the root of its samples, each reference by the robust deviation of its residuals. Slow misfit of the law
+/// is not taken for drift: the correction is the best one over all that was flown. References of many samples
+/// (wind, heights) are whitened by their noise, since their level is not seen otherwise. From the
+/// coefficients of the file the linear problem is solved in closed form; then Ceres does the full one, with
+/// bounds and loss. Every pass reduces each flight to a triangular factor, and the factors add up.
+///
+/// Standard errors: M (N + F) M' with the derivatives M of the coefficients by the residuals, the covariance
+/// N of the noise (an autoregression whose level changes every five minutes, and slow drift, by restricted
+/// likelihood) and the covariance F of the misfit of the law (`RefitResult::left`); beside each stands that
+/// of a jackknife.
 ///
 /// @throws Error if a flight cannot be read, nothing is free, no sample is left (with the masks), samples are
 /// fewer than coefficients, bounds leave nothing, or coefficients cannot be told apart on these flights: the

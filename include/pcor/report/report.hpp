@@ -229,9 +229,8 @@ struct WhatIfSums {
 struct WhatIfWeights {
   std::vector<std::size_t> effects;
   std::vector<WhatIfSums> parts;  ///< of the flights, each of which is left out in turn
-  /// By how much the variance of a coefficient is larger than least squares of the weighted rows has it,
-  /// since the weights come from the residuals.
-  double inflation = 1.0;
+  /// The covariance by the noise of the columns' products with the residual, the lower triangle by rows.
+  std::vector<double> score_covariance;
 };
 
 /// What two effects are told apart by, as a sentence.

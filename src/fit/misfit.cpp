@@ -1,0 +1,244 @@
+#include "fit/misfit.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <pcor/physics/constants.hpp>
+#include "numerics/decompositions.hpp"
+#include "numerics/least_cost.hpp"
+#include "numerics/missing.hpp"
+#include "numerics/whitening.hpp"
+
+namespace pcor::internal {
+namespace {
+
+constexpr Eigen::Index states = 6;
+constexpr Eigen::Index bumps = 7;  // of each state
+constexpr double width = 0.75;     // of a bump, in deviations of its state
+constexpr double furthest = 3.0;   // deviations
+constexpr std::size_t fewest_bins = 100;
+
+/// A series over another, of each sample; empty where one of them is not recorded.
+std::vector<double> ratio_of(const std::vector<double>* over, const std::vector<double>* under) {
+  if (over == nullptr || under == nullptr) return {};
+  std::vector<double> ratio = *over;
+  for (std::size_t i = 0; i < ratio.size(); ++i) ratio[i] /= (*under)[i];
+  return ratio;
+}
+
+std::vector<double> load_factor_of(const FlightSamples& samples) {
+  if (const std::vector<double>* const recorded = samples.model.find(Quantity::normal_acceleration))
+    return *recorded;
+  std::vector<double> factor = samples.motion.roll;  // of a level turn
+  for (double& each : factor) each = 1.0 / std::max(0.1, std::cos(each * constants::radians_per_degree));
+  return factor;
+}
+
+/// Each state, one value for each sample; empty where it is not recorded.
+std::array<std::vector<double>, states> states_of(const FlightSamples& samples) {
+  const ModelSamples& model = samples.model;
+  const auto angle = [&](Quantity pressure, const std::vector<double>& recorded) {
+    const std::vector<double> ratio =
+        ratio_of(model.find(pressure), model.find(Quantity::radome_dynamic_pressure));
+    return ratio.empty() ? recorded : ratio;
+  };
+  return {angle(Quantity::attack_differential_pressure, samples.motion.attack),
+          angle(Quantity::sideslip_differential_pressure, samples.motion.sideslip),
+          ratio_of(model.find(Quantity::dynamic_pressure), model.find(Quantity::static_pressure)),
+          samples.motion.vertical_speed,
+          load_factor_of(samples),
+          *model.find(Quantity::static_pressure)};
+}
+
+/// The states in bins, NaN where they are not known.
+Eigen::MatrixXd binned_states(const FitFlight& fit) {
+  const Binning& bins = fit.bins();
+  Eigen::MatrixXd result = Eigen::MatrixXd::Constant(as_index(bins.size()), states, nan);
+  const auto series = states_of(fit.residuals().samples());
+  for (std::size_t s = 0; s < series.size(); ++s) {
+    if (!series[s].empty()) result.col(as_index(s)) = bins.means(series[s]);
+  }
+  return result;
+}
+
+/// Number, sum and sum of squares of each state.
+Eigen::MatrixXd moments_of(const FitFlight& fit) {
+  Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(states, 3);
+  const Eigen::MatrixXd values = binned_states(fit);
+  for (Eigen::Index s = 0; s < states; ++s) {
+    for (const double value : values.col(s)) {
+      if (std::isfinite(value)) moments.row(s) += Eigen::RowVector3d(1.0, value, value * value);
+    }
+  }
+  return moments;
+}
+
+/// Products of (derivatives, bumps, residual) with each other, whitened and as they are.
+struct Products {
+  Eigen::MatrixXd white{};
+  Eigen::MatrixXd plain{};
+  double bins = 0.0;
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(white, plain, bins);
+  }
+};
+
+/// Products with each other of what the derivatives take up of columns. @param across products of both
+Eigen::MatrixXd taken_up(const Eigen::MatrixXd& information, const Eigen::MatrixXd& across) {
+  const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * across;
+  return scaled.transpose() *
+         pseudo_inverse(Eigen::MatrixXd(scale.asDiagonal() * information * scale.asDiagonal()), 1e-11) *
+         scaled;
+}
+
+/// Minus twice the logarithm of the restricted likelihood of the variances, without constants: derivatives
+/// have no prior, bumps the variance of their state.
+class Likelihood {
+ public:
+  Likelihood(const Products& products, Eigen::Index derivatives) : derivatives_(derivatives) {
+    // Without what the derivatives take up.
+    const Eigen::MatrixXd& all = products.white;
+    const Eigen::Index rest = all.cols() - derivatives;
+    const Eigen::MatrixXd across = all.topRightCorner(derivatives, rest);
+    left_ = all.bottomRightCorner(rest, rest) - taken_up(all.topLeftCorner(derivatives, derivatives), across);
+  }
+
+  double operator()(const Eigen::VectorXd& variance) const {
+    const Eigen::Index count = variance.size();
+    const Eigen::VectorXd size = variance.cwiseSqrt();
+    Eigen::MatrixXd inner = size.asDiagonal() * left_.topLeftCorner(count, count) * size.asDiagonal();
+    inner.diagonal().array() += 1.0;
+    const Eigen::VectorXd right = size.cwiseProduct(left_.col(count).head(count));
+    const Eigen::LLT<Eigen::MatrixXd> factor(inner);
+    const double determinant = 2.0 * factor.matrixL().toDenseMatrix().diagonal().array().log().sum();
+    return determinant - right.dot(factor.solve(right));
+  }
+
+  /// The covariance of the heights of the bumps after the flights, and the heights.
+  std::pair<Eigen::MatrixXd, Eigen::VectorXd> posterior(const Eigen::VectorXd& variance) const {
+    const Eigen::Index count = variance.size();
+    const Eigen::VectorXd size = variance.cwiseSqrt();
+    Eigen::MatrixXd inner = size.asDiagonal() * left_.topLeftCorner(count, count) * size.asDiagonal();
+    inner.diagonal().array() += 1.0;
+    const Eigen::MatrixXd covariance =
+        size.asDiagonal() * inner.llt().solve(Eigen::MatrixXd(size.asDiagonal()));
+    return {covariance, covariance * left_.col(count).head(count)};
+  }
+
+ private:
+  Eigen::Index derivatives_;
+  Eigen::MatrixXd left_;
+};
+
+Eigen::VectorXd spread(const std::vector<double>& sizes) {
+  Eigen::VectorXd variance(states * bumps);
+  for (Eigen::Index s = 0; s < states; ++s)
+    variance.segment(s * bumps, bumps)
+        .setConstant(sizes[static_cast<std::size_t>(s)] * sizes[static_cast<std::size_t>(s)]);
+  return variance;
+}
+
+/// The most likely variances.
+Eigen::VectorXd variances_of(const Likelihood& likelihood, double rms) {
+  constexpr double most = 5.0;  // of the residual
+  std::vector<double> sizes(states, 0.3);
+  nlopt::opt search(nlopt::LN_BOBYQA, static_cast<unsigned>(states));
+  search.set_lower_bounds(0.0);
+  search.set_upper_bounds(most);
+  search.set_initial_step(0.2);
+  search.set_xtol_abs(0.01);
+  search.set_maxeval(300);
+  const auto cost = [&](std::vector<double> of) {
+    for (double& each : of) each *= rms;
+    return likelihood(spread(of));
+  };
+  find_least_cost(search, cost, sizes);
+  for (double& each : sizes) each *= rms;
+  return spread(sizes);
+}
+
+}  // namespace
+
+MisfitColumns::MisfitColumns(FitFlights& flights) {
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(states, 3);
+  for (const Eigen::MatrixXd& part :
+       flights.of_each([](std::size_t, FitFlight& fit) { return moments_of(fit); }))
+    sum += part;
+  const Eigen::ArrayXd count = sum.col(0).array().max(1.0);
+  mean_ = sum.col(1).array() / count;
+  deviation_ = (sum.col(2).array() / count - mean_.array().square()).max(0.0).sqrt();
+  for (Eigen::Index s = 0; s < states; ++s) {
+    if (!(deviation_[s] > 1e-9 * std::abs(mean_[s]))) deviation_[s] = 0.0;
+  }
+}
+
+Eigen::Index MisfitColumns::count() { return states * bumps; }
+
+Eigen::MatrixXd MisfitColumns::operator()(const FitFlight& fit) const {
+  const Eigen::MatrixXd values = binned_states(fit);
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(values.rows(), count());
+  for (Eigen::Index s = 0; s < states; ++s) {
+    if (deviation_[s] == 0.0) continue;
+    for (Eigen::Index i = 0; i < values.rows(); ++i) {
+      if (!std::isfinite(values(i, s))) continue;
+      const double z = std::clamp((values(i, s) - mean_[s]) / deviation_[s], -furthest, furthest);
+      for (Eigen::Index b = 0; b < bumps; ++b) {
+        const double from = (z + furthest - static_cast<double>(b)) / width;
+        result(i, s * bumps + b) = std::exp(-0.5 * from * from);
+      }
+    }
+  }
+  return result;
+}
+
+Misfit find_misfit(FitFlights& flights, const MisfitColumns& columns, const Solution& solution) {
+  Misfit misfit;
+  flights.measure_noise(solution.values, true);
+  if (flights.bins() < fewest_bins || !flights.task().reference.is_of_one_sample()) return misfit;
+  constexpr int rounds = 2;
+  for (int round = 0; round < rounds; ++round) {
+    Products sum;
+    for (const Products& part : flights.of_each(
+             [&](std::size_t, FitFlight& fit) {
+               const Eigen::MatrixXd rows = fit.rows(solution.values);
+               const Eigen::Index own = rows.cols() - 1;
+               Eigen::MatrixXd all(rows.rows(), rows.cols() + columns.count());
+               all << rows.leftCols(own), columns(fit), rows.col(own);
+               const Eigen::MatrixXd white = fit.without_noise(all);
+               return Products{white.transpose() * white, all.transpose() * all,
+                               static_cast<double>(all.rows())};
+             },
+             solution.values)) {
+      if (sum.bins == 0.0) {
+        sum = part;
+        continue;
+      }
+      sum.white += part.white;
+      sum.plain += part.plain;
+      sum.bins += part.bins;
+    }
+    const Eigen::Index own = sum.white.cols() - columns.count() - 1;
+    const double rms = std::sqrt(sum.plain(sum.plain.rows() - 1, sum.plain.cols() - 1) / sum.bins);
+    if (!(rms > 0.0) || !sum.white.allFinite()) return misfit;
+    const Likelihood likelihood(sum, own);
+    misfit.variance = variances_of(likelihood, rms);
+    const auto [covariance, height] = likelihood.posterior(misfit.variance);
+    misfit.height = height;
+    const Eigen::Index count = columns.count();
+    const Eigen::MatrixXd across = sum.plain.block(0, own, own, count);
+    const Eigen::MatrixXd left =
+        sum.plain.block(own, own, count, count) - taken_up(sum.plain.topLeftCorner(own, own), across);
+    misfit.left =
+        std::sqrt(std::max(0.0, (left * (covariance + height * height.transpose())).trace()) / sum.bins);
+    flights.measure_noise(solution.values, true, [&](const FitFlight& fit) -> Eigen::VectorXd {
+      return columns(fit) * misfit.height;
+    });
+  }
+  return misfit;
+}
+
+}  // namespace pcor::internal

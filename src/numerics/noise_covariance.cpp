@@ -1,0 +1,50 @@
+#include "numerics/noise_covariance.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include "numerics/triangular_factor.hpp"
+
+namespace pcor::internal {
+namespace {
+
+/// A process of that time and of variance one: its covariance matrix times the columns.
+Eigen::MatrixXd with_memory(const Eigen::MatrixXd& columns, const std::vector<double>& time, double memory) {
+  Eigen::MatrixXd result(columns.rows(), columns.cols());
+  Eigen::RowVectorXd before = Eigen::RowVectorXd::Zero(columns.cols());
+  const auto decay = [&](Eigen::Index t) {
+    const auto i = static_cast<std::size_t>(t);
+    return std::exp(-(time[i] - time[i - 1]) / memory);
+  };
+  for (Eigen::Index t = 0; t < columns.rows(); ++t) {
+    if (t > 0) before *= decay(t);
+    before += columns.row(t);
+    result.row(t) = before;
+  }
+  Eigen::RowVectorXd after = Eigen::RowVectorXd::Zero(columns.cols());
+  for (Eigen::Index t = columns.rows(); t-- > 1;) {
+    after = (after + columns.row(t)) * decay(t);
+    result.row(t - 1) += after;
+  }
+  return result;
+}
+
+}  // namespace
+
+Eigen::MatrixXd noise_covariance(const Eigen::MatrixXd& columns, const Binning& bins, const NoiseModel& noise,
+                                 std::size_t flight) {
+  const Eigen::MatrixXd fast = noise.level[flight].asDiagonal() * columns;
+  std::vector<const double*> pointers;
+  for (Eigen::Index c = 0; c < fast.cols(); ++c) pointers.push_back(fast.col(c).data());
+  const std::vector<double> of_fast =
+      covariance_of_sums({noise.coefficients, 1.0}, pointers, bins.stretches());
+  Eigen::MatrixXd covariance = Eigen::Map<const Eigen::MatrixXd>(of_fast.data(), fast.cols(), fast.cols());
+  for (std::size_t k = 0; k < slow_times.size(); ++k) {
+    if (noise.slow[k] > 0.0)
+      covariance += noise.slow[k] * noise.slow[k] * columns.transpose() *
+                    with_memory(columns, bins.time(), slow_times[k]);
+  }
+  return covariance;
+}
+
+}  // namespace pcor::internal
