@@ -99,7 +99,7 @@ Eigen::MatrixXd taken_up(const Eigen::MatrixXd& information, const Eigen::Matrix
 /// have no prior, bumps the variance of their state.
 class Likelihood {
  public:
-  Likelihood(const Products& products, Eigen::Index derivatives) : derivatives_(derivatives) {
+  Likelihood(const Products& products, Eigen::Index derivatives) {
     // Without what the derivatives take up.
     const Eigen::MatrixXd& all = products.white;
     const Eigen::Index rest = all.cols() - derivatives;
@@ -130,7 +130,6 @@ class Likelihood {
   }
 
  private:
-  Eigen::Index derivatives_;
   Eigen::MatrixXd left_;
 };
 

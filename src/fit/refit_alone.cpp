@@ -21,7 +21,7 @@ std::vector<std::vector<FittedParameter>> refit_each_alone(const FlightSet& flig
   const FlightShare& share = flights.share();
   RefitOptions own = options;
   own.threads = Workers(flights.team(), options.threads).threads;
-  own.holdout = {};
+  own.holdout = FlightSet();
   own.progress = nullptr;
   std::size_t done = 0;
   return share.of_each_flight<std::vector<FittedParameter>>([&](std::size_t number) {
