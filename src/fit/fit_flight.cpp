@@ -155,6 +155,7 @@ void FitFlight::set_noise(const FitNoise& noise, std::size_t flight) {
 }
 
 Eigen::MatrixXd FitFlight::white(const Eigen::MatrixXd& columns) const {
+  if (columns.rows() == 0) return columns;
   if (whitening_) return (*whitening_)(columns);
   return scale_.size() > 0 ? Eigen::MatrixXd(scale_.asDiagonal() * columns) : columns;
 }

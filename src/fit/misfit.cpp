@@ -18,6 +18,7 @@ constexpr Eigen::Index bumps = 7;  // of each state
 constexpr double width = 0.75;     // of a bump, in deviations of its state
 constexpr double furthest = 3.0;   // deviations
 constexpr std::size_t fewest_bins = 100;
+constexpr double impossible = 1e300;  // cost
 
 /// A series over another, of each sample; empty where one of them is not recorded.
 std::vector<double> ratio_of(const std::vector<double>* over, const std::vector<double>* under) {
@@ -31,7 +32,8 @@ std::vector<double> load_factor_of(const FlightSamples& samples) {
   if (const std::vector<double>* const recorded = samples.model.find(Quantity::normal_acceleration))
     return *recorded;
   std::vector<double> factor = samples.motion.roll;  // of a level turn
-  for (double& each : factor) each = 1.0 / std::max(0.1, std::cos(each * constants::radians_per_degree));
+  for (double& each : factor)
+    each = 1.0 / std::max(std::cos(each * constants::radians_per_degree), 0.1);  // NaN stays
   return factor;
 }
 
@@ -114,6 +116,7 @@ class Likelihood {
     inner.diagonal().array() += 1.0;
     const Eigen::VectorXd right = size.cwiseProduct(left_.col(count).head(count));
     const Eigen::LLT<Eigen::MatrixXd> factor(inner);
+    if (factor.info() != Eigen::Success) return impossible;  // by rounding
     const double determinant = 2.0 * factor.matrixL().toDenseMatrix().diagonal().array().log().sum();
     return determinant - right.dot(factor.solve(right));
   }

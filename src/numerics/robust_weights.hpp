@@ -14,9 +14,6 @@ inline constexpr double huber_width = 4.0;
 /// The weight of a residual in a fit with Huber's loss, 0 to 1.
 inline double huber_weight(double ratio) { return huber_width / std::max(std::abs(ratio), huber_width); }
 
-/// The derivative of residual times weight by the residual: what it adds to the information.
-inline double huber_slope(double ratio) { return std::abs(ratio) < huber_width ? 1.0 : 0.0; }
-
 /// Beyond this Tukey's loss gives a residual no weight: 95 % efficiency on normal noise (Holland and Welsch
 /// 1977, Communications in Statistics A6, 813).
 inline constexpr double tukey_width = 4.685;

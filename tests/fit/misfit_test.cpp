@@ -8,6 +8,7 @@
 #include "support/made_samples.hpp"
 
 using namespace pcor;
+using namespace pcor::internal;
 
 namespace {
 
@@ -33,6 +34,34 @@ RefitResult fit(double (*defect)(double, double, double, double)) {
 }  // namespace
 
 TEST(Misfit, OfARightLawIsBelowItsNoise) { EXPECT_LT(fit(made::equation_18).left, 0.05); }
+
+// A missing roll was taken for a load factor of 10.
+TEST(Misfit, HasNoLoadFactorWithoutRoll) {
+  made::Plan plan;
+  plan.defect = made::equation_18;
+  FlightSamples samples = made::flight(plan);
+  const std::size_t half = samples.time.size() / 2;
+  for (std::size_t i = 0; i < samples.time.size(); ++i)
+    samples.motion.roll.push_back(i < half ? NAN : 30.0 * std::sin(0.01 * static_cast<double>(i)));
+  const ModelFile model = made::model({"static-constant", "static-alpha", "static-qp"});
+  const References references = made::pressure_reference();
+  const RefitOptions options;
+  const FlightSet set({std::make_shared<const FlightSamples>(samples)});
+  FitTask task{
+      model, *references.front(), options, set, fit_parameters(model, *references.front(), options), {}, {},
+      [] {}};
+  task.start = Eigen::Vector3d(0.004, 0.02, 0.03);
+  FitFlights flights(task, FitSetup{task.start, {0, 1, 2}});
+  const MisfitColumns columns(flights);
+  constexpr Eigen::Index load_factor = 4 * 7;
+  const auto of_half = flights.of_each([&](std::size_t, FitFlight& fit) {
+    const Eigen::MatrixXd bumps = columns(fit).middleCols(load_factor, 7);
+    const Eigen::Index without = bumps.rows() / 2 - 1;  // a bin may lie across
+    return std::pair(bumps.topRows(without).norm(), bumps.bottomRows(without).norm());
+  });
+  EXPECT_EQ(of_half.front().first, 0.0);
+  EXPECT_GT(of_half.front().second, 1.0);
+}
 
 TEST(Misfit, OfALawThatLacksAFunctionOfTheStateIsItsSize) {
   const RefitResult right = fit(made::equation_18);
