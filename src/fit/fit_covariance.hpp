@@ -21,7 +21,8 @@ struct FitCovariance {
   /// Of the parameters of all equations, in their order, and after them of those that were held at a value of
   /// which the files state the error. Zero for those at a bound.
   Eigen::MatrixXd matrix{};
-  /// Of the parameters of the equations by the noise alone, without the misfit of the law.
+  /// Of the parameters of the equations by the noise and what held coefficients may err by, without the
+  /// misfit of the law.
   Eigen::MatrixXd by_noise{};
   /// The standard errors of the parameters of the equations by leaving out one flight, or one part of a
   /// flight, after another: they need no model of the noise.

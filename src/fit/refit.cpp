@@ -232,7 +232,10 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelFile& model, const R
   FitFlights& flights = *fitted.flights;
   const MisfitColumns misfit_columns(flights);
   const Misfit misfit = find_misfit(flights, misfit_columns, solution);
-  for (const FitEquations& each : fitted.equations) {
+  // The weights are those of the noise without the misfit from now on.
+  fitted.solution.deviation = flights.deviation(solution.values);
+  for (FitEquations& each : fitted.equations) {
+    each.solution.deviation = solution.deviation;
     if (each.flights == &flights) continue;
     each.flights->share_noise(flights);
     each.flights->prepare(solution.values);

@@ -276,7 +276,7 @@ class WhatIf {
 
   // By how much chi2 falls from the model fitted again to what is shown now.
   get fallOfNow() {
-    return this.fit.gain(this.fit.fit([], new Map(), this.own, this.now.weights), this.now);
+    return this.fit.gain(this.fit.fit([], new Map(), this.own, this.now.weights), this.now, [...this.on]);
   }
 
   showFigures() {

@@ -177,15 +177,16 @@ class WhatIfFit {
   fall(before, after, byHand, own) {
     const weights = this.weightsOf(after);
     const without = this.fit(before, byHand, own, weights), now = this.fit(after, byHand, own, weights);
-    return this.gain(without, now);
+    return this.gain(without, now, after.filter((effect) => !before.includes(effect)));
   }
 
-  // By how much chi2 falls from one fit to another with more coefficients, of the same weights, in units of the noise
-  // with its memory: that of the mean of the scores of what is added.
-  gain(without, {squares, free, weights: {scores, whole}}) {
-    const added = free.filter((c) => !without.free.includes(c));
-    const variance = added.reduce((sum, c) => sum + scores[c][c] / whole.matrix[c][c], 0) / added.length;
-    return added.length ? (without.squares - squares) / variance : 0;
+  // By how much chi2 falls from one fit to another of the same weights, with some effects more, in units of the noise
+  // with its memory: the mean of the scores of the effects, or where none is added of the coefficients that were fitted.
+  gain(without, {squares, weights: {scores, whole}}, effects) {
+    const added = effects.flatMap((effect) => [...this.coefficientsOf(effect)]);
+    const told = (added.length ? added : without.free).filter((c) => whole.matrix[c][c] > 0);
+    const variance = told.reduce((sum, c) => sum + scores[c][c] / whole.matrix[c][c], 0) / told.length;
+    return variance > 0 ? (without.squares - squares) / variance : 0;
   }
 
   // How alike two changes are in units of the noise that is left with all that was found, -1 to 1.

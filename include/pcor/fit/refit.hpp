@@ -60,7 +60,7 @@ struct FittedParameter {
   /// With the memory and the slow drift of the noise, and with what held coefficients may err by; NaN where
   /// it was not fitted or is at a bound.
   double standard_error = 0.0;
-  double noise_error = 0.0;  ///< of that the part by the noise alone, without the misfit of the law
+  double noise_error = 0.0;  ///< the same without the misfit of the law
   /// The standard error that leaving out one flight, or one part of a flight, after another gives, without a
   /// model of the noise.
   double jackknife_error = 0.0;
