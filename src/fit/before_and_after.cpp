@@ -15,6 +15,16 @@ void serialize(Archive& archive, FlightFit& flight) {
           flight.gain_error, flight.reference);
 }
 
+std::optional<HeldOutPart> worst_held_out(const std::vector<FlightFit>& flights) {
+  std::optional<HeldOutPart> worst;
+  const auto excess = [](const HeldOutPart& part) { return std::abs(part.statistics.bias) / part.expected; };
+  for (const FlightFit& flight : flights) {
+    const HeldOutPart part{flight.flight, flight.after, flight.expected_bias};
+    if (flight.holdout && part.expected > 0.0 && (!worst || excess(part) > excess(*worst))) worst = part;
+  }
+  return worst;
+}
+
 namespace internal {
 namespace {
 
@@ -68,8 +78,8 @@ std::vector<Compared> held_out(const FitTask& task, const Eigen::VectorXd& value
   return flights.share().of_each_flight<Compared>([&](std::size_t number) {
     const auto samples = flights.samples(number, task.model, task.reference, task.options.mask);
     constexpr double fitted = 0.0;  // part of the samples
-    const LinearRows rows(Residuals(samples, task.model, task.reference, task.options.mask), task.model,
-                          task.reference, {Inputs::none, {}, fitted});
+    const LinearRows rows(residuals_at(samples, task, values), task.model, task.reference,
+                          {Inputs::none, {}, fitted});
     return compared(rows, task, values);
   });
 }
@@ -119,11 +129,7 @@ BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& valu
   all.flaps_out = with_flaps.statistics();
   for (const Compared& one : each) {
     for (FlightFit part : one.parts) {
-      if (part.holdout) {
-        part.expected_bias = fitted.expected_bias(one.held_out_blocks);
-        const HeldOutPart judged{part.flight, part.after, part.expected_bias};
-        if (judged.is_off()) all.notes.push_back(judged.text());
-      }
+      if (part.holdout) part.expected_bias = fitted.expected_bias(one.held_out_blocks);
       all.flights.push_back(std::move(part));
     }
   }

@@ -91,14 +91,26 @@ Eigen::VectorXd own_parameters(const Residuals& residuals, const FitTask& task,
   return own;
 }
 
+Residuals residuals_at(std::shared_ptr<const FlightSamples> samples, const FitTask& task,
+                       const Eigen::VectorXd& parameters) {
+  Residuals residuals(std::move(samples), task.model, task.reference, std::vector<Mask>());
+  residuals.set_mask(
+      residuals.masks_at(own_parameters(residuals, task, parameters).data(), task.options.mask));
+  return residuals;
+}
+
 FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask& task, const FitSetup& setup)
     : task_(&task),
       setup_(&setup),
       moving_(samples->model.moving.empty() ? nullptr : std::make_shared<FlightSamples>(*samples)),
-      rows_(Residuals(moving_ ? moving_ : std::move(samples), task.model, task.reference, task.options.mask),
-            task.model, task.reference,
-            {Inputs::recorded, setup.wanted, task.options.training_share, setup.regimes}),
+      rows_(residuals_at(moving_ ? moving_ : std::move(samples), task, setup.values), task.model,
+            task.reference, {Inputs::recorded, setup.wanted, task.options.training_share, setup.regimes}),
       static_pressure_(rows_.samples().model.find(Quantity::static_pressure)) {}
+
+bool FitFlight::masks_change_at(const Eigen::VectorXd& parameters) const {
+  const Eigen::VectorXd own = own_parameters(residuals(), *task_, parameters);
+  return residuals().masks_at(own.data(), task_->options.mask) != residuals().mask();
+}
 
 void FitFlight::prepare(const Eigen::VectorXd& parameters) {
   if (parameters.size() == prepared_parameters_.size() && parameters == prepared_parameters_) return;

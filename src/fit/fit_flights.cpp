@@ -93,6 +93,16 @@ bool FitFlights::sees_parameters() {
   return std::any_of(largest.begin(), largest.end(), [](double each) { return each > 0.0; });
 }
 
+bool FitFlights::masks_change_at(const Eigen::VectorXd& parameters) {
+  bool change = false;
+  for (FitFlights* const each : joint()) {
+    for (const bool one : each->of_each(
+             [&](std::size_t, FitFlight& fit) { return fit.masks_change_at(parameters); }, parameters))
+      change = change || one;
+  }
+  return change;
+}
+
 std::vector<FitFlights*> FitFlights::joint() {
   std::vector<FitFlights*> all{this};
   all.insert(all.end(), seeing_.begin(), seeing_.end());

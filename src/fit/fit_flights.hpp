@@ -25,7 +25,7 @@ namespace pcor::internal {
 
 /// What a stage of a fit takes from the flights.
 struct FitSetup {
-  Eigen::VectorXd values{};           ///< of all parameters, from which it goes on
+  Eigen::VectorXd values{};           ///< of all parameters, from which it goes on; masks are of these
   std::vector<std::size_t> wanted{};  ///< the parameters that are fitted
   /// Where there are any, only samples of these take part, and every interval has its own offset of
   /// delta-p/p.
@@ -45,6 +45,10 @@ std::size_t shared_parameters(const Residuals& residuals, const FitTask& task);
 /// The parameters of residuals, as a fit has them where it has them, else as their file.
 Eigen::VectorXd own_parameters(const Residuals& residuals, const FitTask& task,
                                const Eigen::VectorXd& parameters);
+
+/// The residuals of a flight, with the masks at these parameters of the fit.
+Residuals residuals_at(std::shared_ptr<const FlightSamples> samples, const FitTask& task,
+                       const Eigen::VectorXd& parameters);
 
 /// One flight of a fit with one reference: the samples that take part, in bins of a few seconds, or as long
 /// as a residual holds together, and their residuals and derivatives in units of the noise and without its
@@ -74,6 +78,9 @@ class FitFlight {
   /// Finds samples that depart from their neighbours at these parameters, which are left out from now on, and
   /// prepares the bins of the others. With a loss of least squares none is left out.
   void prepare(const Eigen::VectorXd& parameters);
+
+  /// Whether other samples take part at these parameters.
+  bool masks_change_at(const Eigen::VectorXd& parameters) const;
 
   /// Sets the noise, number `flight` of `noise`; without one all bins count alike.
   void set_noise(const FitNoise& noise, std::size_t flight);
@@ -228,6 +235,9 @@ class FitFlights {
         },
         digest_of(parameters));
   }
+
+  /// Whether in any flight other samples take part at these parameters.
+  bool masks_change_at(const Eigen::VectorXd& parameters);
 
   Reduction reduce(const Eigen::VectorXd& parameters, const ScaledLoss& loss);
 

@@ -140,8 +140,13 @@ Fitted fit_in_stages(const FitTask& task) {
   }
   Solution& solution = fitted.solution;
   solution.values = task.start;
-  fitted.flights = std::make_unique<FitFlights>(task, FitSetup{solution.values, fitted.parameters});
-  solution = solve(*fitted.flights, std::move(solution));
+  constexpr int most_masks = 3;
+  for (int round = 0; round < most_masks; ++round) {
+    fitted.flights = std::make_unique<FitFlights>(task, FitSetup{solution.values, fitted.parameters});
+    solution = solve(*fitted.flights, std::move(solution));
+    // The masks are those of the solution, so that the start does not decide.
+    if (!fitted.flights->masks_change_at(solution.values)) break;
+  }
   if (stages.size() > 1) {
     repeat_stages(fitted, task, stages);
     // What comes now, errors, what can be told apart, and what each effect does, is of all samples.

@@ -8,6 +8,7 @@
 
 #include "compare/comparison_panels.hpp"
 #include "fit/coefficient_picture.hpp"
+#include "fit/held_out_panel.hpp"
 #include "fit/lineage.hpp"
 #include "words/phrasing.hpp"
 
@@ -78,6 +79,7 @@ Report refit_report(const RefitResult& fit, const Comparison& comparison) {
   Report& report = panels.report();
   report.title = fmt::format("Refit of {} to {}", unfitted_name(fit.model), fit.reference_text);
   report.subtitle = "Before and after";
+  add_held_out(report, fit.flights);
   report.summary.push_back(fmt::format(
       "The fit brings the rms residual from {:.3f} to {:.3f} hPa over {} samples; the noise is {:.3f} hPa.",
       fit.rms_before, fit.rms, fit.samples, fit.noise_rms));

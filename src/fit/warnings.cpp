@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <pcor/words/utc.hpp>
 #include "fit/loss_function.hpp"
@@ -63,6 +64,8 @@ std::string why_worse(const RefitResult& result, double bulk_rms_before) {
         "samples that were fitted",
         result.rms, result.rms_before);
   }
+  const std::optional<HeldOutPart> held_out = worst_held_out(result.flights);
+  if (held_out && held_out->is_off()) return held_out->text();
   for (const FlightFit& flight : result.flights) {
     if (flight.holdout && flight.after.rms > larger_elsewhere * flight.before.rms) {
       return fmt::format(

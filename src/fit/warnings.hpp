@@ -7,10 +7,10 @@
 
 namespace pcor::internal {
 
-/// Why the fit's own numbers call it worse than the coefficients of the file, a sentence without full stop:
-/// its residuals are larger, by more than 2 % on what was fitted (rms and robust deviation both, since a
-/// robust fit may leave outliers more) or by more than 5 % on a part that was held out. Empty where they are
-/// not.
+/// Why the fitted model should not be used, a sentence without full stop: its residuals are larger than with
+/// the coefficients of the file by more than 2 % on what was fitted (rms and robust deviation both, since a
+/// robust fit may leave outliers more) or by more than 5 % on a part that was held out, or a held-out part is
+/// off by more than the fit expects. Empty otherwise.
 /// @param bulk_rms_before robust deviation with the coefficients of the file, hPa
 std::string why_worse(const RefitResult& result, double bulk_rms_before);
 

@@ -15,6 +15,7 @@
 
 #include "diagnose/diagnosis_panels.hpp"
 #include "diagnose/finding_page.hpp"
+#include "fit/held_out_panel.hpp"
 #include "improve/improvement_pictures.hpp"
 
 namespace pcor {
@@ -81,6 +82,7 @@ ReportTable ladder_table(const Improvement& improvement) {
 }
 
 void summarise(Report& report, const Improvement& improvement) {
+  add_held_out(report, improvement.fit.flights);
   const ImproveStep& first = improvement.steps.front();
   const ImproveStep& last = improvement.steps.back();
   report.summary.push_back(fmt::format(

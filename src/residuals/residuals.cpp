@@ -82,9 +82,7 @@ struct Residuals::Implementation {
 Residuals::Residuals(std::shared_ptr<const FlightSamples> samples, const ModelFile& model,
                      const Reference& reference, const MaskOptions& options)
     : Residuals(std::move(samples), model, reference, std::vector<Mask>()) {
-  const Implementation& own = *implementation_;
-  implementation_->mask =
-      find_masks({this->samples(), own.model, *own.reference, values(parameters().data())}, options);
+  set_mask(masks_at(parameters().data(), options));
 }
 
 Residuals::Residuals(std::shared_ptr<const FlightSamples> samples, const ModelFile& model,
@@ -102,6 +100,13 @@ std::size_t Residuals::size() const { return implementation_->samples->time.size
 const std::vector<double>& Residuals::parameters() const { return implementation_->parameters; }
 const std::vector<bool>& Residuals::is_linear() const { return implementation_->linear; }
 const std::vector<Mask>& Residuals::mask() const { return implementation_->mask; }
+
+std::vector<Mask> Residuals::masks_at(const double* parameters, const MaskOptions& options) const {
+  const Implementation& own = *implementation_;
+  return find_masks({samples(), own.model, *own.reference, values(parameters)}, options);
+}
+
+void Residuals::set_mask(std::vector<Mask> mask) { implementation_->mask = std::move(mask); }
 
 std::array<std::size_t, mask_count> Residuals::mask_counts() const {
   std::array<std::size_t, mask_count> counts{};

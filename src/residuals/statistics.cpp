@@ -72,9 +72,9 @@ bool HeldOutPart::is_off() const {
 
 std::string HeldOutPart::text() const {
   return fmt::format(
-      "{}, held out, is off by {:+.3f} hPa (rms {:.3f} hPa), where the fit lets expect 0 +- {:.3f} hPa: "
-      "something changes that the model does not have, be it with time, with the flight, or with what was "
-      "not flown in the fit",
+      "{}, held out, is off by {:+.3f} hPa (rms {:.3f} hPa); the fit expects 0 +- {:.3f} hPa there: "
+      "something that the model lacks changes with time, between flights, or in a regime that the fit did "
+      "not see",
       flight, statistics.bias, statistics.rms, expected);
 }
 

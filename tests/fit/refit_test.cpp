@@ -358,6 +358,24 @@ TEST(Refit, TestsItselfOnWhatItHeldOut) {
   EXPECT_EQ(result.samples, 1800U);
   EXPECT_NEAR(result.flights[1].after.rms, 0.3, 0.03);  // the noise
   EXPECT_GT(result.flights[1].before.rms, 1.0);
+  EXPECT_EQ(result.worse, "");
+}
+
+TEST(Refit, RefusesAModelWhoseHeldOutPartIsOff) {
+  made::Plan plan = plan_18(14);
+  FlightSamples samples = *made::shared(plan);
+  std::vector<double>& reference = samples.reference.columns.front().second;
+  for (std::size_t i = reference.size() / 2; i < reference.size(); ++i)
+    reference[i] += 0.5;  // noise: 0.3 hPa
+  RefitOptions options;
+  options.training_share = 0.5;
+  const RefitResult result =
+      fit({std::make_shared<FlightSamples>(samples)}, made::model(equation_18), options);
+  const std::optional<pcor::HeldOutPart> part = worst_held_out(result.flights);
+  ASSERT_TRUE(part.has_value());
+  EXPECT_TRUE(part->is_off());
+  EXPECT_NEAR(std::abs(part->statistics.bias), 0.5, 0.1);  // the coefficients err by some hundredths
+  EXPECT_EQ(result.worse, part->text());
 }
 
 TEST(Refit, RefusesWhatCannotBeDone) {

@@ -424,8 +424,7 @@ TEST_F(Improve, DoesNotEndSilentWhereWhatIsHeldOutIsOff) {
   EXPECT_THAT(
       improvement.why_stopped,
       HasSubstr(
-          "later.nc, held out, is off by +0.140 hPa (rms 0.272 hPa), where the fit lets expect 0 +- 0.030 "
-          "hPa"));
+          "later.nc, held out, is off by +0.140 hPa (rms 0.272 hPa); the fit expects 0 +- 0.030 hPa there"));
 }
 
 TEST_F(Improve, WithoutHeldOutFlightsPartsInTurnCount) {

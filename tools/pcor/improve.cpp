@@ -12,6 +12,7 @@
 #include <pcor/improve/improvement_report.hpp>
 #include "comparison.hpp"
 #include "diagnosis.hpp"
+#include "fit_summary.hpp"
 #include "model_of_flight.hpp"
 #include "progress.hpp"
 #include "refusal.hpp"
@@ -72,11 +73,13 @@ nlohmann::ordered_json as_json(const Improvement& improvement, const Options& op
   json["worse"] = improvement.worse;
   json["flaps_out"] = as_json(improvement.fit.flaps_out);
   json["notes"] = improvement.fit.notes;
+  add_fit_summary(json, improvement.fit);
   json["model"] = options.output;
   return json;
 }
 
 void print(const Improvement& improvement, const ChosenReferences& references, const Options& options) {
+  print_fit_summary(improvement.fit);
   print_references(references);
   say("reference: {}\n", improvement.fit.reference_text);
   say("fitted to {} samples; not used: {}\n", improvement.fit.samples, mask_text(improvement.fit.masks));

@@ -14,6 +14,7 @@
 #include <pcor/fit/refit_report.hpp>
 #include <pcor/words/error.hpp>
 #include "comparison.hpp"
+#include "fit_summary.hpp"
 #include "flight_table.hpp"
 #include "model_of_flight.hpp"
 #include "progress.hpp"
@@ -136,10 +137,7 @@ nlohmann::ordered_json as_json(const RefitResult& result) {
   json["bulk_rms_hpa"] = result.bulk_rms;
   json["noise_rms_hpa"] = result.noise_rms;
   json["drift_rms_hpa"] = result.drift_rms;
-  json["drift_hpa"] = result.drift_rms;
-  json["left_hpa"] = result.left;
-  json["least_squares_rms_hpa"] = result.least_squares_rms;
-  json["estimator"] = std::string(refit_estimator);
+  add_fit_summary(json, result);
   json["r2"] = result.r_squared;
   json["samples"] = result.samples;
   json["outliers"] = result.outliers;
@@ -183,13 +181,10 @@ void print_further(const std::vector<FlightFit>& further) {
 }
 
 void print_result(const RefitResult& result, const ChosenReferences& references) {
+  print_fit_summary(result);
   print_references(references);
   for (const std::string& warning : result.warnings) say("Warning: {}.\n\n", warning);
   say("{}\n", refit_estimator);
-  if (result.left > 0.0)
-    say("The law lacks {:.2f} hPa (rms) that varies with the flight state; slow drift of the noise: {:.2f} "
-        "hPa.\n",
-        result.left, result.drift_rms);
   say("reference: {}\n", result.reference_text);
   say("fitted to {} samples; not used: {}\n", result.samples, mask_text(result.masks));
   print_flaps_out(result.flaps_out, "the fit");

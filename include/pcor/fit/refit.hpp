@@ -82,13 +82,16 @@ struct FlightFit {
   bool holdout = false;
   Statistics before;
   Statistics after;
-  double expected_bias = 0.0;  ///< of a part that was held out, see `HeldOutPart`, hPa
+  double expected_bias = 0.0;  ///< `HeldOutPart::expected` of a part that was held out, hPa
   /// Fall of the squared residuals by the fit, in units of the noise, and its error from how it differs
   /// between minutes.
   double gain = 0.0;
   double gain_error = 0.0;
   std::string reference{};  ///< as `Reference::name` has it
 };
+
+/// Of the parts that were held out, that whose bias is largest compared with what the fit expects.
+std::optional<HeldOutPart> worst_held_out(const std::vector<FlightFit>& flights);
 
 struct RefitResult {
   ModelFile model;                       ///< with coefficients, standard errors, covariance and provenance
@@ -121,7 +124,8 @@ struct RefitResult {
   Statistics
       flaps_out;  ///< of samples that are in no fit because flaps are out, with the fitted coefficients
   std::string reference_text{};
-  /// Why the fit's own numbers call it worse than the coefficients of the file; empty where they do not.
+  /// Why the model should not be used: the fit is worse than the coefficients of the file, or a held-out part
+  /// is off by more than the fit expects. Empty otherwise.
   std::string worse{};
   std::vector<std::string> warnings{};  ///< why the fit should not be trusted, a sentence each
   std::vector<std::string> notes{};     ///< what a user should know, a sentence each, the gravest first

@@ -47,8 +47,13 @@ class Residuals {
   /// effects of the catalogue at the static ports, where delta-p has no lower limit.
   const std::vector<bool>& is_linear() const;
 
-  /// Which samples take part with the parameters of the files.
+  /// Which samples take part; with the parameters of the files unless masks were set.
   const std::vector<Mask>& mask() const;
+
+  /// The masks with the residual at these parameters: bursts are seen in it.
+  std::vector<Mask> masks_at(const double* parameters, const MaskOptions& options) const;
+  void set_mask(std::vector<Mask> mask);
+
   std::array<std::size_t, mask_count> mask_counts() const;
 
   /// The residual of every sample, NaN where a value is missing. @param parameters all of them

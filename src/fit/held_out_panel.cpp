@@ -1,0 +1,44 @@
+#include "fit/held_out_panel.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <utility>
+
+#include "words/phrasing.hpp"
+
+namespace pcor::internal {
+namespace {
+
+/// The bias of each held-out part, and what the fit expects.
+DotPanel held_out_panel(const std::vector<FlightFit>& flights) {
+  DotPanel panel;
+  panel.title = "Held-out parts";
+  panel.caption =
+      "The mean residual of each part that took no part in the fit. The bar about zero is the standard "
+      "deviation that the fit expects from how the residual wanders where it was fitted.";
+  panel.axis = "bias";
+  panel.unit = "hPa";
+  panel.series = {"held out", "expected"};
+  for (const FlightFit& flight : flights) {
+    if (!flight.holdout) continue;
+    const HeldOutPart part{flight.flight, flight.after, flight.expected_bias};
+    panel.rows.push_back(
+        {flight.flight,
+         {{flight.after.bias, 0.0}, {0.0, flight.expected_bias}},
+         fmt::format("{:+.3f} hPa, expected 0 ± {:.3f}", flight.after.bias, flight.expected_bias),
+         part.is_off() ? ReportTone::bad : ReportTone::good});
+  }
+  return panel;
+}
+
+}  // namespace
+
+void add_held_out(Report& report, const std::vector<FlightFit>& flights) {
+  const std::optional<HeldOutPart> worst = worst_held_out(flights);
+  if (!worst) return;
+  if (worst->is_off()) report.summary.push_back(sentence(worst->text()));
+  report.items.emplace_back(held_out_panel(flights));
+}
+
+}  // namespace pcor::internal
