@@ -94,7 +94,11 @@ struct FlightSet::Entry {
   ~Entry() {
     if (!memory) return;
     memory->open.remove(this);
-    memory->kept.remove_if([this](const Memory::Kept& each) { return each.flight == this; });
+    memory->kept.remove_if([this](const Memory::Kept& each) {
+      if (each.flight != this) return false;
+      memory->free += each.bytes;
+      return true;
+    });
   }
 
   const Flight& open() {

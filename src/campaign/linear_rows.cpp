@@ -109,7 +109,10 @@ Eigen::MatrixXd LinearRows::evaluate(const std::vector<std::size_t>& samples, co
 
 Eigen::MatrixXd LinearRows::means(const Binning& bins, const double* parameters,
                                   const std::vector<std::size_t>& wanted) const {
-  const Eigen::MatrixXd rows = evaluate(used_, parameters, wanted);
+  return bin_means(bins, evaluate(used_, parameters, wanted));
+}
+
+Eigen::MatrixXd LinearRows::bin_means(const Binning& bins, const Eigen::MatrixXd& rows) const {
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(as_index(bins.size()), rows.cols());
   std::size_t i = 0;
   for (std::size_t k = 0; k < bins.records().size(); ++k) {

@@ -76,6 +76,9 @@ class LinearRows {
   /// The bins of a series that has a value where a sample counts, NaN elsewhere.
   Binning bins(const std::vector<double>& series) const { return bins_of(samples(), window_, series); }
 
+  /// The means over the bins of columns that have a row for each used sample.
+  Eigen::MatrixXd bin_means(const Binning& bins, const Eigen::MatrixXd& rows) const;
+
   /// The means over the bins of derivatives by some parameters, and behind them of the residual.
   Eigen::MatrixXd means(const Binning& bins, const double* parameters,
                         const std::vector<std::size_t>& wanted) const;

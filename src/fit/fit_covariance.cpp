@@ -91,6 +91,7 @@ struct Sums {
   std::vector<BlockSums> blocks;
   Eigen::MatrixXd covariance;  ///< of the sum of the scores by the noise
   Eigen::MatrixXd misfit;      ///< derivatives of the sum of the scores by the misfit of the law
+  Eigen::MatrixXd doubt;       ///< the same by the doubts of the reference, each by one standard uncertainty
   double squares = 0.0;        ///< of the influence
   double slopes = 0.0;         ///< of the loss
 
@@ -98,20 +99,34 @@ struct Sums {
   void add(const Sums& other) {
     covariance += other.covariance;
     misfit += other.misfit;
+    doubt += other.doubt;
     squares += other.squares;
     slopes += other.slopes;
   }
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(blocks, covariance, misfit, squares, slopes);
+    archive(blocks, covariance, misfit, doubt, squares, slopes);
   }
 };
 
+/// The doubts of all references of a fit, by name: an error of the thermometer is one in all of them.
+std::vector<std::string> doubts_of(FitFlights& flights) {
+  std::vector<std::string> names;
+  for (const FitFlights* const each : flights.joint()) {
+    for (const std::string& name : each->doubt().names()) {
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+  }
+  return names;
+}
+
 /// Of one reference. @param all the parameters of all equations and those that are held
-/// @param misfit of the law; null for a further reference
+/// @param columns_of_misfit of the law; null for a further reference
+/// @param between_flights variance of the zero of each flight, hPa^2
 Sums sums_of(FitFlights& flights, const FitEquations& equations, const std::vector<std::size_t>& all,
-             const Blocks& blocks, const MisfitColumns* misfit) {
+             const Blocks& blocks, const MisfitColumns* columns_of_misfit, double between_flights,
+             const std::vector<std::string>& doubts) {
   const Solution& solution = equations.solution;
   const ScaledLoss loss(flights.task().options.loss, solution.deviation);
   const NormalLoss normal(loss, solution.deviation);
@@ -120,12 +135,16 @@ Sums sums_of(FitFlights& flights, const FitEquations& equations, const std::vect
   std::vector<Eigen::Index> rows;  // of the own parameters among all
   for (const std::size_t p : equations.parameters)
     rows.push_back(std::find(all.begin(), all.end(), p) - all.begin());
+  std::vector<Eigen::Index> doubt_places;  // of the doubts of this reference among all
+  for (const std::string& name : flights.doubt().names())
+    doubt_places.push_back(std::find(doubts.begin(), doubts.end(), name) - doubts.begin());
   const BlockSums nothing{Eigen::MatrixXd::Zero(own, size), Eigen::VectorXd::Zero(own)};
   const auto sums_of_flight = [&](std::size_t number, FitFlight& fit) {
     Sums sums;
     sums.blocks.assign(blocks.count(number), nothing);
     sums.covariance = Eigen::MatrixXd::Zero(own, own);
     sums.misfit = Eigen::MatrixXd::Zero(own, MisfitColumns::count());
+    sums.doubt = Eigen::MatrixXd::Zero(own, as_index(doubts.size()));
     if (fit.bins().size() == 0) return sums;
     const Eigen::VectorXd innovations = fit.white_rows(solution.values, loss).rightCols(1);
     const Eigen::Index count = innovations.size();
@@ -156,7 +175,14 @@ Sums sums_of(FitFlights& flights, const FitEquations& equations, const std::vect
     } else {
       const Eigen::MatrixXd left = columns(Eigen::all, rows);
       sums.covariance = fit.score_covariance(left, weight);
-      if (misfit != nullptr) sums.misfit = fit.weighted(left, weight).transpose() * (*misfit)(fit);
+      const Eigen::MatrixXd weighted = fit.weighted(left, weight);
+      const Eigen::VectorXd by_zero = weighted.colwise().sum();
+      sums.covariance += between_flights * by_zero * by_zero.transpose();
+      if (columns_of_misfit != nullptr) sums.misfit = weighted.transpose() * (*columns_of_misfit)(fit);
+    }
+    if (!flights.doubt().empty()) {
+      const Eigen::MatrixXd doubted = fit.white_doubts(flights.doubt(), solution.values);
+      sums.doubt(Eigen::all, doubt_places) = slope * columns(Eigen::all, rows).transpose() * doubted;
     }
     for (Eigen::Index i = 0; i < count; ++i) {
       BlockSums& block = sums.blocks[blocks(number, fit.bins().time()[static_cast<std::size_t>(i)])];
@@ -169,6 +195,7 @@ Sums sums_of(FitFlights& flights, const FitEquations& equations, const std::vect
   Sums whole;
   whole.covariance = Eigen::MatrixXd::Zero(own, own);
   whole.misfit = Eigen::MatrixXd::Zero(own, MisfitColumns::count());
+  whole.doubt = Eigen::MatrixXd::Zero(own, as_index(doubts.size()));
   for (const Sums& one : flights.of_each(sums_of_flight, solution.values)) {
     whole.add(one);
     whole.blocks.insert(whole.blocks.end(), one.blocks.begin(), one.blocks.end());
@@ -178,11 +205,12 @@ Sums sums_of(FitFlights& flights, const FitEquations& equations, const std::vect
 
 /// Of all references together: the innovations of one tell nothing of those of another.
 Sums sums_of(const FitEquations& equations, const std::vector<std::size_t>& all, const Blocks& blocks,
-             const MisfitColumns& misfit) {
+             const Misfit& misfit, const MisfitColumns& columns, const std::vector<std::string>& doubts) {
   Sums whole;
   for (FitFlights* const flights : equations.flights->joint()) {
-    const Sums more =
-        sums_of(*flights, equations, all, blocks, flights == equations.flights ? &misfit : nullptr);
+    const bool is_first = flights == equations.flights;
+    const Sums more = sums_of(*flights, equations, all, blocks, is_first ? &columns : nullptr,
+                              is_first ? misfit.between_flights : 0.0, doubts);
     if (whole.blocks.empty()) {
       whole = more;
       continue;
@@ -230,13 +258,16 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const s
   Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(fitted, size);
   Eigen::MatrixXd score = Eigen::MatrixXd::Zero(fitted, fitted);
   Eigen::MatrixXd by_misfit = Eigen::MatrixXd::Zero(fitted, MisfitColumns::count());
+  const std::vector<std::string> doubts = doubts_of(*last.flights);
+  Eigen::MatrixXd by_doubt = Eigen::MatrixXd::Zero(fitted, as_index(doubts.size()));
   const Eigen::Index of_last = as_index(last.parameters.size());
   Eigen::Index first = 0;
   for (const FitEquations& each : equations) {
     const Eigen::Index own = as_index(each.parameters.size());
     if (own == 0) continue;
-    const Sums sums = sums_of(each, all, blocks, misfit_columns);
+    const Sums sums = sums_of(each, all, blocks, misfit, misfit_columns, doubts);
     by_misfit.middleRows(first, own) = sums.misfit;
+    by_doubt.middleRows(first, own) = sums.doubt;
     Eigen::MatrixXd here = Eigen::MatrixXd::Zero(own, size);
     for (std::size_t b = 0; b < left_out.size(); ++b) {
       here += sums.blocks[b].derivatives;
@@ -283,6 +314,11 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const s
     const Eigen::MatrixXd moved = inverse * by_misfit(varying, Eigen::all);
     own += moved * misfit.variance.asDiagonal() * moved.transpose();
   }
+  const Eigen::MatrixXd by_one = -inverse * by_doubt(varying, Eigen::all);
+  own += by_one * by_one.transpose();
+  found.doubts = doubts;
+  found.by_doubt = Eigen::MatrixXd::Zero(fitted, by_one.cols());
+  found.by_doubt(varying, Eigen::all) = by_one;
   const Eigen::MatrixXd across = carried * doubt;
   for (std::size_t a = 0; a < varying.size(); ++a) {
     for (std::size_t b = 0; b < varying.size(); ++b)

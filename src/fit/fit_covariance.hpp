@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "fit/fit_flights.hpp"
@@ -24,6 +25,10 @@ struct FitCovariance {
   /// Of the parameters of the equations by the noise and what held coefficients may err by, without the
   /// misfit of the law.
   Eigen::MatrixXd by_noise{};
+  /// Names of the doubts of the references, and by how much one standard uncertainty of each changes the
+  /// parameters of the equations.
+  std::vector<std::string> doubts{};
+  Eigen::MatrixXd by_doubt{};
   /// The standard errors of the parameters of the equations by leaving out one flight, or one part of a
   /// flight, after another: they need no model of the noise.
   Eigen::VectorXd jackknife{};

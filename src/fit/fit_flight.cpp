@@ -231,6 +231,12 @@ Eigen::MatrixXd FitFlight::white_columns(const Eigen::VectorXd& parameters,
   return white(means(parameters, wanted).leftCols(as_index(wanted.size())));
 }
 
+Eigen::MatrixXd FitFlight::white_doubts(const ReferenceDoubt& doubt,
+                                        const Eigen::VectorXd& parameters) const {
+  const Eigen::VectorXd own = own_parameters(residuals(), *task_, parameters);
+  return white(rows_.bin_means(bins_, doubt.columns(residuals().shared_samples(), kept(), own.data())));
+}
+
 Eigen::MatrixXd FitFlight::unweighted_factor(const Eigen::VectorXd& parameters) const {
   const Known known = known_of(setup_->wanted, residuals(), *task_);
   const Eigen::VectorXd own = own_parameters(residuals(), *task_, parameters);

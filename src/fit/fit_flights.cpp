@@ -53,7 +53,11 @@ std::uint64_t digest_of(const Eigen::VectorXd& parameters) {
 }
 
 FitFlights::FitFlights(const FitTask& task, FitSetup setup)
-    : task_(task), setup_(std::move(setup)), cache_(task.flights.size()) {
+    : task_(task),
+      setup_(std::move(setup)),
+      doubt_(task.model, task.reference, task.options.trust_reference),
+      cache_(task.flights.size()),
+      reserved_{task.flights} {
   const auto counts = of_each([](std::size_t, FitFlight& fit) {
     const std::vector<double>& time = fit.bins().time();
     return FlightCounts{fit.kept().size(),
@@ -79,8 +83,6 @@ FitFlights::FitFlights(const FitTask& task, FitSetup setup)
     if (further_.back()->sees_parameters()) seeing_.push_back(further_.back().get());
   }
 }
-
-FitFlights::~FitFlights() { task_.flights.release(cached_bytes_); }
 
 /// Whether any derivative is not zero, and the bins are enough to find the noise.
 bool FitFlights::sees_parameters() {
@@ -135,7 +137,7 @@ std::shared_ptr<FitFlight> FitFlights::made(std::size_t number,
   const std::size_t bytes =
       (own_samples + columns * fit->bins().size() + fit->kept().size()) * sizeof(double);
   if (task_.flights.reserve(bytes)) {
-    cached_bytes_ += bytes;
+    reserved_.bytes += bytes;
     cache_[number] = fit;
   }
   return fit;

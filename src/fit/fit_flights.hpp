@@ -15,6 +15,7 @@
 
 #include <pcor/residuals/residuals.hpp>
 #include "campaign/linear_rows.hpp"
+#include "campaign/reference_doubt.hpp"
 #include "fit/fit_task.hpp"
 #include "fit/loss_function.hpp"
 #include "numerics/noise_model.hpp"
@@ -99,6 +100,9 @@ class FitFlight {
   /// Derivatives by any parameters, in units of the noise and without its memory.
   Eigen::MatrixXd white_columns(const Eigen::VectorXd& parameters,
                                 const std::vector<std::size_t>& wanted) const;
+
+  /// What one standard uncertainty of each doubt of the reference does to the residual, in the same units.
+  Eigen::MatrixXd white_doubts(const ReferenceDoubt& doubt, const Eigen::VectorXd& parameters) const;
 
   /// Weighted columns of one row for each bin: by the root of the samples in a bin over the deviation of the
   /// reference, as least squares of samples weighs them. Where the reference holds many samples together
@@ -191,12 +195,12 @@ struct Reduction {
 class FitFlights {
  public:
   FitFlights(const FitTask& task, FitSetup setup);
-  ~FitFlights();
   FitFlights(const FitFlights&) = delete;
   FitFlights& operator=(const FitFlights&) = delete;
 
   const FitTask& task() const { return task_; }
   const FitSetup& setup() const { return setup_; }
+  const ReferenceDoubt& doubt() const { return doubt_; }
 
   /// The same flights with each further reference.
   const std::vector<std::unique_ptr<FitFlights>>& further() const { return further_; }
@@ -282,8 +286,14 @@ class FitFlights {
 
   const FitTask& task_;
   const FitSetup setup_;  // the flights in the cache point to it
+  const ReferenceDoubt doubt_;
   std::vector<std::shared_ptr<FitFlight>> cache_;
-  std::atomic<std::size_t> cached_bytes_{0};
+  /// Memory of the set that is given back, also where the constructor throws.
+  struct Reservation {
+    const FlightSet& flights;
+    std::atomic<std::size_t> bytes{0};
+    ~Reservation() { flights.release(bytes); }
+  } reserved_;
   std::vector<bool> linear_;
   std::size_t samples_ = 0;
   std::size_t offsets_ = 0;

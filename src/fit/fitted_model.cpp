@@ -38,6 +38,12 @@ Provenance provenance_of(const RefitResult& fit, Loss loss) {
   return provenance;
 }
 
+/// Whether a name of the covariance is that of a sensor's calibration, of which the model has no effect.
+bool is_sensor(const std::string& name, const RefitResult& fit) {
+  return std::none_of(fit.parameters.begin(), fit.parameters.end(),
+                      [&](const FittedParameter& parameter) { return parameter.name == name; });
+}
+
 }  // namespace
 
 ModelFile fitted_model(const ModelFile& given, std::size_t first, const RefitResult& fit, Loss loss,
@@ -70,6 +76,13 @@ ModelFile fitted_model(const ModelFile& given, std::size_t first, const RefitRes
       covariance.parameters.push_back(name);
       inside.push_back(
           static_cast<std::size_t>(std::find(known.begin(), known.end(), parameter.name) - known.begin()));
+    }
+  }
+  if (first == 0) {
+    for (std::size_t k = 0; k < known.size(); ++k) {
+      if (!is_sensor(known[k], fit)) continue;
+      covariance.parameters.push_back(known[k]);
+      inside.push_back(k);
     }
   }
   const auto last = fit.parameters.begin() + static_cast<std::ptrdiff_t>(p);

@@ -107,20 +107,41 @@ class Heights {
     left_ = all.bottomRightCorner(rest, rest) - taken_up(all.topLeftCorner(derivatives, derivatives), across);
   }
 
-  /// The covariance of the heights of the bumps after the flights, and the heights.
-  std::pair<Eigen::MatrixXd, Eigen::VectorXd> posterior(const Eigen::VectorXd& variance) const {
+  struct Posterior {
+    Eigen::MatrixXd covariance;
+    Eigen::VectorXd mean;
+    double gain;  ///< logarithm of the restricted likelihood over that without bumps
+  };
+
+  Posterior posterior(const Eigen::VectorXd& variance) const {
     const Eigen::Index count = variance.size();
     const Eigen::VectorXd size = variance.cwiseSqrt();
     Eigen::MatrixXd inner = size.asDiagonal() * left_.topLeftCorner(count, count) * size.asDiagonal();
     inner.diagonal().array() += 1.0;
-    const Eigen::MatrixXd covariance =
-        size.asDiagonal() * inner.llt().solve(Eigen::MatrixXd(size.asDiagonal()));
-    return {covariance, covariance * left_.col(count).head(count)};
+    const Eigen::LLT<Eigen::MatrixXd> factor(inner);
+    const Eigen::MatrixXd covariance = size.asDiagonal() * factor.solve(Eigen::MatrixXd(size.asDiagonal()));
+    const Eigen::VectorXd right = left_.col(count).head(count);
+    const Eigen::VectorXd mean = covariance * right;
+    const double logarithm = factor.matrixLLT().diagonal().array().log().sum();  // of half the determinant
+    return {covariance, mean, 0.5 * right.dot(mean) - logarithm};
   }
 
  private:
   Eigen::MatrixXd left_;
 };
+
+constexpr double least = 1e-3;  // size of a bump over the rms of the residual: as good as none
+
+/// The weight of the model with the misfit beside the one without by Akaike's criterion (Burnham and Anderson
+/// 2002, Model selection and multimodel inference, section 2.9), which counts the variances that are not at
+/// the least. Where the noise explains the residual as well there is no misfit.
+double weight_of(const Heights::Posterior& posterior, const Eigen::VectorXd& variance, double rms) {
+  double parameters = 0.0;
+  for (Eigen::Index s = 0; s < states; ++s) {
+    if (variance[s * bumps] > 4.0 * least * least * rms * rms) parameters += 1.0;
+  }
+  return 1.0 / (1.0 + std::exp(parameters - posterior.gain));
+}
 
 /// The variances at which the restricted likelihood is stationary: that of a state is the sum of squares of
 /// its heights over the number of them that the flights determine (MacKay 1992, Neural Computation 4, 415).
@@ -128,18 +149,17 @@ class Heights {
 /// does not.
 Eigen::VectorXd variances_of(const Heights& heights, double rms) {
   constexpr int most_rounds = 500;
-  constexpr double least = 1e-3;  // of the rms of the residual
-  constexpr double most = 5.0;
+  constexpr double most = 5.0;  // of the rms of the residual
   const auto square = [](double size) { return size * size; };
   Eigen::VectorXd variance = Eigen::VectorXd::Constant(states * bumps, square(0.3 * rms));
   for (int round = 0; round < most_rounds; ++round) {
-    const auto [covariance, height] = heights.posterior(variance);
+    const Heights::Posterior posterior = heights.posterior(variance);
     double change = 0.0;
     for (Eigen::Index s = 0; s < states; ++s) {
       const Eigen::Index first = s * bumps;
       const double before = variance[first];
-      const double determined = bumps - covariance.diagonal().segment(first, bumps).sum() / before;
-      const double found = height.segment(first, bumps).squaredNorm() / std::max(determined, 1e-6);
+      const double determined = bumps - posterior.covariance.diagonal().segment(first, bumps).sum() / before;
+      const double found = posterior.mean.segment(first, bumps).squaredNorm() / std::max(determined, 1e-6);
       const double now = std::clamp(found, square(least * rms), square(most * rms));
       variance.segment(first, bumps).setConstant(now);
       change = std::max(change, std::abs(std::log(now / before)));
@@ -147,6 +167,41 @@ Eigen::VectorXd variances_of(const Heights& heights, double rms) {
     if (change < 1e-3) break;
   }
   return variance;
+}
+
+/// The mean residual of a flight without the misfit, and its variance by the noise.
+struct FlightMean {
+  double value = 0.0;
+  double variance = 0.0;  ///< hPa^2; 0 where the flight has no bin
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(value, variance);
+  }
+};
+
+/// The variance between the means of flights beyond what the noise makes (DerSimonian and Laird 1986,
+/// Controlled Clinical Trials 7, 177), hPa^2. Zero of a single flight.
+double variance_between(const std::vector<FlightMean>& flights) {
+  double weights = 0.0;
+  double squares = 0.0;
+  double sum = 0.0;
+  double count = 0.0;
+  for (const FlightMean& flight : flights) {
+    if (!(flight.variance > 0.0)) continue;
+    const double weight = 1.0 / flight.variance;
+    weights += weight;
+    squares += weight * weight;
+    sum += weight * flight.value;
+    count += 1.0;
+  }
+  if (count < 2.0) return 0.0;
+  double scatter = 0.0;
+  for (const FlightMean& flight : flights) {
+    const double from = flight.value - sum / weights;
+    if (flight.variance > 0.0) scatter += from * from / flight.variance;
+  }
+  return std::max(0.0, (scatter - (count - 1.0)) / (weights - squares / weights));
 }
 
 }  // namespace
@@ -213,19 +268,29 @@ Misfit find_misfit(FitFlights& flights, const MisfitColumns& columns, const Solu
     const double rms = std::sqrt(sum.plain(sum.plain.rows() - 1, sum.plain.cols() - 1) / sum.bins);
     if (!(rms > 0.0) || !sum.white.allFinite()) return misfit;
     const Heights heights(sum, own);
-    misfit.variance = variances_of(heights, rms);
-    const auto [covariance, height] = heights.posterior(misfit.variance);
-    misfit.height = height;
+    const Eigen::VectorXd variance = variances_of(heights, rms);
+    const Heights::Posterior posterior = heights.posterior(variance);
+    const double weight = weight_of(posterior, variance, rms);
+    misfit.variance = weight * variance;
+    misfit.height = weight * posterior.mean;
     const Eigen::Index count = columns.count();
     const Eigen::MatrixXd across = sum.plain.block(0, own, own, count);
     const Eigen::MatrixXd left =
         sum.plain.block(own, own, count, count) - taken_up(sum.plain.topLeftCorner(own, own), across);
-    misfit.left =
-        std::sqrt(std::max(0.0, (left * (covariance + height * height.transpose())).trace()) / sum.bins);
+    misfit.left = std::sqrt(
+        weight *
+        std::max(0.0, (left * (posterior.covariance + posterior.mean * posterior.mean.transpose())).trace()) /
+        sum.bins);
     flights.measure_noise(solution.values, true, [&](const FitFlight& fit) -> Eigen::VectorXd {
       return columns(fit) * misfit.height;
     });
   }
+  misfit.between_flights = variance_between(flights.of_each(
+      [&](std::size_t, FitFlight& fit) -> FlightMean {
+        const Eigen::VectorXd left = fit.rows(solution.values).rightCols(1) - columns(fit) * misfit.height;
+        return left.size() > 0 ? FlightMean{left.mean(), 1.0 / fit.information()} : FlightMean{};
+      },
+      solution.values));
   return misfit;
 }
 

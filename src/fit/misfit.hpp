@@ -11,11 +11,12 @@ namespace pcor::internal {
 /// standardised over the flights, cut off at +-3 and has seven bumps, exp(-((z - c)/0.75)^2/2) with c = -3
 /// ... 3, whose heights are normal with one variance for each state. The variances are the most likely ones
 /// by restricted likelihood, given the noise (Patterson and Thompson 1971, Biometrika 58, 545). States that
-/// are not recorded are left out.
+/// are not recorded are left out. Beside it each flight has a zero of its own.
 struct Misfit {
-  Eigen::VectorXd variance{};  ///< of the height of each bump, hPa^2; empty where none is known
-  Eigen::VectorXd height{};    ///< of each bump, the most likely one, hPa
-  double left = 0.0;           ///< rms of the misfit that the law does not take up, with its uncertainty, hPa
+  Eigen::VectorXd variance{};    ///< of the height of each bump, hPa^2; empty where none is known
+  Eigen::VectorXd height{};      ///< of each bump, the most likely one, hPa
+  double between_flights = 0.0;  ///< variance of a zero of each flight, hPa^2
+  double left = 0.0;  ///< rms of the misfit that the law does not take up, with its uncertainty, hPa
 };
 
 /// The bumps at the bins of flights.

@@ -189,6 +189,32 @@ void list_coefficients(RefitResult& result, const FitTask& task, const Fitted& f
   }
 }
 
+/// Adds the calibration of the thermometer to the covariance, where the flights were fitted with a doubt of
+/// it: it is in the temperature and the airspeed of the corrected samples, too, and partly cancels there.
+void add_thermometer(RefitResult& result, const Fitted& fitted, const FitCovariance& covariance) {
+  const ReferenceDoubt& doubt = fitted.flights->doubt();
+  for (std::size_t d = 0; d < doubt.names().size(); ++d) {
+    const std::string& name = doubt.names()[d];
+    const std::string effect = name.substr(0, name.find('.'));
+    if (std::find(thermometer_calibration.begin(), thermometer_calibration.end(), effect) ==
+        thermometer_calibration.end())
+      continue;
+    const auto column = std::find(covariance.doubts.begin(), covariance.doubts.end(), name);
+    if (column == covariance.doubts.end()) continue;
+    const double size = doubt.sizes()[as_index(d)];
+    std::vector<double> row(result.covariance_names.size(), 0.0);
+    for (std::size_t a = 0; a < fitted.parameters.size(); ++a) {
+      row[a] = size * covariance.by_doubt(as_index(a), column - covariance.doubts.begin());
+      result.covariance[a].push_back(row[a]);
+    }
+    for (std::size_t a = fitted.parameters.size(); a < result.covariance.size(); ++a)
+      result.covariance[a].push_back(0.0);
+    row.push_back(size * size);
+    result.covariance.push_back(std::move(row));
+    result.covariance_names.push_back(name);
+  }
+}
+
 /// What a user should know, the gravest first.
 std::vector<std::string> notes_of(const RefitResult& result, const FitTask& task, const Fitted& fitted,
                                   const Eigen::MatrixXd& covariance, const BeforeAndAfter& compared) {
@@ -273,6 +299,7 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelFile& model, const R
   result.further = std::move(compared.further);
   result.flaps_out = compared.flaps_out;
   list_coefficients(result, task, fitted, covariance);
+  add_thermometer(result, fitted, covariance);
   result.drift_rms = flights.drift_rms();
   result.left = misfit.left;
   result.worse = why_worse(result, before.rms_of(before.bulk_squares));

@@ -13,6 +13,7 @@
 #include "laws/model_names.hpp"
 #include "laws/model_writer.hpp"
 #include "laws/output_table.hpp"
+#include "laws/sensor_doubt.hpp"
 #include "words/text_file.hpp"
 
 namespace pcor {
@@ -51,9 +52,14 @@ ModelUncertainty uncertainty_of(const ModelFile& file) {
   uncertainty.covariance.assign(count * count, 0.0);
   for (std::size_t i = 0; i < count; ++i) uncertainty.covariance[i * count + i] = variances[i];
   const Covariance& stated = file.covariance;
+  constexpr auto absent = static_cast<std::size_t>(-1);
   std::vector<std::size_t> places;
   for (const std::string& name : stated.parameters) {
     const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end() && has_doubt(name)) {
+      places.push_back(absent);
+      continue;
+    }
     if (found == names.end()) {
       throw Error(
           fmt::format("model '{}': its covariance names {}, which is no parameter of it; refit the model",
@@ -62,8 +68,10 @@ ModelUncertainty uncertainty_of(const ModelFile& file) {
     places.push_back(static_cast<std::size_t>(found - names.begin()));
   }
   for (std::size_t i = 0; i < places.size(); ++i) {
-    for (std::size_t j = 0; j < places.size(); ++j)
+    for (std::size_t j = 0; j < places.size() && places[i] != absent; ++j) {
+      if (places[j] == absent) continue;
       uncertainty.covariance[places[i] * count + places[j]] = stated.matrix[i][j];
+    }
   }
   for (const auto& [role, size] : file.uncertainty.roles) uncertainty.random[index(role)] = size;
   uncertainty.static_defect = file.uncertainty.static_defect.value_or(0.0);

@@ -16,6 +16,7 @@
 #include "laws/effect_reader.hpp"
 #include "laws/model_names.hpp"
 #include "laws/output_table.hpp"
+#include "laws/sensor_doubt.hpp"
 #include "words/toml_reader.hpp"
 
 namespace pcor {
@@ -401,7 +402,8 @@ class Reader final : TomlReader {
     if (values.size() != names.size())
       fail(entry, fmt::format("'values' has {} numbers; give {}", values.size(), wanted));
     for (std::size_t i = 0; i < names.size(); ++i) {
-      const double value = *parameter_named(file_.model, names[i]);
+      const double* const own = parameter_named(file_.model, names[i]);
+      const double value = own != nullptr ? *own : 0.0;
       if (std::abs(value - values[i]) <= 1e-9 * std::abs(value)) continue;
       fail(entry, fmt::format("the covariance is of another model: {} was {} there and is {} here; refit the "
                               "model, or remove [covariance] and the stderr of its effects",
@@ -437,6 +439,8 @@ class Reader final : TomlReader {
         uncertainty.static_defect = not_negative(entry);
       } else if (entry.key == "static_defect_ratio") {
         uncertainty.static_defect_ratio = not_negative(entry);
+      } else if (has_doubt(entry.key)) {
+        uncertainty.sensors[std::string(entry.key)] = not_negative(entry);
       } else {
         uncertainty.roles[role_of_sample(entry)] = not_negative(entry);
       }
@@ -466,7 +470,7 @@ class Reader final : TomlReader {
     }
     Names& names = file_.covariance.parameters;
     for (const auto& [node, name] : texts(entry, "the names of parameters, such as [\"static-qp.a2\"]")) {
-      if (!contains(known, name)) {
+      if (!contains(known, name) && !has_doubt(name)) {
         fail(*node, fmt::format("the model has no parameter {}; {}", in_quotes(name),
                                 known.empty() ? "remove [covariance]" : instead_of(name, known)));
       }

@@ -277,8 +277,9 @@ class Writer {
     line("parameters", list(names));
     std::vector<std::string> values;
     for (const std::string& name : covariance.parameters) {
-      if (const double* const value = parameter_named(file.model, name))
-        values.push_back(number(*value, name));
+      const double* const value =
+          parameter_named(file.model, name);  // null for a sensor: at its neutral value
+      values.push_back(number(value != nullptr ? *value : 0.0, name));
     }
     line("values", list(values));
     std::string rows;
@@ -292,12 +293,15 @@ class Writer {
   }
 
   void write_uncertainty(const StatedUncertainty& uncertainty) {
-    if (uncertainty.roles.empty() && !uncertainty.static_defect && !uncertainty.static_defect_ratio) return;
+    if (uncertainty.roles.empty() && uncertainty.sensors.empty() && !uncertainty.static_defect &&
+        !uncertainty.static_defect_ratio)
+      return;
     heading("[uncertainty]");
     const auto stated = [this](std::string_view name, double value) {
       line(name, number(value, fmt::format("the uncertainty of {}", name)));
     };
     for (const auto& [role, value] : uncertainty.roles) stated(facts_of(role).name, value);
+    for (const auto& [coefficient, value] : uncertainty.sensors) stated(key(coefficient), value);
     if (uncertainty.static_defect) stated("static_defect", *uncertainty.static_defect);
     if (uncertainty.static_defect_ratio) stated("static_defect_ratio", *uncertainty.static_defect_ratio);
   }

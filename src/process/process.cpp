@@ -21,6 +21,7 @@
 #include <pcor/words/utc.hpp>
 #include "laws/archived_model.hpp"
 #include "laws/output_table.hpp"
+#include "laws/sensor_doubt.hpp"
 #include "process/copied_variables.hpp"
 #include "process/delay_line.hpp"
 #include "process/origin.hpp"
@@ -93,6 +94,7 @@ class Processing {
   void choose_rate();
   ShortestPeriods choose_periods();
   void leave_out_noise(Quantity rate, const SignalBand& band);
+  ModelFile doubted() const;
   ModelUncertainty uncertainty();
   void note_uncertainty();
   bool states(std::initializer_list<Where> places, std::initializer_list<Quantity> roles) const;
@@ -144,9 +146,21 @@ void Processing::choose_roles() {
   choose_chain();
 }
 
+/// The model, and with it the doubt of its thermometer where uncertainties are found and the model does not
+/// state that of the thermometer: without its main source that of the temperature would be far too small.
+ModelFile Processing::doubted() const {
+  const UncertaintyPart part = options_.uncertainty;
+  const bool wanted = part == UncertaintyPart::systematic || part == UncertaintyPart::total ||
+                      part == UncertaintyPart::total_if_stated;
+  if (!wanted || variable_of(Quantity::recovery_temperature).empty()) return file_;
+  const ModelUncertainty stated = uncertainty_of(file_);
+  if (!stated.has_systematic() && !stated.has_random()) return file_;
+  return with_doubts(file_, doubts_of(file_, thermometer_calibration));
+}
+
 void Processing::choose_chain() {
   BindingError why;
-  std::optional<Chain> chain = Chain::build(file_.model, roles_, &why);
+  std::optional<Chain> chain = Chain::build(doubted().model, roles_, &why);
   if (!chain) fail_model(why.message());
   chain_ = std::make_shared<const Chain>(std::move(*chain));
 }
@@ -219,7 +233,7 @@ void Processing::leave_out_noise(Quantity rate, const SignalBand& band) {
 ModelUncertainty Processing::uncertainty() {
   const UncertaintyPart part = options_.uncertainty;
   if (part == UncertaintyPart::none) return {};
-  ModelUncertainty stated = uncertainty_of(file_);
+  ModelUncertainty stated = uncertainty_of(doubted());
   if (part == UncertaintyPart::systematic) stated = stated.systematic_part();
   if (part == UncertaintyPart::random) stated = stated.random_part();
   if (stated.has_systematic() || stated.has_random()) return stated;
@@ -267,11 +281,18 @@ void Processing::note_uncertainty() {
         "the uncertainties leave out the pressure transducers, since the model does not state those of both; "
         "its table [uncertainty] takes static_pressure and dynamic_pressure");
   }
+  for (const SensorDoubt& doubt : doubts_of(file_, thermometer_calibration)) {
+    if (chain_->effect_count() == file_.model.effects.size()) break;  // none was added
+    note(
+        "the uncertainties take {} to be 0 +- {:g}, the usual size, since the model states none; its table "
+        "[uncertainty] takes \"{}\"",
+        doubt.name(), doubt.size, doubt.name());
+  }
   if (chain_->has_temperature() && !states({Where::temperature, Where::recovery, Where::ambient_temperature},
                                            {Q::recovery_temperature, Q::ambient_temperature})) {
     note(
-        "the uncertainties of temperature and airspeed are without that of the thermometer, of which the "
-        "model states none");
+        "the uncertainties of temperature and airspeed leave out the thermometer, which [uncertainty] of the "
+        "model takes for exact");
   }
 }
 

@@ -96,6 +96,9 @@ Residuals& Residuals::operator=(Residuals&&) noexcept = default;
 Residuals::~Residuals() = default;
 
 const FlightSamples& Residuals::samples() const { return *implementation_->samples; }
+const std::shared_ptr<const FlightSamples>& Residuals::shared_samples() const {
+  return implementation_->samples;
+}
 std::size_t Residuals::size() const { return implementation_->samples->time.size(); }
 const std::vector<double>& Residuals::parameters() const { return implementation_->parameters; }
 const std::vector<bool>& Residuals::is_linear() const { return implementation_->linear; }

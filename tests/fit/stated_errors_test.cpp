@@ -29,6 +29,7 @@ struct Nuisance {
   double flicker = 0.0;     ///< rms of 1/f noise in a decade of frequency, hPa
   bool bursts = false;      ///< half a minute with five times the noise, every ten minutes
   bool stuck = false;       ///< the reference stands still for a minute
+  bool is_off = false;      ///< zero, gain and drift of the reference are off by draws of their usual doubts
 };
 
 void add_process(std::vector<double>& series, std::mt19937_64& engine, double rms, double memory) {
@@ -54,6 +55,13 @@ std::shared_ptr<const pcor::FlightSamples> flight(unsigned seed, const Nuisance&
   // Processes an octave apart of equal rms have a spectrum of 1/f between them; 3.3 octaves are a decade.
   for (double memory = 2.0; nuisance.flicker > 0.0 && memory < 8000.0; memory *= 2.0)
     add_process(reference, engine, nuisance.flicker / std::sqrt(3.3), memory);
+  if (nuisance.is_off) {
+    const double zero = 0.1 * normal(engine);       // hPa, psfd-bias
+    const double gain = 1e-4 * normal(engine);      // psfd-gain
+    const double per_hour = 0.03 * normal(engine);  // hPa/h, psfd-drift
+    for (std::size_t i = 0; i < reference.size(); ++i)
+      reference[i] += zero + gain * reference[i] + per_hour * static_cast<double>(i) / 3600.0;
+  }
   for (std::size_t i = 0; i < reference.size(); ++i) {
     if (nuisance.bursts && i % 600 < 30) reference[i] += 1.5 * normal(engine);
     if (nuisance.stuck && i > 3000 && i < 3060) reference[i] = reference[3000];
@@ -70,7 +78,8 @@ std::shared_ptr<const pcor::FlightSamples> flight(unsigned seed, const Nuisance&
 
 /// Rms of the scores of each coefficient over many fits.
 std::map<std::string, double> scores_of(const Nuisance& nuisance, std::size_t seeds, std::size_t flights,
-                                        const pcor::RefitOptions& options = {}) {
+                                        pcor::RefitOptions options = {}) {
+  options.trust_reference = !nuisance.is_off;
   std::map<std::string, double> squares;
   for (std::size_t s = 0; s < seeds; ++s) {
     Flights all;
@@ -130,4 +139,13 @@ TEST(StatedErrors, HoldInStagesFromAWrongStart) {
   options.stages = {{{pcor::Regime::pitch_manoeuvre}, {"static-alpha"}}};
   expect_right(scores_of({}, seeds, 1, options), seeds, "stages");
   expect_right(scores_of({0.15, 900.0}, seeds, 1, options), seeds, "stages, 0.15 hPa, 900 s");
+}
+
+TEST(StatedErrors, HoldWithAReferenceThatIsOff) {
+  Nuisance nuisance;
+  nuisance.is_off = true;
+  expect_right(scores_of(nuisance, seeds, 1), seeds, "reference off");
+  nuisance.drift = 0.15;
+  nuisance.drift_time = 900.0;
+  expect_right(scores_of(nuisance, seeds, 1), seeds, "reference off, 0.15 hPa, 900 s");
 }

@@ -7,6 +7,13 @@
 
 namespace pcor::tool {
 
+void add_trust_option(CLI::App& command, bool& trust) {
+  command.add_flag(
+      "--trust-reference", trust,
+      "take the calibration of the reference and of the thermometer for exact: standard errors "
+      "leave out what it may be wrong by, as [uncertainty] of the model or the usual sizes state");
+}
+
 void print_fit_summary(const RefitResult& fit) {
   const std::optional<HeldOutPart> held_out = worst_held_out(fit.flights);
   if (held_out && held_out->is_off()) say("Warning: {}.\n\n", held_out->text());

@@ -33,6 +33,7 @@ struct Options {
   double training_share = 1.0;
   bool trace_variables = false;
   bool force = false;
+  bool trust_reference = false;
 };
 
 using tool::as_json;
@@ -131,6 +132,7 @@ ImproveOptions improve_options(const Options& options, const ModelFile& model, c
   improve_with.refit.loss = *loss_named(options.loss);
   improve_with.refit.training_share = options.training_share;
   improve_with.refit.holdout = of.holdout;
+  improve_with.refit.trust_reference = options.trust_reference;
   improve_with.formulas = candidate_formulas(options.candidates, model, of.flights);
   improve_with.trace_variables = options.trace_variables;
   return improve_with;
@@ -212,6 +214,7 @@ std::function<void()> add_improve(CLI::App& program) {
                    "loss function of the fits, which limits the weight of outliers; none: least squares")
       ->check(CLI::IsMember({"tukey", "huber", "soft-l1", "cauchy", "none"}))
       ->capture_default_str();
+  add_trust_option(*command, options->trust_reference);
   add_force_option(*command, options->force);
   add_common_options(*command, options->common);
   add_examples(

@@ -40,6 +40,7 @@ struct Options {
   double training_share = 1.0;
   double memory_mib = 512.0;
   bool prior = false;
+  bool trust_reference = false;
   bool search = false;
   bool force = false;
 };
@@ -84,6 +85,7 @@ RefitOptions refit_options(const Options& options, const FlightSet& holdout) {
   refit.fit_reference = !options.reference_output.empty();
   refit.use_prior = options.prior;
   refit.search = options.search;
+  refit.trust_reference = options.trust_reference;
   refit.training_share = options.training_share;
   refit.holdout = holdout;
   return refit;
@@ -435,6 +437,7 @@ std::function<void()> add_refit(CLI::App& program) {
                    "MiB of samples that are kept between passes over the flights; the rest is read again")
       ->check(is_amount())
       ->capture_default_str();
+  add_trust_option(*command, options->trust_reference);
   add_force_option(*command, options->force);
   add_common_options(*command, options->common);
   add_examples(

@@ -13,6 +13,7 @@ struct LamsAzimuth {
     facts.where = Where::beam_azimuth;
     facts.formula = "dtheta2";
     facts.parameters[0] = {"dtheta2", "deg", 0.0, -45.0, 45.0, 0.5};
+    facts.parameters[0].doubt = 0.3;
     facts.size = "survey 0.02 to 0.2 deg: 0.15 m/s for 0.5 deg at 4 deg of sideslip";
     facts.look_alikes = "static-beta-odd, roll-static";
     facts.manoeuvre = "yaw manoeuvre with a second static pair";

@@ -13,6 +13,7 @@ struct LamsElevation {
     facts.where = Where::beam_elevation;
     facts.formula = "dtheta1";
     facts.parameters[0] = {"dtheta1", "deg", 0.0, -45.0, 45.0, 0.5};
+    facts.parameters[0].doubt = 0.3;
     facts.size =
         "pod pitch 1 deg (C-130), 3.5 deg (GV); survey 0.02 to 0.2 deg: 0.12 hPa for 0.5 deg at 6 deg";
     facts.look_alikes = "static-alpha, static-constant";

@@ -13,6 +13,7 @@ struct LamsScale {
     facts.where = Where::beam_speed;
     facts.formula = "-scale * lams_airspeed";
     facts.parameters[0] = {"scale", "1", 0.0, -0.5, 0.5, 0.001};
+    facts.parameters[0].doubt = 0.002;
     facts.needs = {Quantity::lams_airspeed, Quantity::count, Quantity::count, Quantity::count};
     facts.size =
         "calibration within 0.1 m/s; index of refraction 0.024 m/s at 700 hPa; the constant part of the flow "

@@ -13,6 +13,7 @@ struct PsfdBias {
     facts.where = Where::static_transducer;
     facts.formula = "-offset";
     facts.parameters[0] = {"offset", "hPa", 0.0, -50.0, 50.0, 0.1};
+    facts.parameters[0].doubt = 0.1;
     facts.size = "Paroscientific 0.1 hPa; the laser sees 7 to 35 % of it";
     facts.look_alikes = "static-constant, qcf-zero";
     facts.manoeuvre =

@@ -13,6 +13,7 @@ struct PsfdDrift {
     facts.where = Where::static_transducer;
     facts.formula = "-per_hour * time / 3600";
     facts.parameters[0] = {"per_hour", "hPa/h", 0.0, -20.0, 20.0, 0.03};
+    facts.parameters[0].doubt = 0.03;
     facts.needs = {Quantity::time, Quantity::count, Quantity::count, Quantity::count};
     facts.size = "estimated 0.03 hPa/h: a third of the bias of 0.1 hPa (Paroscientific) within an hour";
     facts.look_alikes = "time-drift, qcf-drift, psfd-thermal";

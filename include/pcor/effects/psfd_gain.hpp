@@ -13,6 +13,7 @@ struct PsfdGain {
     facts.where = Where::static_transducer;
     facts.formula = "-gain * static_pressure";
     facts.parameters[0] = {"gain", "1", 0.0, -0.5, 0.5, 0.0001};
+    facts.parameters[0].doubt = 0.0001;
     facts.needs = {Quantity::static_pressure, Quantity::count, Quantity::count, Quantity::count};
     facts.size = "0.1 hPa at 1000 hPa (Paroscientific): the laser sees 7 to 35 % of it";
     facts.look_alikes = "psfd-bias, static-constant, qcf-gain";

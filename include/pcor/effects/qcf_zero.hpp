@@ -13,6 +13,7 @@ struct QcfZero {
     facts.where = Where::dynamic_transducer;
     facts.formula = "-offset";
     facts.parameters[0] = {"offset", "hPa", 0.0, -50.0, 50.0, 0.3};
+    facts.parameters[0].doubt = 0.3;
     facts.size = "0.34 hPa typical, 0.68 at most (Honeywell PPT); Cooper (2012) has 0.05";
     facts.look_alikes = "static-constant, static-leak, temp-deice-heat, psfd-bias, qcf-gain";
     facts.manoeuvre = "zero on the ramp before taxi; a second static and pitot pair";

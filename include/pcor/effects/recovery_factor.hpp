@@ -13,6 +13,7 @@ struct RecoveryFactorError {
     facts.where = Where::recovery;
     facts.formula = "da";
     facts.parameters[0] = {"da", "1", 0.0, -0.2, 0.2, 0.01};
+    facts.parameters[0].doubt = 0.005;
     facts.size = "0.01 changes delta-p from LAMS by -0.017 hPa (C-130) to -0.11 hPa (GV)";
     facts.look_alikes = "temp-offset, static-qp, static-mach2";
     facts.manoeuvre = "speed run, both branches, at constant temperature";

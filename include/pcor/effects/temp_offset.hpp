@@ -15,6 +15,7 @@ struct TempOffset {
     facts.formula = "-(offset + slope * (recovery_temperature - 273.15))";
     facts.parameters[0] = {"offset", "K", 0.0, -50.0, 50.0, 0.5};
     facts.parameters[1] = {"slope", "1", 0.0, -0.5, 0.5, 0.005};
+    facts.parameters[0].doubt = 0.3;
     facts.needs = {Quantity::recovery_temperature, Quantity::count, Quantity::count, Quantity::count};
     facts.size = "0.3 to 0.55 K: 0.24 hPa/K (C-130), 0.42 hPa/K (GV)";
     facts.look_alikes =

@@ -40,6 +40,9 @@ struct RefitOptions {
   /// two static systems tell only their difference, and what they have in common keeps its value, and the
   /// prior as its error.
   bool use_prior = false;
+  /// The calibration of the references and of the thermometer counts as exact. Otherwise what it may be wrong
+  /// by is part of the standard errors: `ParameterFacts::doubt`, or what `[uncertainty]` of the model states.
+  bool trust_reference = false;
   /// Look for the start by a global search between the bounds, for parameters in which the residual is not
   /// linear.
   bool search = false;
@@ -57,10 +60,10 @@ struct FittedParameter {
   std::string unit;
   double start = 0.0;
   double value = 0.0;
-  /// With the memory and the slow drift of the noise, and with what held coefficients may err by; NaN where
-  /// it was not fitted or is at a bound.
+  /// With the memory and the slow drift of the noise, the misfit of the law, what held coefficients may err
+  /// by, and the doubt of the reference's calibration; NaN where it was not fitted or is at a bound.
   double standard_error = 0.0;
-  double noise_error = 0.0;  ///< the same without the misfit of the law
+  double noise_error = 0.0;  ///< the same without the misfit of the law and without the doubt
   /// The standard error that leaving out one flight, or one part of a flight, after another gives, without a
   /// model of the noise.
   double jackknife_error = 0.0;
@@ -98,7 +101,8 @@ struct RefitResult {
   std::optional<ModelFile> reference{};  ///< of the reference's model, where it was fitted too
   std::vector<FittedParameter> parameters{};
   std::vector<std::string> covariance_names{};
-  /// Of the fitted parameters, and of those that were held with a stated error, which the others carry.
+  /// Of the fitted parameters, and of those that were held with a stated error, which the others carry;
+  /// behind them of the calibration of the thermometer, like "temp-offset.offset", where it is in doubt.
   std::vector<std::vector<double>> covariance{};
   std::size_t samples = 0;
   double rms = 0.0;                ///< hPa, of all samples in the fit, outliers too
@@ -150,8 +154,9 @@ inline constexpr std::string_view refit_estimator =
 ///
 /// Standard errors: M (N + F) M' with the derivatives M of the coefficients by the residuals, the covariance
 /// N of the noise (an autoregression whose level changes every five minutes, and slow drift, by restricted
-/// likelihood) and the covariance F of the misfit of the law (`RefitResult::left`); beside each stands that
-/// of a jackknife.
+/// likelihood) and the covariance F of the misfit of the law (`RefitResult::left`), and what the coefficients
+/// would be if the reference and the thermometer were calibrated otherwise (`RefitOptions::trust_reference`);
+/// beside each stands that of a jackknife.
 ///
 /// @throws Error if a flight cannot be read, nothing is free, no sample is left (with the masks), samples are
 /// fewer than coefficients, bounds leave nothing, or coefficients cannot be told apart on these flights: the

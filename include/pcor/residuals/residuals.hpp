@@ -38,6 +38,7 @@ class Residuals {
   ~Residuals();
 
   const FlightSamples& samples() const;
+  const std::shared_ptr<const FlightSamples>& shared_samples() const;
   std::size_t size() const;
 
   /// The parameters as the models' files have them.
