@@ -9,6 +9,7 @@
 #include "fit/prior.hpp"
 #include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
+#include "numerics/noise_covariance.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -89,24 +90,20 @@ struct BlockSums {
 /// Sums over the bins of one set of equations, of a flight or of all.
 struct Sums {
   std::vector<BlockSums> blocks;
-  Eigen::MatrixXd covariance;  ///< of the sum of the scores by the noise
+  Eigen::MatrixXd covariance;  ///< of the scores of all equations by the noise; zero but for the last ones
   Eigen::MatrixXd misfit;      ///< derivatives of the sum of the scores by the misfit of the law
   Eigen::MatrixXd doubt;       ///< the same by the doubts of the reference, each by one standard uncertainty
-  double squares = 0.0;        ///< of the influence
-  double slopes = 0.0;         ///< of the loss
 
   /// Adds what is of no block.
   void add(const Sums& other) {
     covariance += other.covariance;
     misfit += other.misfit;
     doubt += other.doubt;
-    squares += other.squares;
-    slopes += other.slopes;
   }
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(blocks, covariance, misfit, doubt, squares, slopes);
+    archive(blocks, covariance, misfit, doubt);
   }
 };
 
@@ -121,81 +118,115 @@ std::vector<std::string> doubts_of(FitFlights& flights) {
   return names;
 }
 
-/// Of one reference. @param all the parameters of all equations and those that are held
-/// @param columns_of_misfit of the law; null for a further reference
-/// @param between_flights variance of the zero of each flight, hPa^2
-Sums sums_of(FitFlights& flights, const FitEquations& equations, const std::vector<std::size_t>& all,
-             const Blocks& blocks, const MisfitColumns* columns_of_misfit, double between_flights,
-             const std::vector<std::string>& doubts) {
+/// What the scores of a stage are sums with, in the bins of a flight.
+struct StageScores {
+  Eigen::Index first;  // of its parameters among all
+  std::vector<double> time;
+  Eigen::MatrixXd columns;
+};
+
+/// The columns of all equations in the bins of the last ones, where the bins of a stage are some of them.
+Eigen::MatrixXd joined(const std::vector<StageScores>& stages, const std::vector<double>& time,
+                       const Eigen::MatrixXd& last, Eigen::Index fitted) {
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(last.rows(), fitted);
+  all.rightCols(last.cols()) = last;
+  for (const StageScores& stage : stages) {
+    for (std::size_t i = 0; i < stage.time.size(); ++i) {
+      // The middle of a bin moves by less than half its width where other samples of it count.
+      auto bin = std::lower_bound(time.begin(), time.end(), stage.time[i] - 0.5 * Binning::usual_width);
+      if (bin == time.end()) continue;
+      all.block(bin - time.begin(), stage.first, 1, stage.columns.cols()) = stage.columns.row(as_index(i));
+    }
+  }
+  return all;
+}
+
+/// What the sums of all references and equations are of.
+struct Scores {
+  const std::vector<std::size_t>& all;  // the parameters of all equations and those that are held
+  Eigen::Index fitted;                  // how many of them are of equations
+  const Blocks& blocks;
+  const Misfit& misfit;
+  const MisfitColumns& misfit_columns;
+  const FitEquations* last;
+  std::vector<std::string> doubts;
+  std::vector<std::vector<StageScores>> stages;  // of each flight with the first reference
+};
+
+/// Of one reference. @param first of the parameters of the equations among all
+Sums sums_of(FitFlights& flights, const FitEquations& equations, Eigen::Index first, Scores& scores) {
+  const std::vector<std::size_t>& all = scores.all;
+  const bool is_first_reference = &flights == equations.flights;
   const Solution& solution = equations.solution;
   const ScaledLoss loss(flights.task().options.loss, solution.deviation);
   const NormalLoss normal(loss, solution.deviation);
   const Eigen::Index size = as_index(all.size());
   const Eigen::Index own = as_index(equations.parameters.size());
-  std::vector<Eigen::Index> rows;  // of the own parameters among all
-  for (const std::size_t p : equations.parameters)
-    rows.push_back(std::find(all.begin(), all.end(), p) - all.begin());
+  const bool is_last = &equations == scores.last;
   std::vector<Eigen::Index> doubt_places;  // of the doubts of this reference among all
   for (const std::string& name : flights.doubt().names())
-    doubt_places.push_back(std::find(doubts.begin(), doubts.end(), name) - doubts.begin());
+    doubt_places.push_back(std::find(scores.doubts.begin(), scores.doubts.end(), name) -
+                           scores.doubts.begin());
   const BlockSums nothing{Eigen::MatrixXd::Zero(own, size), Eigen::VectorXd::Zero(own)};
   const auto sums_of_flight = [&](std::size_t number, FitFlight& fit) {
     Sums sums;
-    sums.blocks.assign(blocks.count(number), nothing);
-    sums.covariance = Eigen::MatrixXd::Zero(own, own);
+    sums.blocks.assign(scores.blocks.count(number), nothing);
+    sums.covariance = Eigen::MatrixXd::Zero(scores.fitted, scores.fitted);
     sums.misfit = Eigen::MatrixXd::Zero(own, MisfitColumns::count());
-    sums.doubt = Eigen::MatrixXd::Zero(own, as_index(doubts.size()));
+    sums.doubt = Eigen::MatrixXd::Zero(own, as_index(scores.doubts.size()));
     if (fit.bins().size() == 0) return sums;
     const Eigen::VectorXd innovations = fit.white_rows(solution.values, loss).rightCols(1);
     const Eigen::Index count = innovations.size();
     std::vector<double> influence(static_cast<std::size_t>(count));
     Eigen::VectorXd weight(count);
+    double slope = 0.0;  // of the loss, mean over the bins
     for (Eigen::Index i = 0; i < count; ++i) {
       const double innovation = innovations[i];
       const std::array<double, 3> rho = loss(innovation);
       influence[static_cast<std::size_t>(i)] = rho[1] * innovation;
       weight[i] = rho[1];
-      sums.slopes += rho[1] + 2.0 * innovation * innovation * rho[2];
-      sums.squares += influence[static_cast<std::size_t>(i)] * influence[static_cast<std::size_t>(i)];
+      slope += (rho[1] + 2.0 * innovation * innovation * rho[2]) / static_cast<double>(count);
     }
-    if (count < enough_bins) {
-      sums.slopes = normal.slope * static_cast<double>(count);
-      sums.squares = normal.square * static_cast<double>(count);
-    }
-    const double slope = sums.slopes / static_cast<double>(count);
+    if (count < enough_bins) slope = normal.slope;
     const Eigen::MatrixXd columns = fit.without_offsets(fit.white_columns(solution.values, all), weight);
-    const std::vector<Stretch>& stretches = fit.bins().stretches();
-    if (fit.is_whitened()) {
-      const Autoregression memory = count < enough_bins ? Autoregression{{}, std::sqrt(normal.square)}
-                                                        : autoregression(influence, stretches, infinity);
-      std::vector<const double*> pointers;
-      for (const Eigen::Index row : rows) pointers.push_back(columns.col(row).data());
-      const std::vector<double> covariance = covariance_of_sums(memory, pointers, stretches);
-      sums.covariance = Eigen::Map<const Eigen::MatrixXd>(covariance.data(), own, own);
+    const Eigen::MatrixXd left = columns.middleCols(first, own);
+    const Eigen::MatrixXd weighted = fit.is_whitened() ? left : fit.weighted(left, weight);
+    if (is_last) {
+      const Eigen::MatrixXd joint =
+          joined(is_first_reference ? scores.stages[number] : std::vector<StageScores>(), fit.bins().time(),
+                 weighted, scores.fitted);
+      if (fit.is_whitened()) {
+        const std::vector<Stretch>& stretches = fit.bins().stretches();
+        const Autoregression memory = count < enough_bins ? Autoregression{{}, std::sqrt(normal.square)}
+                                                          : autoregression(influence, stretches, infinity);
+        sums.covariance = covariance_of_sums(memory, joint, stretches);
+      } else {
+        sums.covariance = fit.covariance_of_sums(joint);
+      }
+      if (is_first_reference) {
+        const Eigen::VectorXd by_zero = joint.colwise().sum();
+        sums.covariance += scores.misfit.between_flights * by_zero * by_zero.transpose();
+      }
     } else {
-      const Eigen::MatrixXd left = columns(Eigen::all, rows);
-      sums.covariance = fit.score_covariance(left, weight);
-      const Eigen::MatrixXd weighted = fit.weighted(left, weight);
-      const Eigen::VectorXd by_zero = weighted.colwise().sum();
-      sums.covariance += between_flights * by_zero * by_zero.transpose();
-      if (columns_of_misfit != nullptr) sums.misfit = weighted.transpose() * (*columns_of_misfit)(fit);
+      scores.stages[number].push_back({first, fit.bins().time(), weighted});
     }
+    if (is_first_reference && !fit.is_whitened())
+      sums.misfit = weighted.transpose() * scores.misfit_columns(fit);
     if (!flights.doubt().empty()) {
       const Eigen::MatrixXd doubted = fit.white_doubts(flights.doubt(), solution.values);
-      sums.doubt(Eigen::all, doubt_places) = slope * columns(Eigen::all, rows).transpose() * doubted;
+      sums.doubt(Eigen::all, doubt_places) = slope * left.transpose() * doubted;
     }
     for (Eigen::Index i = 0; i < count; ++i) {
-      BlockSums& block = sums.blocks[blocks(number, fit.bins().time()[static_cast<std::size_t>(i)])];
-      const Eigen::VectorXd left = columns.row(i)(rows).transpose();
-      block.derivatives += slope * left * columns.row(i);
-      block.score += influence[static_cast<std::size_t>(i)] * left;
+      BlockSums& block = sums.blocks[scores.blocks(number, fit.bins().time()[static_cast<std::size_t>(i)])];
+      block.derivatives += slope * left.row(i).transpose() * columns.row(i);
+      block.score += influence[static_cast<std::size_t>(i)] * left.row(i).transpose();
     }
     return sums;
   };
   Sums whole;
-  whole.covariance = Eigen::MatrixXd::Zero(own, own);
+  whole.covariance = Eigen::MatrixXd::Zero(scores.fitted, scores.fitted);
   whole.misfit = Eigen::MatrixXd::Zero(own, MisfitColumns::count());
-  whole.doubt = Eigen::MatrixXd::Zero(own, as_index(doubts.size()));
+  whole.doubt = Eigen::MatrixXd::Zero(own, as_index(scores.doubts.size()));
   for (const Sums& one : flights.of_each(sums_of_flight, solution.values)) {
     whole.add(one);
     whole.blocks.insert(whole.blocks.end(), one.blocks.begin(), one.blocks.end());
@@ -204,13 +235,10 @@ Sums sums_of(FitFlights& flights, const FitEquations& equations, const std::vect
 }
 
 /// Of all references together: the innovations of one tell nothing of those of another.
-Sums sums_of(const FitEquations& equations, const std::vector<std::size_t>& all, const Blocks& blocks,
-             const Misfit& misfit, const MisfitColumns& columns, const std::vector<std::string>& doubts) {
+Sums sums_of(const FitEquations& equations, Eigen::Index first, Scores& scores) {
   Sums whole;
   for (FitFlights* const flights : equations.flights->joint()) {
-    const bool is_first = flights == equations.flights;
-    const Sums more = sums_of(*flights, equations, all, blocks, is_first ? &columns : nullptr,
-                              is_first ? misfit.between_flights : 0.0, doubts);
+    const Sums more = sums_of(*flights, equations, first, scores);
     if (whole.blocks.empty()) {
       whole = more;
       continue;
@@ -258,31 +286,21 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const s
   Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(fitted, size);
   Eigen::MatrixXd score = Eigen::MatrixXd::Zero(fitted, fitted);
   Eigen::MatrixXd by_misfit = Eigen::MatrixXd::Zero(fitted, MisfitColumns::count());
-  const std::vector<std::string> doubts = doubts_of(*last.flights);
-  Eigen::MatrixXd by_doubt = Eigen::MatrixXd::Zero(fitted, as_index(doubts.size()));
-  const Eigen::Index of_last = as_index(last.parameters.size());
+  Scores scores{all, fitted, blocks, misfit, misfit_columns, &last, doubts_of(*last.flights), {}};
+  scores.stages.resize(last.flights->count());
+  Eigen::MatrixXd by_doubt = Eigen::MatrixXd::Zero(fitted, as_index(scores.doubts.size()));
   Eigen::Index first = 0;
   for (const FitEquations& each : equations) {
     const Eigen::Index own = as_index(each.parameters.size());
-    if (own == 0) continue;
-    const Sums sums = sums_of(each, all, blocks, misfit, misfit_columns, doubts);
+    if (own == 0 && &each != &last) continue;
+    const Sums sums = sums_of(each, first, scores);
     by_misfit.middleRows(first, own) = sums.misfit;
     by_doubt.middleRows(first, own) = sums.doubt;
-    Eigen::MatrixXd here = Eigen::MatrixXd::Zero(own, size);
+    score += sums.covariance;
     for (std::size_t b = 0; b < left_out.size(); ++b) {
-      here += sums.blocks[b].derivatives;
+      derivatives.middleRows(first, own) += sums.blocks[b].derivatives;
       left_out[b].derivatives.middleRows(first, own) = sums.blocks[b].derivatives;
       left_out[b].score.segment(first, own) = sums.blocks[b].score;
-    }
-    derivatives.middleRows(first, own) = here;
-    score.block(first, first, own, own) = sums.covariance;
-    if (first + own < fitted) {
-      // As of noise without memory, which the last equations weigh by its inverse covariance: the derivative
-      // of the stage by their parameters. What the memory adds is left out: offsets take most of it out of a
-      // stage.
-      const Eigen::MatrixXd across = sums.squares / sums.slopes * here.middleCols(fitted - of_last, of_last);
-      score.block(first, fitted - of_last, own, of_last) = across;
-      score.block(fitted - of_last, first, of_last, own) = across.transpose();
     }
     first += own;
   }
@@ -316,7 +334,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const s
   }
   const Eigen::MatrixXd by_one = -inverse * by_doubt(varying, Eigen::all);
   own += by_one * by_one.transpose();
-  found.doubts = doubts;
+  found.doubts = scores.doubts;
   found.by_doubt = Eigen::MatrixXd::Zero(fitted, by_one.cols());
   found.by_doubt(varying, Eigen::all) = by_one;
   const Eigen::MatrixXd across = carried * doubt;

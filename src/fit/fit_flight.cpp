@@ -172,9 +172,8 @@ Eigen::MatrixXd FitFlight::white(const Eigen::MatrixXd& columns) const {
   return scale_.size() > 0 ? Eigen::MatrixXd(scale_.asDiagonal() * columns) : columns;
 }
 
-Eigen::MatrixXd FitFlight::score_covariance(const Eigen::MatrixXd& left,
-                                            const Eigen::VectorXd& weight) const {
-  return noise_covariance(weighted(left, weight), bins_, noise_, 0);
+Eigen::MatrixXd FitFlight::covariance_of_sums(const Eigen::MatrixXd& columns) const {
+  return noise_covariance(columns, bins_, noise_, 0);
 }
 
 double FitFlight::information() const {

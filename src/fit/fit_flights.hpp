@@ -119,9 +119,8 @@ class FitFlight {
     return scale_.cwiseProduct(weight).asDiagonal() * left;
   }
 
-  /// The covariance of sums of the residual's noise, left' diag(weight) residual.
-  /// @param left white columns without offsets
-  Eigen::MatrixXd score_covariance(const Eigen::MatrixXd& left, const Eigen::VectorXd& weight) const;
+  /// The covariance of the sums of the noise times columns that have a row for each bin.
+  Eigen::MatrixXd covariance_of_sums(const Eigen::MatrixXd& columns) const;
 
   /// Whether `white` takes the memory of the noise out.
   bool is_whitened() const { return whitening_.has_value(); }

@@ -2,11 +2,16 @@
 
 #include <Eigen/Dense>
 #include <cstddef>
+#include <vector>
 
 #include "numerics/binning.hpp"
 #include "numerics/noise_model.hpp"
 
 namespace pcor::internal {
+
+/// `pcor::covariance_of_sums` of a matrix.
+Eigen::MatrixXd covariance_of_sums(const Autoregression& noise, const Eigen::MatrixXd& columns,
+                                   const std::vector<Stretch>& stretches);
 
 /// The covariance matrix of sums over the bins of a flight, U' C U, with the covariance C of the noise: the
 /// autoregression at the level of each bin, within stretches, and the slow parts, which go on over gaps.

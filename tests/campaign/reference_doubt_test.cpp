@@ -1,0 +1,54 @@
+#include "campaign/reference_doubt.hpp"
+
+#include <gmock/gmock.h>
+
+#include <numeric>
+#include <vector>
+
+#include "support/made_samples.hpp"
+
+namespace {
+
+using pcor::internal::ReferenceDoubt;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+TEST(ReferenceDoubt, OfAMeasuredPressureIsItsZeroItsGainAndItsDrift) {
+  made::Plan plan;
+  plan.defect = made::equation_18;
+  const auto flight = made::shared(plan);
+  const pcor::ModelFile model = made::model({"static-constant", "static-qp"});
+  const auto reference = made::pressure_reference().front();
+  const ReferenceDoubt doubt(model, *reference, false);
+  EXPECT_THAT(doubt.names(), ElementsAre("psfd-bias.offset", "psfd-gain.gain", "psfd-drift.per_hour"));
+  const std::vector<std::size_t> samples{0, 1800, 3599};
+  const std::vector<double> parameters{0.004, 0.03};
+  const Eigen::MatrixXd columns = doubt.columns(flight, samples, parameters.data());
+  const std::vector<double>& p = *flight->model.find(pcor::Quantity::static_pressure);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const std::size_t sample = samples[static_cast<std::size_t>(i)];
+    // The law reads the measured pressure, so the error of the transducer is that of the corrected pressure.
+    EXPECT_NEAR(columns(i, 0), 0.1, 1e-12);
+    EXPECT_NEAR(columns(i, 1), 1e-4 * p[sample], 1e-12);
+    EXPECT_NEAR(columns(i, 2), 0.03 * static_cast<double>(sample) / 3600.0, 1e-12);
+  }
+}
+
+TEST(ReferenceDoubt, OfATrustedReferenceIsEmpty) {
+  const pcor::ModelFile model = made::model({"static-constant"});
+  EXPECT_THAT(ReferenceDoubt(model, *made::pressure_reference().front(), true).names(), IsEmpty());
+}
+
+TEST(ReferenceDoubt, OfASecondSystemHoldsWhatItsLawStates) {
+  pcor::ModelFile second = made::model({"static-constant"});
+  second.variables[pcor::Quantity::static_pressure] = "PSFRD";
+  second.uncertainty.static_defect = 0.24;
+  second.uncertainty.sensors["psfd-drift.per_hour"] = 0.0;
+  const auto reference = pcor::static_system_reference(second);
+  const ReferenceDoubt doubt(made::model({"static-constant"}), *reference, false);
+  EXPECT_THAT(doubt.names(),
+              ElementsAre("made: psfd-bias.offset", "made: psfd-gain.gain", "made: qcf-zero.offset"));
+  EXPECT_DOUBLE_EQ(doubt.sizes()[0], 0.26);  // with the zero of 0.1 hPa
+}
+
+}  // namespace
