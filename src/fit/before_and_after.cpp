@@ -33,17 +33,19 @@ struct Compared {
   std::vector<FlightFit> parts{};  ///< the part that was fitted, and the part that was held out
   std::vector<double> fitted_blocks{};
   std::size_t held_out_blocks = 0;
+  Eigen::VectorXd held_out_derivatives{};  ///< mean over what was held out, by the fitted parameters
   ResidualSums flaps_out{};
   std::vector<FlightNote> notes{};
   RegimeSet flown{};
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(parts, fitted_blocks, held_out_blocks, flaps_out, notes, flown);
+    archive(parts, fitted_blocks, held_out_blocks, held_out_derivatives, flaps_out, notes, flown);
   }
 };
 
-Compared compared(const LinearRows& rows, const FitTask& task, const Eigen::VectorXd& values) {
+Compared compared(const LinearRows& rows, const FitTask& task, const Eigen::VectorXd& values,
+                  const std::vector<std::size_t>& wanted) {
   const Residuals& residuals = rows.residuals();
   const FlightSamples& samples = residuals.samples();
   const std::vector<double> before = residuals.values(own_parameters(residuals, task, task.start).data());
@@ -63,6 +65,7 @@ Compared compared(const LinearRows& rows, const FitTask& task, const Eigen::Vect
     const std::vector<double> means = means_of_blocks(samples, is);
     if (held) {
       result.held_out_blocks = means.size();
+      result.held_out_derivatives = mean_derivatives(rows, task, part, values, wanted);
     } else {
       result.fitted_blocks = means;
     }
@@ -73,14 +76,15 @@ Compared compared(const LinearRows& rows, const FitTask& task, const Eigen::Vect
 }
 
 /// The flights that are held out.
-std::vector<Compared> held_out(const FitTask& task, const Eigen::VectorXd& values) {
+std::vector<Compared> held_out(const FitTask& task, const Eigen::VectorXd& values,
+                               const std::vector<std::size_t>& wanted) {
   const FlightSet& flights = task.options.holdout;
   return flights.share().of_each_flight<Compared>([&](std::size_t number) {
     const auto samples = flights.samples(number, task.model, task.reference, task.options.mask);
     constexpr double fitted = 0.0;  // part of the samples
     const LinearRows rows(residuals_at(samples, task, values), task.model, task.reference,
                           {Inputs::none, {}, fitted});
-    return compared(rows, task, values);
+    return compared(rows, task, values, wanted);
   });
 }
 
@@ -88,14 +92,15 @@ std::vector<Compared> held_out(const FitTask& task, const Eigen::VectorXd& value
 template <class More>
 std::vector<Compared> compared(FitFlights& flights, const Eigen::VectorXd& values, const More& more) {
   const FitTask& task = flights.task();
+  const std::vector<std::size_t>& wanted = flights.setup().wanted;
   std::vector<Compared> each = flights.of_each(
       [&](std::size_t, FitFlight& fit) {
-        Compared one = compared(fit.linear_rows(), task, values);
+        Compared one = compared(fit.linear_rows(), task, values, wanted);
         more(fit.residuals(), one);
         return one;
       },
       values);
-  for (Compared& one : held_out(task, values)) each.push_back(std::move(one));
+  for (Compared& one : held_out(task, values, wanted)) each.push_back(std::move(one));
   return each;
 }
 
@@ -110,7 +115,8 @@ double BeforeAndAfter::noise_rms(std::size_t samples) const {
   return std::sqrt(squares / static_cast<double>(samples));
 }
 
-BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& values) {
+BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& values,
+                                const Eigen::MatrixXd& covariance, double left) {
   const std::vector<Compared> each =
       compared(flights, values, [&](const Residuals& residuals, Compared& one) {
         const FlightSamples& samples = residuals.samples();
@@ -129,7 +135,12 @@ BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& valu
   all.flaps_out = with_flaps.statistics();
   for (const Compared& one : each) {
     for (FlightFit part : one.parts) {
-      if (part.holdout) part.expected_bias = fitted.expected_bias(one.held_out_blocks);
+      if (part.holdout) {
+        const double by_wander = fitted.expected_bias(one.held_out_blocks);
+        const double by_coefficients =
+            one.held_out_derivatives.dot(covariance * one.held_out_derivatives);  // hPa^2
+        part.expected_bias = std::sqrt(by_wander * by_wander + by_coefficients + left * left);
+      }
       all.flights.push_back(std::move(part));
     }
   }

@@ -20,6 +20,10 @@ struct BeforeAndAfter {
   double noise_rms(std::size_t samples) const;
 };
 
-BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& values);
+/// @param covariance of the fitted parameters, without the doubt of the reference: that is the same in what
+///        was held out
+/// @param left what the law lacks, hPa, rms
+BeforeAndAfter before_and_after(FitFlights& flights, const Eigen::VectorXd& values,
+                                const Eigen::MatrixXd& covariance, double left);
 
 }  // namespace pcor::internal

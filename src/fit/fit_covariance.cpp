@@ -313,7 +313,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const s
   found.information = information_of(*last.flights);
   found.blocks = left_out.size();
   found.matrix = Eigen::MatrixXd::Zero(size, size);
-  found.by_noise = Eigen::MatrixXd::Zero(fitted, fitted);
+  found.by_noise = found.by_flights = Eigen::MatrixXd::Zero(fitted, fitted);
   found.jackknife = Eigen::VectorXd::Constant(fitted, nan);
   const Eigen::MatrixXd doubt = task.doubt(held, held);
   found.matrix.bottomRightCorner(size - fitted, size - fitted) = doubt;
@@ -332,6 +332,7 @@ FitCovariance fit_covariance(const std::vector<FitEquations>& equations, const s
     const Eigen::MatrixXd moved = inverse * by_misfit(varying, Eigen::all);
     own += moved * misfit.variance.asDiagonal() * moved.transpose();
   }
+  found.by_flights(varying, varying) = own;
   const Eigen::MatrixXd by_one = -inverse * by_doubt(varying, Eigen::all);
   own += by_one * by_one.transpose();
   found.doubts = scores.doubts;

@@ -25,6 +25,8 @@ struct FitCovariance {
   /// Of the parameters of the equations by the noise and what held coefficients may err by, without the
   /// misfit of the law.
   Eigen::MatrixXd by_noise{};
+  /// The same with the misfit of the law: all but the doubt of the reference.
+  Eigen::MatrixXd by_flights{};
   /// Names of the doubts of the references, and by how much one standard uncertainty of each changes the
   /// parameters of the equations.
   std::vector<std::string> doubts{};

@@ -99,6 +99,16 @@ Residuals residuals_at(std::shared_ptr<const FlightSamples> samples, const FitTa
   return residuals;
 }
 
+Eigen::VectorXd mean_derivatives(const LinearRows& rows, const FitTask& task,
+                                 const std::vector<std::size_t>& samples, const Eigen::VectorXd& parameters,
+                                 const std::vector<std::size_t>& wanted) {
+  const Known known = known_of(wanted, rows.residuals(), task);
+  const Eigen::VectorXd own = own_parameters(rows.residuals(), task, parameters);
+  const Eigen::MatrixXd all =
+      with_all_columns(rows.evaluate(samples, own.data(), known.parameters, true), known);
+  return all.leftCols(as_index(wanted.size())).colwise().mean().transpose();
+}
+
 FitFlight::FitFlight(std::shared_ptr<const FlightSamples> samples, const FitTask& task, const FitSetup& setup)
     : task_(&task),
       setup_(&setup),

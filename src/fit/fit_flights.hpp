@@ -51,6 +51,11 @@ Eigen::VectorXd own_parameters(const Residuals& residuals, const FitTask& task,
 Residuals residuals_at(std::shared_ptr<const FlightSamples> samples, const FitTask& task,
                        const Eigen::VectorXd& parameters);
 
+/// The derivatives of the residual by the wanted parameters of the fit, mean over some samples.
+Eigen::VectorXd mean_derivatives(const LinearRows& rows, const FitTask& task,
+                                 const std::vector<std::size_t>& samples, const Eigen::VectorXd& parameters,
+                                 const std::vector<std::size_t>& wanted);
+
 /// One flight of a fit with one reference: the samples that take part, in bins of a few seconds, or as long
 /// as a residual holds together, and their residuals and derivatives in units of the noise and without its
 /// memory.

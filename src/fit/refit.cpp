@@ -293,7 +293,7 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelFile& model, const R
   result.rms_before = before.rms_of(before.squares);
   const SquaredResiduals squares(flights, solution);
   result.omissions = omissions(flights, solution, sums, squares);
-  BeforeAndAfter compared = before_and_after(flights, solution.values);
+  BeforeAndAfter compared = before_and_after(flights, solution.values, covariance.by_flights, misfit.left);
   result.noise_rms = compared.noise_rms(result.samples);
   result.flights = std::move(compared.flights);
   result.further = std::move(compared.further);

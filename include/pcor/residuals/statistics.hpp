@@ -31,8 +31,9 @@ std::string flaps_out_text(const Statistics& flaps_out, const std::string& of_wh
 struct HeldOutPart {
   std::string flight;
   Statistics statistics;
-  /// Within which the bias would be, hPa, if the model were as right there as where it was fitted: from how
-  /// the means over five minutes, and over flights, wander in the fit.
+  /// The standard deviation of the bias, hPa, if the model were as right there as where it was fitted: from
+  /// how the means over five minutes, and over flights, wander in the fit; after a fit also from the errors of
+  /// its coefficients and from what the law lacks.
   double expected = 0.0;
 
   /// Whether the bias is more than chance makes it: beyond 2.5 times what is expected.
