@@ -92,7 +92,7 @@ TEST(HeightRecord, ErrorsOfTheLawAreWhatTheySay) {
   options.recovers = true;
   const HeightRecord truth = pcor::internal::height_record(right, {}, options);
   // The error as a part of the pressure, for some 0.1 hPa each.
-  const auto part = [&right](pcor::internal::PressureError error, std::size_t i) {
+  const auto part = [&right](pcor::internal::HeightError error, std::size_t i) {
     if (error == pcor::internal::with_dynamic) return 1e-3 * right.dynamic[i] / right.pressure[i];
     if (error == pcor::internal::with_attack) return 1e-3 * right.attack_ratio[i];
     return 2e-4;
