@@ -527,17 +527,22 @@ class TemperatureCalibration {
     return fmt::format("{} says {} K", part.part, with_error(part.correction, part.standard_error));
   }
 
+  /// Rms of heights about their mean in each stretch, with a correction and without the other errors, m.
+  double rms_without_other_errors(const std::vector<double>& coefficients) const {
+    HeightEquations::Vector others = likeliest_.equations.best_unknowns(as_index(terms_));
+    others.head(as_index(calibration_terms)).setZero();
+    std::vector<double> heights;
+    for (const HeightRecord& record : levelled_) {
+      const std::vector<double> own = height_differences(without_unknowns(record, others), coefficients);
+      heights.insert(heights.end(), own.begin(), own.end());
+    }
+    return rms(heights);
+  }
+
   /// Looks whether the correction is better than none.
   void compare_with_none() {
-    double before = 0.0;
-    double after = 0.0;
-    double count = 0.0;
-    for (const FlightHeights& flight : result_.flights) {
-      const auto n = static_cast<double>(flight.time.size());
-      before += n * flight.rms_before * flight.rms_before;
-      after += n * flight.rms_after * flight.rms_after;
-      count += n;
-    }
+    const double before = rms_without_other_errors({});
+    const double after = rms_without_other_errors(result_.likelihood.coefficients);
     if (!dry_.empty()) {
       result_.worse = dry_;
       return;
@@ -561,7 +566,7 @@ class TemperatureCalibration {
       result_.worse = fmt::format(
           "heights keep less close to the integral with the correction than without (rms {:.2f} m and {:.2f} "
           "m), though it is likelier",
-          std::sqrt(after / count), std::sqrt(before / count));
+          after, before);
       return;
     }
     if (std::abs(result_.least_squares_add) > seen * result_.least_squares_add_error) {
