@@ -177,7 +177,12 @@ class TemperatureCalibration {
       air = read_flight_air(flights_, number, bare_, options_.mask);
     }
     HeightRecord record = height_record(air, steps, record_options);
-    if (!options_.archived) record.law_variance = stated_law_variance(bare_, air);
+    ModelFile stated = bare_;
+    if (options_.archived) {  // What the law reads is not archived: only what it leaves is known.
+      stated.covariance = {};
+      stated.fits.clear();
+    }
+    record.law_variance = stated_law_variance(stated, air);
     return record;
   }
 
