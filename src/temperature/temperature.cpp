@@ -117,7 +117,7 @@ class TemperatureCalibration {
       try {
         part.record = read_record(number);
         part.dry = trouble_with_dry_air(*part.record, model_, flights_[number]);
-        if (!part.dry.empty() && !options_.dry_air) throw Error(part.dry);
+        if (!part.dry.empty() && !options_.dry_air) throw Error(part.dry + "; --force goes on with dry air");
         if (options_.skip_returning && part.record->returns) {
           part.record.reset();
           part.left_out = "it ends where it began (--skip-returning)";
