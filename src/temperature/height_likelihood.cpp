@@ -101,7 +101,7 @@ void filter(const HeightRecord& record, const HeightNoise& noise, const HeightPr
                             noise.white * noise.white / static_cast<double>(block.samples);
     Row measured;
     measured << block.excess, Eigen::Map<const Eigen::RowVector3d>(block.columns.data()),
-        Eigen::Map<const Eigen::Matrix<double, 1, pressure_errors>>(block.errors.data());
+        Eigen::Map<const Eigen::Matrix<double, 1, height_errors>>(block.errors.data());
     const Row innovation = measured - seen.transpose() * x;
     see(block, innovation, variance);
 
@@ -249,29 +249,28 @@ class AroundLikeliest {
 };
 
 /// Which unknowns there are: the coefficients of the first `terms` powers, and errors that have a size.
-std::vector<Eigen::Index> free_unknowns(const std::array<double, pressure_errors>& sizes,
-                                        Eigen::Index terms) {
+std::vector<Eigen::Index> free_unknowns(const std::array<double, height_errors>& sizes, Eigen::Index terms) {
   std::vector<Eigen::Index> free;
   for (Eigen::Index k = 0; k < terms; ++k) free.push_back(k);
-  for (std::size_t k = 0; k < pressure_errors; ++k) {
+  for (std::size_t k = 0; k < height_errors; ++k) {
     if (sizes[k] > 0.0) free.push_back(as_index(calibration_terms + k));
   }
   return free;
 }
 
 HeightEquations::Matrix with_prior(HeightEquations::Matrix information,
-                                   const std::array<double, pressure_errors>& sizes) {
-  for (std::size_t k = 0; k < pressure_errors; ++k) {
+                                   const std::array<double, height_errors>& sizes) {
+  for (std::size_t k = 0; k < height_errors; ++k) {
     const Eigen::Index at = as_index(calibration_terms + k);
     if (sizes[k] > 0.0) information(at, at) += 1.0 / (sizes[k] * sizes[k]);
   }
   return information;
 }
 
-/// How far errors of the pressure are from none, by what is known beforehand.
-double sum_of_prior(const HeightEquations::Vector& all, const std::array<double, pressure_errors>& sizes) {
+/// How far other errors are from none, by what is known beforehand.
+double sum_of_prior(const HeightEquations::Vector& all, const std::array<double, height_errors>& sizes) {
   double sum = 0.0;
-  for (std::size_t k = 0; k < pressure_errors; ++k) {
+  for (std::size_t k = 0; k < height_errors; ++k) {
     const double error = all[as_index(calibration_terms + k)];
     if (sizes[k] > 0.0) sum += error * error / (sizes[k] * sizes[k]);
   }
@@ -332,7 +331,7 @@ double HeightEquations::deviance_of_heights(const Vector& all) const {
 }
 
 double HeightEquations::deviance_at(const Eigen::VectorXd& a) const {
-  // The errors of the pressure are at their best for what these coefficients leave.
+  // The other errors are at their best for what these coefficients leave.
   Vector all = Vector::Zero();
   all.head(a.size()) = a;
   HeightEquations left = *this;
@@ -347,7 +346,7 @@ double HeightEquations::deviance(Eigen::Index terms) const { return deviance_at(
 HeightEquations height_equations(const HeightRecord& record, const HeightNoise& noise,
                                  const HeightPrior& prior) {
   HeightEquations result;
-  result.sizes = prior.pressure;
+  result.sizes = prior.errors;
   filter(record, noise, prior, [&](const HeightBlock& block, const Row& innovation, double variance) {
     if (block.starts_stretch) return;  // it says what the unknown height is, and nothing else
     const double weight = 1.0 / variance;
@@ -374,7 +373,7 @@ std::vector<double> height_innovations(const HeightRecord& record, const HeightN
 HeightRecord without_unknowns(HeightRecord record, const HeightEquations::Vector& all) {
   for (HeightBlock& block : record.blocks) {
     for (std::size_t k = 0; k < calibration_terms; ++k) block.excess -= all[as_index(k)] * block.columns[k];
-    for (std::size_t k = 0; k < pressure_errors; ++k)
+    for (std::size_t k = 0; k < height_errors; ++k)
       block.excess -= all[as_index(calibration_terms + k)] * block.errors[k];
   }
   return record;
@@ -391,7 +390,7 @@ HeightEquations height_equations(const std::vector<HeightRecord>& records, const
     });
   });
   HeightEquations sum;
-  sum.sizes = prior.pressure;
+  sum.sizes = prior.errors;
   for (const HeightEquations& one : each) sum += one;
   return sum;
 }

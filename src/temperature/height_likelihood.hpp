@@ -29,10 +29,9 @@ struct HeightPrior {
   /// Usual slope of the isobars at the start, each direction; of it is in a flight what
   /// `HeightRecord::slope_left` says. 0: they are level.
   double slope = 1e-4;
-  /// Usual size of each error of the static pressure that a law leaves, the same in all flights: hPa, of the
-  /// static and of the dynamic pressure, of the angle of attack times the static pressure. 0: there is none,
-  /// or it is not asked.
-  std::array<double, pressure_errors> pressure{};
+  /// Standard deviation of each error before the heights are seen, the same in all flights, in the units of
+  /// `HeightError`. 0: there is none, or it is not asked.
+  std::array<double, height_errors> errors{};
 };
 
 /// The Gaussian likelihood of heights, reduced to what the coefficients need: up to a constant,
@@ -40,15 +39,15 @@ struct HeightPrior {
 ///     -2 ln L = log_determinant + squares - 2 c' right + c' information c + sum (b/size)^2
 ///
 /// where c = (a, b): coefficients a of the temperature, of which there may be fewer, and errors b of the
-/// static pressure, which have a size beforehand. Those of size 0 are none.
+/// static pressure and the humidity, which have a size beforehand. Those of size 0 are none.
 struct HeightEquations {
-  static constexpr Eigen::Index unknowns = calibration_terms + pressure_errors;
+  static constexpr Eigen::Index unknowns = calibration_terms + height_errors;
   using Matrix = Eigen::Matrix<double, unknowns, unknowns>;
   using Vector = Eigen::Matrix<double, unknowns, 1>;
 
   Matrix information = Matrix::Zero();
   Vector right = Vector::Zero();
-  std::array<double, pressure_errors> sizes{};
+  std::array<double, height_errors> sizes{};
   double squares = 0.0;
   double log_determinant = 0.0;
   std::size_t blocks = 0;
@@ -62,16 +61,16 @@ struct HeightEquations {
 
   /// -2 ln L at the best coefficients of the first `terms` powers, the others zero.
   double deviance(Eigen::Index terms) const;
-  /// The best coefficients of the first `terms` powers, and their covariance: with the errors of the pressure
+  /// The best coefficients of the first `terms` powers, and their covariance: with the other errors
   /// at their best, and not known.
   Eigen::VectorXd best(Eigen::Index terms) const;
   Eigen::MatrixXd covariance(Eigen::Index terms) const;
   /// All unknowns at their best with the first `terms` powers, the others zero, and their covariance.
   Vector best_unknowns(Eigen::Index terms) const;
   Matrix covariance_of_unknowns(Eigen::Index terms) const;
-  /// ln det of the information on the first `terms` coefficients and the errors of the pressure.
+  /// ln det of the information on the first `terms` coefficients and the other errors.
   double log_information(Eigen::Index terms) const;
-  /// -2 ln L at given coefficients of the first powers, the errors of the pressure at their best.
+  /// -2 ln L at given coefficients of the first powers, the other errors at their best.
   double deviance_at(const Eigen::VectorXd& coefficients) const;
   /// What the heights alone say of all unknowns, not what is known beforehand: -2 ln L without the last sum.
   double deviance_of_heights(const Vector& all) const;
@@ -79,7 +78,7 @@ struct HeightEquations {
 
 /// One pass of a Kalman filter over a flight: states are the drift of the integral, the slow GPS noise, the
 /// two slopes of the isobars. The integral of every stretch starts at an unknown height. Coefficients and
-/// errors of the pressure enter as columns that are filtered like the data, so one pass serves all values of
+/// other errors enter as columns that are filtered like the data, so one pass serves all values of
 /// them. Time grows with the number of blocks.
 HeightEquations height_equations(const HeightRecord& record, const HeightNoise& noise,
                                  const HeightPrior& prior);

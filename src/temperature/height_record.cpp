@@ -9,6 +9,7 @@
 
 #include <pcor/physics/geodesy.hpp>
 #include <pcor/physics/hydrostatic.hpp>
+#include <pcor/physics/moist_air.hpp>
 #include <pcor/words/error.hpp>
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
@@ -20,7 +21,7 @@ constexpr double least_height_range = 300.0;  // m
 constexpr double kappa = 2.0 / 7.0;           // R/cp of dry air
 
 using Powers = std::array<double, calibration_terms>;
-using Errors = std::array<double, pressure_errors>;
+using Errors = std::array<double, height_errors>;
 
 /// The integral at a sample that takes part.
 struct Point {
@@ -57,8 +58,12 @@ class Integration {
         continue;
       }
       points.push_back({i, starts_, air_.geopotential_height[i] - height_, columns_, errors_});
+      for (std::size_t k = 0; k < height_errors; ++k)
+        squares_[k] += std::pow(last_shares_[k] * air_.pressure[i], 2);
       starts_ = false;
     }
+    const double count = std::max(1.0, static_cast<double>(points.size()));
+    for (std::size_t k = 0; k < height_errors; ++k) record.rms_of_unit[k] = std::sqrt(squares_[k] / count);
     return points;
   }
 
@@ -84,6 +89,10 @@ class Integration {
         const double mean = 0.5 * (before + here) + constants::ice_point;
         height_ += step * mean;
         add_errors(shares_at(i), step, mean, air_.gas_constant[i] * mean / constants::standard_gravity);
+        // The thickness goes with R_a, of which the vapour makes what is above that of dry air.
+        const double dry =
+            hydrostatic_step(air_.pressure[last_], air_.pressure[i], dry_air<double>().gas_constant);
+        errors_[with_vapor] += (step - dry) * mean;
         double power_before = 1.0;
         double power_here = 1.0;
         for (double& column : columns_) {
@@ -110,15 +119,15 @@ class Integration {
     const auto known = [](double share, double else_share) { return std::isnan(share) ? else_share : share; };
     return {1.0 / air_.pressure[i], 1.0,
             known(air_.dynamic[i] / air_.pressure[i], last_shares_[with_dynamic]),
-            attack_.empty() ? 0.0 : known(attack_[i], last_shares_[with_attack])};
+            attack_.empty() ? 0.0 : known(attack_[i], last_shares_[with_attack]), 0.0};
   }
 
   void add_errors(const Errors& shares, double step, double temperature, double scale_height) {
-    for (std::size_t k = 0; k < pressure_errors; ++k)
+    for (std::size_t k = 0; k < height_errors; ++k)
       errors_[k] += scale_height * (shares[k] - last_shares_[k]);
     // A law takes from the dynamic pressure what it adds to the static one, and with it from the heating.
     if (options_.recovers) {
-      for (const PressureError k : {with_static, with_dynamic, with_attack})
+      for (const HeightError k : {with_static, with_dynamic, with_attack})
         errors_[k] -= step * temperature * kappa * 0.5 * (shares[k] + last_shares_[k]);
     }
     last_shares_ = shares;
@@ -145,6 +154,7 @@ class Integration {
   Powers columns_{};
   Errors errors_{};
   Errors last_shares_{};
+  Errors squares_{};  // of the static pressure by one unit, hPa2
 };
 
 /// Marks what the GPS does that no air does: a spike is left out, at a step the integral starts anew.
@@ -234,7 +244,7 @@ class BlockMeans {
     block_.time += air_.time()[i] - air_.time()[first_];
     block_.excess += point.excess;
     for (std::size_t k = 0; k < calibration_terms; ++k) block_.columns[k] += point.columns[k];
-    for (std::size_t k = 0; k < pressure_errors; ++k) block_.errors[k] += point.errors[k];
+    for (std::size_t k = 0; k < height_errors; ++k) block_.errors[k] += point.errors[k];
     block_.east += way_.east[i];
     block_.north += way_.north[i];
     block_.height += air_.geopotential_height[i];

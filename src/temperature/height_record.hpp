@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,10 +13,11 @@ namespace pcor::internal {
 /// How many powers of the temperature a calibration may have: a0 + a1 t + a2 t^2.
 inline constexpr std::size_t calibration_terms = 3;
 
-/// Errors that a law leaves of the static pressure: one that lasts (hPa), and those in proportion to the
-/// static pressure (static-constant), the dynamic pressure (static-qp), and the angle of attack times the
-/// static pressure (static-alpha, static-attack). The second moves no height but by the temperature.
-enum PressureError : std::size_t { lasting, with_static, with_dynamic, with_attack, pressure_errors };
+/// Errors beside that of the thermometer: of the static pressure one that lasts (hPa), and those in
+/// proportion to the static pressure (static-constant), the dynamic pressure (static-qp), and the angle of
+/// attack times the static pressure (static-alpha, static-attack); of the vapour pressure one in proportion
+/// to it (humidity-error). The second moves no height but by the temperature.
+enum HeightError : std::size_t { lasting, with_static, with_dynamic, with_attack, with_vapor, height_errors };
 
 /// Means over some seconds of a flight: the height by GPS against the integral of the hydrostatic equation
 /// from the start of the stretch.
@@ -34,8 +36,8 @@ struct HeightBlock {
   double metres_per_hpa = 0.0;  ///< R_a T/(g p): thickness of a layer of 1 hPa, m/hPa
   /// What one unit more of each error of the static pressure adds to `excess`: m/hPa; m for an error as large
   /// as the static pressure, and as the dynamic pressure; m for one of the radome ratio, or 1 deg, times the
-  /// static pressure.
-  std::array<double, pressure_errors> errors{};
+  /// static pressure. The last: what it adds, m, where the vapour pressure lacks as much as it is.
+  std::array<double, height_errors> errors{};
   double climb = 0.0;       ///< m/s
   double slope_east = 0.0;  ///< of isobaric surfaces by the geostrophic wind, 1; NaN where there is no wind
   double slope_north = 0.0;
@@ -71,12 +73,18 @@ struct HeightRecord {
   bool returns = false;            ///< it is known to end within 50 km of where it began
   double least_temperature = 0.0;  ///< degC
   double greatest_temperature = 0.0;  ///< degC
+  /// Rms of the static pressure by one unit of each of its errors, hPa.
+  std::array<double, height_errors> rms_of_unit{};
+  /// Variance that the model states of delta-p, the mean over the samples, hPa2; nothing where it states
+  /// none.
+  std::optional<double> law_variance{};
   std::vector<std::string> notes;
 
   template <class Archive>
   void serialize(Archive& archive) {
     archive(name, blocks, stretches, samples, height_steps, height_spikes, missing_heights, unknown_ways, way,
-            has_wind, slope_left, returns, least_temperature, greatest_temperature, notes);
+            has_wind, slope_left, returns, least_temperature, greatest_temperature, rms_of_unit, law_variance,
+            notes);
   }
 };
 

@@ -10,6 +10,7 @@
 #include <numeric>
 #include <utility>
 
+#include <pcor/effects/humidity_error.hpp>
 #include <pcor/effects/psfd_bias.hpp>
 #include <pcor/effects/static_alpha.hpp>
 #include <pcor/effects/static_attack.hpp>
@@ -27,9 +28,11 @@
 #include "team/flight_share.hpp"
 #include "temperature/archived_steps.hpp"
 #include "temperature/degrees.hpp"
+#include "temperature/dry_air.hpp"
 #include "temperature/height_least_squares.hpp"
 #include "temperature/height_likelihood.hpp"
 #include "temperature/isobar_slope.hpp"
+#include "temperature/law_doubt.hpp"
 #include "temperature/parts.hpp"
 
 namespace pcor {
@@ -54,19 +57,21 @@ constexpr std::array<std::pair<IsobarSlope, std::string_view>, 6> slope_names{{
     {IsobarSlope::geostrophic, "geostrophic"},
 }};
 
-constexpr double lasting_default = 0.3;                    // hPa, the rms of the memo's eq. 18
-constexpr double seen = 3.0;                               // standard errors that chance does not make
-constexpr double matters = usual_size<effects::PsfdBias>;  // hPa
+constexpr double law_default = 0.3;  // hPa, the rms of the memo's eq. 18
+constexpr double seen = 3.0;         // standard errors that chance does not make
+/// hPa, the usual zero of a transducer: it lasts, and laws were fitted to pressures that have it too.
+constexpr double usual_zero = usual_size<effects::PsfdBias>;
 constexpr double told = 2.6;  // standard errors, which chance makes once in 100 times
 
 /// What a member of a team tells of a flight of its own.
 struct FlightPart {
   std::string left_out{};  ///< why; empty where it is not
+  std::string dry{};       ///< why its air must not be taken for dry; empty where it is not
   std::optional<HeightRecord> record{};
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(left_out, record);
+    archive(left_out, dry, record);
   }
 };
 
@@ -80,12 +85,11 @@ class TemperatureCalibration {
         workers_(flights.team(), options.threads) {
     prior_.slope = options.slope == IsobarSlope::none ? 0.0 : options.slope_size;
     has_radome_ = model.variables.count(Quantity::attack_differential_pressure) > 0;
-    prior_.pressure = {0.0, 0.0, usual_size<effects::StaticQp>,
-                       has_radome_ ? usual_size<effects::StaticAlpha> : usual_size<effects::StaticAttack>};
   }
 
   TemperatureResult run() {
     read();
+    find_prior();
     const std::size_t most = static_cast<std::size_t>(options_.degree.value_or(2)) + 1;
     likeliest_ = maximise_likelihood(records_, static_cast<Eigen::Index>(most), prior_, start(), workers_);
     std::vector<HeightEquations> equations;
@@ -112,11 +116,14 @@ class TemperatureCalibration {
       FlightPart part;
       try {
         part.record = read_record(number);
+        part.dry = trouble_with_dry_air(*part.record, model_, flights_[number]);
+        if (!part.dry.empty() && !options_.dry_air) throw Error(part.dry + "; --force goes on with dry air");
         if (options_.skip_returning && part.record->returns) {
           part.record.reset();
           part.left_out = "it ends where it began (--skip-returning)";
         }
       } catch (const Error& error) {
+        part.record.reset();
         part.left_out = error.what();
       }
       if (options_.progress) options_.progress(++done, flights_.share().own());
@@ -130,6 +137,7 @@ class TemperatureCalibration {
       heights.left_out = part.left_out;
       if (first_trouble.empty()) first_trouble = part.left_out;
       if (!part.record) continue;
+      if (dry_.empty()) dry_ = part.dry;
       levelled_.push_back(*part.record);
       // Least squares and pictures know no slope of their own.
       const bool fitted = options_.slope == IsobarSlope::fitted;
@@ -168,7 +176,43 @@ class TemperatureCalibration {
     } else {
       air = read_flight_air(flights_, number, bare_, options_.mask);
     }
-    return height_record(air, steps, record_options);
+    HeightRecord record = height_record(air, steps, record_options);
+    ModelFile stated = bare_;
+    if (options_.archived) {  // What the law reads is not archived: only what it leaves is known.
+      stated.covariance = {};
+      stated.fits.clear();
+    }
+    record.law_variance = stated_law_variance(stated, air);
+    return record;
+  }
+
+  /// What is known of the other errors beforehand: of the humidity its usual error. A law is as good in each
+  /// of its terms as it states, or as laws usually are; what a law lacks that states nothing may be as large
+  /// as the effect usually is.
+  void find_prior() {
+    double variances = 0.0;
+    std::array<double, height_errors> squares{};
+    bool is_stated = true;
+    for (const HeightRecord& record : records_) {
+      is_stated = is_stated && record.law_variance;
+      variances += record.law_variance.value_or(0.0);
+      for (std::size_t k = 0; k < height_errors; ++k)
+        squares[k] += record.rms_of_unit[k] * record.rms_of_unit[k];
+    }
+    const auto count = static_cast<double>(records_.size());
+    const double rms = is_stated ? std::sqrt(variances / count) : model_.law.rms_hpa.value_or(law_default);
+    law_error_ = std::hypot(rms, usual_zero);
+    const auto size = [&](HeightError error, const EffectFacts& effect) {
+      const double usual = effect.parameters[0].typical;
+      const bool is_in_law = std::any_of(model_.model.effects.begin(), model_.model.effects.end(),
+                                         [&](const ModelEffect& each) { return each.id == effect.id; });
+      if (!(squares[error] > 0.0) || !(is_stated || model_.law.rms_hpa || is_in_law)) return usual;
+      return std::min(usual, law_error_ / std::sqrt(squares[error] / count));
+    };
+    prior_.errors[with_dynamic] = size(with_dynamic, effects::StaticQp::facts());
+    prior_.errors[with_attack] =
+        size(with_attack, has_radome_ ? effects::StaticAlpha::facts() : effects::StaticAttack::facts());
+    prior_.errors[with_vapor] = usual_size<effects::HumidityError>;
   }
 
   /// Noise to start from: of modern differential GPS where heights change that little, else of older.
@@ -230,7 +274,7 @@ class TemperatureCalibration {
     const Eigen::VectorXd best = equations.best(n);
     Eigen::MatrixXd covariance = covariance_over_noise(records_, n, prior_, likeliest_, workers_);
     const Eigen::MatrixXd moved_by =
-        equations.covariance_of_unknowns(n) * equations.information.rightCols<pressure_errors>();
+        equations.covariance_of_unknowns(n) * equations.information.rightCols<height_errors>();
     const Eigen::VectorXd per_hpa = moved_by.col(lasting).head(n);
     const Eigen::VectorXd per_part = moved_by.col(with_static).head(n);
     find_parts();
@@ -240,7 +284,8 @@ class TemperatureCalibration {
     } else {
       find_law_error<effects::StaticAttack>(with_attack);
     }
-    result_.pressure_error = lasting_error();
+    find_humidity_error();
+    find_unseen_errors();
     const Eigen::MatrixXd unseen = covariance_of_unseen(per_hpa, per_part / mean_pressure());
     const HeightNoise& noise = likeliest_.noise;
     result_.likelihood.sigma = std::hypot(noise.white, noise.wander);
@@ -271,20 +316,31 @@ class TemperatureCalibration {
     return sum / count;
   }
 
-  /// An error of the static pressure that lasts, hPa: of the law, and three usual zeros of its transducer;
-  /// where the heights see that the law is wrong by some hPa over the flights, as much may last.
-  double lasting_error() const {
-    if (options_.pressure_error) return *options_.pressure_error;
-    double square = std::pow(model_.law.rms_hpa.value_or(lasting_default), 2) +
-                    std::pow(3.0 * usual_size<effects::PsfdBias>, 2);
+  /// Errors of the pressure that heights do not tell from the thermometer's: the zero of the transducer, as
+  /// the model states it of psfd-bias, and what a law errs by in proportion to the pressure. A law that the
+  /// heights see to be wrong by more than it states may be so in that, too.
+  void find_unseen_errors() {
+    result_.pressure_error = options_.pressure_error.value_or(stated_zero().value_or(usual_zero));
+    result_.law_error = options_.pressure_error.value_or(law_error_);
+    if (options_.pressure_error) return;
     for (const LawError& error : result_.law_errors) {
-      if (is_seen(error)) square += error.range * error.range;
+      if (is_beyond_prior(error)) result_.law_error = std::hypot(result_.law_error, error.range);
     }
-    return std::sqrt(square);
+  }
+
+  std::optional<double> stated_zero() const {
+    for (std::size_t e = 0; e < model_.model.effects.size(); ++e) {
+      if (model_.model.effects[e].id == effects::PsfdBias::facts().id) return model_.fit(e, 0).standard_error;
+    }
+    return std::nullopt;
   }
 
   static bool is_seen(const LawError& error) {
-    return std::abs(error.change) > seen * error.standard_error && error.range > matters;
+    return std::abs(error.change) > seen * error.standard_error && error.range > usual_zero;
+  }
+
+  static bool is_beyond_prior(const LawError& error) {
+    return is_seen(error) && std::abs(error.change) > seen * error.size;
   }
 
   /// What the likelihood cannot see. An error of the pressure that lasts: in hPa, of which the shape of the
@@ -294,8 +350,9 @@ class TemperatureCalibration {
   Eigen::MatrixXd covariance_of_unseen(const Eigen::VectorXd& per_hpa,
                                        const Eigen::VectorXd& per_hpa_in_proportion) const {
     Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(per_hpa.size(), per_hpa.size());
-    for (const Eigen::VectorXd& moved : {per_hpa, per_hpa_in_proportion})
-      covariance += (result_.pressure_error * moved) * (result_.pressure_error * moved).transpose();
+    const Eigen::VectorXd by_zero = result_.pressure_error * per_hpa;
+    const Eigen::VectorXd by_law = result_.law_error * per_hpa_in_proportion;
+    covariance += by_zero * by_zero.transpose() + by_law * by_law.transpose();
     covariance(0, 0) += result_.spread_of_flights * result_.spread_of_flights +
                         result_.spread_of_climbs * result_.spread_of_climbs;
     return covariance;
@@ -311,7 +368,7 @@ class TemperatureCalibration {
   }
 
   /// The range of the static pressure over the stretches by an error of one unit, hPa.
-  double range_of(PressureError error) const {
+  double range_of(HeightError error) const {
     double range = 0.0;
     double least = 0.0;
     double greatest = 0.0;
@@ -328,7 +385,7 @@ class TemperatureCalibration {
   }
 
   template <class Effect>
-  void find_law_error(PressureError error) {
+  void find_law_error(HeightError error) {
     const Eigen::Index n = as_index(terms_);
     const Eigen::Index at = as_index(calibration_terms + error);
     LawError found;
@@ -337,8 +394,16 @@ class TemperatureCalibration {
     // A pressure that is too high needs a correction that is lower.
     found.change = -likeliest_.equations.best_unknowns(n)[at];
     found.standard_error = std::sqrt(likeliest_.equations.covariance_of_unknowns(n)(at, at));
+    found.size = prior_.errors[error];
     found.range = std::abs(found.change) * range_of(error);
     if (likeliest_.equations.information(at, at) > 0.0) result_.law_errors.push_back(std::move(found));
+  }
+
+  void find_humidity_error() {
+    const Eigen::Index n = as_index(terms_);
+    const Eigen::Index at = as_index(calibration_terms + with_vapor);
+    result_.humidity_change = likeliest_.equations.best_unknowns(n)[at];
+    result_.humidity_error = std::sqrt(likeliest_.equations.covariance_of_unknowns(n)(at, at));
   }
 
   /// Where -2 ln L, with the noise and the other coefficients at their best, is 1 above its least, below and
@@ -365,15 +430,26 @@ class TemperatureCalibration {
     return {limit(-1.0), limit(1.0)};
   }
 
-  /// What least squares would add to the correction, once the errors of the law are taken off too.
+  /// What least squares would add to the correction as a constant, once the other errors are taken off too,
+  /// with slopes of isobars of each flight as unknowns: slopes that are estimated before would have in them
+  /// what a law errs by between climbs and descents. The mean over the flights, weighted.
   void compare_with_least_squares() {
     const HeightEquations::Vector unknowns = likeliest_.equations.best_unknowns(as_index(terms_));
-    std::vector<HeightRecord> left;
-    for (const HeightRecord& record : levelled_) left.push_back(without_unknowns(record, unknowns));
-    const TemperatureFit constant = fit_height_by_least_squares(left, 1);
-    result_.least_squares_add = constant.coefficients[0];
-    result_.least_squares_add_error =
-        constant.standard_errors[0] * std::sqrt(samples_as_one(left, constant.coefficients));
+    double weights = 0.0;
+    double sum = 0.0;
+    for (const HeightRecord& record : records_) {
+      std::vector<HeightRecord> left{without_unknowns(record, unknowns)};
+      const bool one_direction = record.way == WayKnown::length;
+      for (HeightBlock& block : left[0].blocks)
+        block.columns = {block.columns[0], one_direction ? block.north : block.east, block.north};
+      const std::size_t terms = prior_.slope == 0.0 ? 1 : one_direction ? 2 : 3;
+      const TemperatureFit fit = fit_height_by_least_squares(left, terms);
+      const double error = fit.standard_errors[0] * std::sqrt(samples_as_one(left, fit.coefficients));
+      weights += 1.0 / (error * error);
+      sum += fit.coefficients[0] / (error * error);
+    }
+    result_.least_squares_add = sum / weights;
+    result_.least_squares_add_error = std::sqrt(1.0 / weights);
   }
 
   void find_corrections() {
@@ -456,16 +532,25 @@ class TemperatureCalibration {
     return fmt::format("{} says {} K", part.part, with_error(part.correction, part.standard_error));
   }
 
+  /// Rms of heights about their mean in each stretch, with a correction and without the other errors, m.
+  double rms_without_other_errors(const std::vector<double>& coefficients) const {
+    HeightEquations::Vector others = likeliest_.equations.best_unknowns(as_index(terms_));
+    others.head(as_index(calibration_terms)).setZero();
+    std::vector<double> heights;
+    for (const HeightRecord& record : levelled_) {
+      const std::vector<double> own = height_differences(without_unknowns(record, others), coefficients);
+      heights.insert(heights.end(), own.begin(), own.end());
+    }
+    return rms(heights);
+  }
+
   /// Looks whether the correction is better than none.
   void compare_with_none() {
-    double before = 0.0;
-    double after = 0.0;
-    double count = 0.0;
-    for (const FlightHeights& flight : result_.flights) {
-      const auto n = static_cast<double>(flight.time.size());
-      before += n * flight.rms_before * flight.rms_before;
-      after += n * flight.rms_after * flight.rms_after;
-      count += n;
+    const double before = rms_without_other_errors({});
+    const double after = rms_without_other_errors(result_.likelihood.coefficients);
+    if (!dry_.empty()) {
+      result_.worse = dry_;
+      return;
     }
     const TemperatureCorrection& at = surest();
     const double gain = result_.degrees.front().deviance - result_.degrees[terms_].deviance;
@@ -486,7 +571,7 @@ class TemperatureCalibration {
       result_.worse = fmt::format(
           "heights keep less close to the integral with the correction than without (rms {:.2f} m and {:.2f} "
           "m), though it is likelier",
-          std::sqrt(after / count), std::sqrt(before / count));
+          after, before);
       return;
     }
     if (std::abs(result_.least_squares_add) > seen * result_.least_squares_add_error) {
@@ -525,9 +610,16 @@ class TemperatureCalibration {
       if (!is_seen(error)) continue;
       result_.warnings.push_back(fmt::format(
           "the heights see an error of the law of the static pressure: {} of {} lacks {}, a range of {:.2f} "
-          "hPa over the flights; it is not taken for the thermometer's, but as much may last unseen: refit "
-          "the law first",
-          error.parameter, error.effect, with_error(error.change, error.standard_error), error.range));
+          "hPa over the flights; it is not taken for the thermometer's, {}refit the law first",
+          error.parameter, error.effect, with_error(error.change, error.standard_error), error.range,
+          is_beyond_prior(error) ? "but as much may last unseen: "
+                                 : "and is within what is known of the law; "));
+    }
+    if (std::abs(result_.humidity_change) > seen * result_.humidity_error) {
+      result_.warnings.push_back(fmt::format(
+          "the heights see an error of the humidity: the vapour pressure lacks {} of it; compare it with "
+          "another hygrometer",
+          with_error(result_.humidity_change, result_.humidity_error)));
     }
   }
 
@@ -551,7 +643,7 @@ class TemperatureCalibration {
                       "behind the height",
                       std::max(result_.gps_noise, result_.gps_wander), result_.drift));
     }
-    if (prior_.pressure[with_attack] > 0.0 && result_.law_errors.size() < 2) {
+    if (prior_.errors[with_attack] > 0.0 && result_.law_errors.size() < 2) {
       notes.emplace_back(
           "the angle of attack is not known: an error of the law in proportion to it, which changes in a "
           "climb, is not taken off and may look like the thermometer's");
@@ -618,6 +710,7 @@ class TemperatureCalibration {
     temperature.emplace_back("samples", ProvenanceValue{static_cast<std::int64_t>(result_.samples)});
     temperature.emplace_back("sigma_m", ProvenanceValue{result_.likelihood.sigma});
     temperature.emplace_back("pressure_error_hpa", ProvenanceValue{result_.pressure_error});
+    temperature.emplace_back("law_error_hpa", ProvenanceValue{result_.law_error});
     Provenance& all = result_.model.provenance;
     all.erase(std::remove_if(all.begin(), all.end(),
                              [](const auto& entry) { return entry.first == "temperature"; }),
@@ -631,6 +724,8 @@ class TemperatureCalibration {
   const TemperatureOptions& options_;
   Workers workers_;
   bool has_radome_ = false;
+  std::string dry_;         // why the air of a flight that takes part must not be taken for dry
+  double law_error_ = 0.0;  // standard deviation of delta-p, hPa, before the heights are seen
   HeightPrior prior_;
   std::vector<HeightRecord> records_;
   std::vector<HeightRecord> levelled_;  // with an estimate of the slope of isobars taken off

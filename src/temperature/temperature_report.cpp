@@ -148,9 +148,9 @@ std::string with_error(double value, double error, std::string_view plus_minus) 
 std::string pressure_error_text(const TemperatureResult& result) {
   if (result.pressure_error > 0.0) {
     return fmt::format(
-        "Errors have in them one of the static pressure of {:.2g} hPa that lasts (--pressure-error "
-        "sets it)",
-        result.pressure_error);
+        "Errors have in them one of the static pressure of {:.2g} hPa that lasts, and one of its law in "
+        "proportion to the pressure, of {:.2g} hPa at the mean (--pressure-error sets both)",
+        result.pressure_error, result.law_error);
   }
   constexpr double usual = 0.3;  // hPa, the rms of the memo's eq. 18
   std::string moved;

@@ -102,7 +102,7 @@ TEST(HeightLikelihood, FilterIsGeneralisedLeastSquaresWrittenOut) {
   for (Eigen::Index i = 0; i < n; ++i) {
     const HeightBlock& block = record.blocks[static_cast<std::size_t>(i)];
     rows.row(i) << block.columns[0], block.columns[1], block.columns[2], block.errors[0], block.errors[1],
-        block.errors[2], block.errors[3], block.excess;
+        block.errors[2], block.errors[3], block.errors[4], block.excess;
   }
   // The unknown height at the start: project a constant off.
   const Eigen::LLT<Eigen::MatrixXd> factor(covariance);

@@ -85,6 +85,27 @@ TEST(HeightRecord, ErrorOfTheStaticPressureIsWhatItSays) {
   }
 }
 
+TEST(HeightRecord, ErrorOfTheHumidityIsWhatItSays) {
+  pcor::internal::FlightAir air = made::air({});
+  const double dry = pcor::dry_air<double>().gas_constant;
+  // Vapour that falls with the pressure, 0.5 % of R_a at the ground, and 20 % more of it.
+  const auto moist = [&](double part) {
+    for (std::size_t i = 0; i < air.size(); ++i)
+      air.gas_constant[i] = dry * (1.0 + part * 0.005 * std::pow(air.pressure[i] / 1000.0, 3));
+    return record_of(air);
+  };
+  const HeightRecord measured = moist(1.0);
+  const HeightRecord truth = moist(1.2);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < truth.blocks.size(); ++i) {
+    // The integral is linear in R_a: exact but for rounding.
+    const double lacks = 0.2 * measured.blocks[i].errors[pcor::internal::with_vapor];
+    EXPECT_NEAR(measured.blocks[i].excess - truth.blocks[i].excess, lacks, 1e-6);
+    largest = std::max(largest, lacks);
+  }
+  EXPECT_GT(largest, 1.0);  // m: 0.1 % of 2 km
+}
+
 TEST(HeightRecord, ErrorsOfTheLawAreWhatTheySay) {
   using pcor::internal::FlightAir;
   const FlightAir right = made::air({});
@@ -92,7 +113,7 @@ TEST(HeightRecord, ErrorsOfTheLawAreWhatTheySay) {
   options.recovers = true;
   const HeightRecord truth = pcor::internal::height_record(right, {}, options);
   // The error as a part of the pressure, for some 0.1 hPa each.
-  const auto part = [&right](pcor::internal::PressureError error, std::size_t i) {
+  const auto part = [&right](pcor::internal::HeightError error, std::size_t i) {
     if (error == pcor::internal::with_dynamic) return 1e-3 * right.dynamic[i] / right.pressure[i];
     if (error == pcor::internal::with_attack) return 1e-3 * right.attack_ratio[i];
     return 2e-4;

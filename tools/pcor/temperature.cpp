@@ -45,6 +45,7 @@ TemperatureOptions temperature_options(const Options& options) {
   result.least_climb_rate = options.least_climb_rate;
   result.skip_returning = options.skip_returning;
   result.archived = options.archived;
+  result.dry_air = options.force;
   return result;
 }
 
@@ -106,6 +107,7 @@ nlohmann::ordered_json as_json(const TemperatureResult& result) {
                                {"held_out_stderr", choice.held_out_error}});
   json["per_hpa"] = by_name(result.per_hpa);
   json["pressure_error_hpa"] = result.pressure_error;
+  json["law_error_hpa"] = result.law_error;
   json["noise"] = {{"gps_m", result.gps_noise},
                    {"gps_slow_m", result.gps_wander},
                    {"gps_memory_s", result.gps_wander_time},
@@ -118,7 +120,9 @@ nlohmann::ordered_json as_json(const TemperatureResult& result) {
                                   {"parameter", error.parameter},
                                   {"change", error.change},
                                   {"stderr", error.standard_error},
+                                  {"size", error.size},
                                   {"range_hpa", error.range}});
+  json["humidity"] = {{"change", result.humidity_change}, {"stderr", result.humidity_error}};
   json["parts"] = {{"flights", as_json(result.parts_by_flight)},
                    {"climbs_and_descents", as_json(result.parts_by_climb)},
                    {"spread_of_flights_k", result.spread_of_flights},
@@ -166,6 +170,8 @@ void print_law_errors(const TemperatureResult& result) {
   for (const LawError& error : result.law_errors)
     say("By the heights {} of {} lacks {}, a range of {:.2f} hPa over the flights: it is taken off.\n",
         error.parameter, error.effect, with_error(error.change, error.standard_error), error.range);
+  say("The vapour pressure lacks {} of it: that is taken off.\n",
+      with_error(result.humidity_change, result.humidity_error));
 }
 
 void print(const TemperatureResult& result) {
@@ -320,9 +326,9 @@ std::function<void()> add_temperature(CLI::App& program) {
       ->capture_default_str();
   command
       ->add_option("--pressure-error", options->pressure_error,
-                   "standard deviation of an error of the static pressure that lasts, hPa; it enters the "
-                   "standard errors (without it: the rms that the law states, 0.3 if none, 0.3 for the "
-                   "transducer, and what the heights see to be wrong with the law)")
+                   "standard deviation of errors of the static pressure that last, hPa, one the same at all "
+                   "pressures and one in proportion; they enter the standard errors (without it: 0.1 for the "
+                   "transducer, and for the law what the model states, 0.3 if nothing)")
       ->check(is_amount());
   command
       ->add_option("--min-climb-rate", options->least_climb_rate,

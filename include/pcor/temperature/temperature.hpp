@@ -36,17 +36,23 @@ struct TemperatureOptions {
   /// Usual slope of isobars, 1: 10 m in 100 km (memo, after eq. 24). The likelihood of `fitted` starts from
   /// it; what the other options but `none` take off leaves a third of it.
   double slope_size = 1e-4;
-  /// Usual error of the static pressure that lasts, hPa, the same in all flights. It makes the coefficients
-  /// less sure, and the heights do not tell it from the thermometer's. Absent: the rms that the law states,
-  /// else 0.3, three usual zeros of a transducer (psfd-bias), and the ranges of `LawError` that are beyond
-  /// three standard errors and 0.1 hPa, as the root of the sum of squares. At 0 errors do not know of it, and
-  /// `pressure_error_text` says how much it would move the coefficients.
+  /// Standard deviation of errors of the static pressure that last, hPa, the same in all flights: one that is
+  /// the same at all pressures, and one in proportion to the pressure. They make the coefficients less sure,
+  /// and the heights do not tell them from the thermometer's. Absent: of the first the standard error that
+  /// the model states of psfd-bias, else its usual size, 0.1; of the second what the model states of its law
+  /// ([uncertainty], covariance), else the rms that the law states, else 0.3, with 0.1 for the transducer,
+  /// and the ranges of each `LawError` beyond three times its size, as the root of the sum of squares. At 0
+  /// errors do not know of them, and `pressure_error_text` says how much the first would move the
+  /// coefficients.
   std::optional<double> pressure_error{};
   double least_climb_rate = 0.0;  ///< m/s: slower parts take no part (memo i)
   bool skip_returning = false;    ///< flights that end where they began take no part (memo v)
   /// The flights were written by `pcor process --hydrostatic` with the same model, but for its correction of
   /// the temperature: take -(R_a/g0) ln(p_i/p_(i-1)) and the temperature from there.
   bool archived = false;
+  /// Flights whose humidity is not known take part with dry air, however low they fly; `worse` says so. Else
+  /// those that reach below 5 km are left out.
+  bool dry_air = false;
   std::size_t threads = 0;  ///< 0: as many as processors, and one in a team of several
   std::function<void(std::size_t done, std::size_t total)>
       progress{};  ///< told after every flight of this member
@@ -77,13 +83,15 @@ struct TemperatureCorrection {
 };
 
 /// An error of the law of the static pressure that heights see in climbs, beside that of the thermometer. Its
-/// size beforehand is the usual one of the effect, whatever errors the law states of its coefficients: those
-/// know of the noise of a fit, not of an effect that it lacks.
+/// size beforehand is what the law states of delta-p as a whole, with 0.1 hPa more, since standard errors of
+/// coefficients know of the noise of a fit and not of the reference; of a law that states nothing and lacks
+/// the effect, the usual one of the effect.
 struct LawError {
   std::string effect{};     ///< of the catalogue
   std::string parameter{};  ///< its coefficient
   double change = 0.0;      ///< what the law's coefficient lacks, in its unit
   double standard_error = 0.0;
+  double size = 0.0;   ///< standard deviation beforehand, in the unit of the coefficient
   double range = 0.0;  ///< of the pressure over the flights by this error, hPa
 };
 
@@ -136,8 +144,13 @@ struct TemperatureResult {
   std::vector<DegreeChoice> degrees{};
   /// What an error of the static pressure of 1 hPa in all flights would do to the coefficients.
   std::vector<double> per_hpa{};
-  double pressure_error = 0.0;         ///< size of an error that lasts, hPa: it is in all errors
+  double pressure_error = 0.0;  ///< size of one that lasts, the same at all pressures, hPa: in all errors
+  double law_error = 0.0;  ///< size of one that lasts, in proportion to the pressure, at the mean, hPa: too
   std::vector<LawError> law_errors{};  ///< that the likelihood takes off
+  /// What the vapour pressure lacks by the heights, as a part of it; it is taken off, and its doubt is in all
+  /// errors. Its size beforehand is the usual one of humidity-error, 10 %.
+  double humidity_change = 0.0;
+  double humidity_error = 0.0;  ///< standard error
   /// Every flight by itself, and climbs and descents: where they differ by more than chance, which happens
   /// once in 100 times, the standard deviation between them is in all standard errors.
   std::vector<PartCorrection> parts_by_flight{};
@@ -168,8 +181,8 @@ struct TemperatureResult {
 ///
 /// The law of the static pressure may be wrong, and differently so in climbs than level: an error in
 /// proportion to the dynamic pressure, and one to the angle of attack where the model knows it, are found
-/// with the coefficients, and taken off. One that lasts is in their errors. One in proportion to the static
-/// pressure moves no height.
+/// with the coefficients, and taken off; so is one in proportion to the humidity. One that lasts is in their
+/// errors. One in proportion to the static pressure moves no height.
 ///
 /// @throws Error if no flight can be used: the message says why for the first one.
 TemperatureResult fit_temperature(const FlightSet& flights, const ModelFile& model,
