@@ -363,7 +363,16 @@ std::vector<std::size_t> to_show(const std::vector<FlightPart>& parts, std::size
   return flights_to_show(flights, most);
 }
 
-/// Adds to the sums of one model the variances that the noise gives them: one noise of all flights.
+/// The first of every so many.
+template <class Entry>
+std::vector<Entry> thinned_out(const std::vector<Entry>& all, std::size_t every) {
+  std::vector<Entry> some;
+  for (std::size_t k = 0; k < all.size(); k += every) some.push_back(all[k]);
+  return some;
+}
+
+/// Adds to the sums of one model the variances that the noise gives them. Its slow parts are those of
+/// all flights, found from six of them at most, its level that of each.
 /// @param records of own flights, of each model
 void add_variances(std::size_t model, const FlightShare& share,
                    const std::vector<std::vector<SummedRecords>>& records, std::size_t threads,
@@ -388,7 +397,10 @@ void add_variances(std::size_t model, const FlightShare& share,
   fit.left = [&](std::size_t f) { return (flights.residuals[f].array() - mean).matrix(); };
   const std::vector<NoiseModel> noise = noise_of_flights(
       share, flights, fit, [threads](const auto& bins, const auto& columns, const auto& left) {
-        return expected_noise(bins, columns, left, threads);
+        constexpr std::size_t enough = 6;
+        const std::size_t every = (bins.size() + enough - 1) / enough;
+        return expected_noise(thinned_out(bins, every), thinned_out(columns, every), thinned_out(left, every),
+                              threads);
       });
   const auto variances = share.map<std::vector<double>>(
       threads, [](std::size_t f) { return f; },

@@ -22,12 +22,14 @@ double width_of_bins(const std::vector<double>& residual, double step) {
 
 BinnedResidual::BinnedResidual(const std::vector<double>& residual, const std::vector<double>& time,
                                double step)
-    : records_(residual.size()), bins_(residual, time, step, width_of_bins(residual, step)) {
+    : bins_(residual, time, step, width_of_bins(residual, step)) {
   means_ = bins_.means(residual);
   const std::vector<std::size_t>& records = bins_.records();
   variance_ = Eigen::VectorXd::Zero(means_.size());
+  bin_of_.assign(residual.size(), -1);
   for (std::size_t k = 0; k < records.size(); ++k) {
     const Eigen::Index bin = bins_.bins()[k];
+    bin_of_[records[k]] = bin;
     variance_[bin] +=
         std::pow(residual[records[k]] - means_[bin], 2) / std::max(bins_.counts()[bin] - 1.0, 1.0);
   }
@@ -55,16 +57,15 @@ Eigen::MatrixXd BinnedResidual::covariance_of_sums(const std::vector<const doubl
 double BinnedResidual::variance_of_sum(const std::vector<std::size_t>& records, const NoiseModel& noise,
                                        std::size_t flight) const {
   if (bins_.size() == 0) return nan;
-  std::vector<double> ones(records_, 0.0);
-  for (const std::size_t record : records) ones[record] = 1.0;
-  double inside = bins_.means(ones).cwiseProduct(bins_.counts()).sum();
-  if (inside == 0.0) {  // as if they stood in one bin
-    inside = bins_.counts()[0];
-    for (std::size_t k = 0; k < bins_.bins().size() && bins_.bins()[k] == 0; ++k)
-      ones[bins_.records()[k]] = 1.0;
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(means_.size());
+  for (const std::size_t record : records) {
+    if (bin_of_[record] >= 0) sums[bin_of_[record]] += 1.0;
   }
-  const double scale = static_cast<double>(records.size()) / (outside_ * inside);
-  return scale * scale * covariance_of_sums({ones.data()}, noise, flight)(0, 0);
+  if (sums.sum() == 0.0) sums[0] = 1.0;  // as if they stood in one bin
+  const double scale = static_cast<double>(records.size()) / sums.sum();
+  const double within =
+      (variance_.array() * sums.array() * (1.0 - sums.array() / bins_.counts().array())).sum();
+  return scale * scale * (within + noise_covariance(sums, bins_, noise, flight)(0, 0));
 }
 
 NoiseModel noise_about_mean(const std::vector<Binning>& bins, std::vector<Eigen::VectorXd> residuals,

@@ -33,11 +33,11 @@ class BinnedResidual {
                          std::size_t flight) const;
 
  private:
-  std::size_t records_ = 0;  ///< of the series, used or not
-  double outside_ = 1.0;     ///< records that are used for each one in a bin
+  double outside_ = 1.0;  ///< records that are used for each one in a bin
   Binning bins_{};
   Eigen::VectorXd means_{};
-  Eigen::VectorXd variance_{};  ///< of the records about the mean of each bin
+  std::vector<Eigen::Index> bin_of_{};  ///< of each record; -1 for none
+  Eigen::VectorXd variance_{};          ///< of the records about the mean of each bin
 };
 
 /// The noise of residuals of flights about their common mean. @param residuals in bins
