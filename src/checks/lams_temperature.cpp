@@ -100,7 +100,7 @@ Part part_of(const Differences& all, std::string name, const Condition& conditio
 ReportTable part_table(const std::vector<Part>& parts) {
   ReportTable table;
   table.title = "The laser's temperature less the thermometer's";
-  table.caption = "Errors allow for the autocorrelation of the differences.";
+  table.caption = "Errors allow for memory and slow drift of the differences.";
   table.headers = {"where", "samples", "mean, K", "std. error", "scatter, K"};
   for (const Part& part : parts) {
     if (part.fit.samples < fewest_samples) continue;

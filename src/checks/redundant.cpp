@@ -5,26 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <pcor/numerics/noise.hpp>
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
 namespace {
-
-/// For how many samples one independent one stands, in the distances from a line.
-double memory_of(const LineFit& line, const Redundant& both) {
-  std::vector<double> left(both.first.size());
-  for (std::size_t i = 0; i < left.size(); ++i)
-    left[i] = both.second[i] - line.offset - line.slope * both.first[i];
-  return mean_of(left, both.time, both.step).samples_per_independent;
-}
-
-LineFit with_memory(LineFit line, const Redundant& both) {
-  const double root = std::sqrt(memory_of(line, both));
-  line.slope_error *= root;
-  line.offset_error *= root;
-  return line;
-}
 
 /// The records in the air at which the pressure does not change faster than `fastest_of_avionics`.
 std::vector<bool> steady(const CheckedFlight& flight, const std::vector<double>& pressure) {
@@ -61,8 +45,15 @@ Redundant redundant(const CheckedFlights& flights, const SeriesOfFlight& first, 
 
 RedundantFit fit_of(const Redundant& both) {
   RedundantFit fit;
-  fit.ordinary = with_memory(ordinary_fit(both.first, both.second), both);
-  fit.orthogonal = with_memory(orthogonal_fit(both.first, both.second), both);
+  fit.ordinary = ordinary_fit(both.first, both.second);
+  fit.orthogonal = orthogonal_fit(both.first, both.second);
+  // Of pressures that vary by hundreds of times their differences the two lines have the same errors.
+  const LeastSquares line = least_squares({std::vector<double>(both.first.size(), 1.0), both.first},
+                                          both.second, both.time, both.step);
+  for (LineFit* const each : {&fit.ordinary, &fit.orthogonal}) {
+    each->offset_error = line.coefficients[0].error;
+    each->slope_error = line.coefficients[1].error;
+  }
   std::vector<double> difference(both.first.size());
   for (std::size_t i = 0; i < difference.size(); ++i) difference[i] = both.second[i] - both.first[i];
   const LeastSquares mean = mean_of(difference, both.time, both.step);
@@ -128,7 +119,7 @@ ReportTable table_of(const RedundantFit& fit, const std::string& title) {
   ReportTable table;
   table.title = title;
   table.caption =
-      "Standard errors allow for the autocorrelation of the differences. The offset is that at 0 hPa.";
+      "Standard errors allow for memory and slow drift of the differences. The offset is that at 0 hPa.";
   table.headers = {"fit", "slope", "std. error", "offset, hPa", "std. error", "rms, hPa"};
   const auto row = [&](const char* name, const LineFit& line) {
     table.rows.push_back({name, fmt::format("{:.6f}", line.slope), fmt::format("{:.6f}", line.slope_error),

@@ -12,6 +12,8 @@
 #include <pcor/flight/flight_writer.hpp>
 #include <pcor/words/error.hpp>
 
+#include "campaign/binned_flights.hpp"
+#include "numerics/binned_residual.hpp"
 #include "numerics/missing.hpp"
 #include "report/shown_flights.hpp"
 #include "residuals/flight_statistics.hpp"
@@ -91,6 +93,16 @@ struct ModelSums {
 
   void add(const ModelSums& other);
 
+  /// Visits the sums over all samples, over each regime and over each band, in this order.
+  template <class Visit>
+  void each_part(const Visit& visit) {
+    visit(all);
+    for (ResidualSums& regime : regimes) visit(regime);
+    for (auto& bands_of_variable : bands) {
+      for (auto& [band, sums] : bands_of_variable) visit(sums);
+    }
+  }
+
   template <class Archive>
   void serialize(Archive& archive) {
     archive(all, flaps_out, wanted, wanted_squares, regimes, bands, worst);
@@ -128,7 +140,7 @@ std::vector<WorstInterval> worst_of(const FlightResiduals& flight, const std::ve
     std::size_t i = first;
     for (; i < values.size() && samples.time[i] < samples.time[first] + worst_length; ++i) {
       if (std::isnan(values[i])) continue;
-      sums.add(values[i], noise.local_rms[i], 1.0);
+      sums.add(values[i], noise.local_rms[i]);
       flown |= regimes[i];
     }
     if (sums.samples > 0 && sums.samples >= enough) {
@@ -141,16 +153,27 @@ std::vector<WorstInterval> worst_of(const FlightResiduals& flight, const std::ve
   return worst;
 }
 
-ModelSums sums_of(const FlightResiduals& flight, std::size_t model, const NoiseFloor& noise) {
+/// A residual of one model on a flight in bins, and the records of each part that is summed.
+struct SummedRecords {
+  BinnedResidual residual{};
+  std::vector<std::vector<std::size_t>> parts{};  // in the order of `ModelSums::each_part`
+};
+
+/// @param records gets those of the parts, without which there are no errors
+ModelSums sums_of(const FlightResiduals& flight, std::size_t model, const NoiseFloor& noise,
+                  SummedRecords& records) {
   const std::vector<double>& values = flight.values[model];
   const std::vector<double>& wanted = flight.reference_defects[model];
   const FlightSamples& samples = *flight.samples;
-  const double memory = memory_of_flight(samples, values, noise);
   const std::vector<RegimeSet> regimes = regimes_of_samples(samples.time, samples.intervals);
   ModelSums sums;
+  std::map<const ResidualSums*, std::vector<std::size_t>> records_of;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (std::isnan(values[i])) continue;
-    const auto count = [&](ResidualSums& part) { part.add(values[i], noise.local_rms[i], memory); };
+    const auto count = [&](ResidualSums& part) {
+      part.add(values[i], noise.local_rms[i]);
+      records_of[&part].push_back(i);
+    };
     count(sums.all);
     sums.wanted += wanted[i];
     sums.wanted_squares += wanted[i] * wanted[i];
@@ -162,6 +185,8 @@ ModelSums sums_of(const FlightResiduals& flight, std::size_t model, const NoiseF
       if (!std::isnan(value)) count(sums.bands[b][std::lround(std::floor(value / bandings[b].width))]);
     }
   }
+  sums.each_part([&](const ResidualSums& part) { records.parts.push_back(std::move(records_of[&part])); });
+  records.residual = BinnedResidual(values, samples.time, samples.step);
   sums.worst = worst_of(flight, values, noise, regimes);
   if (has_value(flight.flaps_out[model])) sums.flaps_out = sums_of_flight(samples, flight.flaps_out[model]);
   return sums;
@@ -181,7 +206,8 @@ ModelComparison comparison_of(const std::string& name, const Reference& referenc
   const double variation = sums.wanted_squares - sums.wanted * sums.wanted / count;
   const bool varies = reference.is_static_pressure() && variation > count * smallest_variance;
   result.r_squared = varies ? 1.0 - sums.all.squares / variation : nan;
-  result.samples_per_independent = count / sums.all.independent;
+  result.samples_per_independent =
+      std::max(1.0, sums.all.sum_variance / (count * result.all.scatter() * result.all.scatter()));
   for (std::size_t r = 0; r < regime_count; ++r) {
     if (sums.regimes[r].samples > 0)
       result.regimes.push_back({std::string(regime_facts[r].name), sums.regimes[r].statistics()});
@@ -304,13 +330,16 @@ struct FlightPart {
   }
 };
 
-FlightPart part_of(FlightResiduals flight, bool with_series) {
+/// @param records gets those of each model
+FlightPart part_of(FlightResiduals flight, bool with_series, std::vector<SummedRecords>& records) {
   FlightPart part;
   part.name = flight.samples->name;
   part.begin = flight.samples->time.front();
   part.intervals = flight.samples->intervals;
   const NoiseFloor noise = lowest_noise(flight);
-  for (std::size_t m = 0; m < flight.values.size(); ++m) part.models.push_back(sums_of(flight, m, noise));
+  records.resize(flight.values.size());
+  for (std::size_t m = 0; m < flight.values.size(); ++m)
+    part.models.push_back(sums_of(flight, m, noise, records[m]));
   for (std::size_t i = 0; i < flight.mask.size(); ++i) {
     ++part.masks[static_cast<std::size_t>(flight.mask[i])];
     if (flight.mask[i] != Mask::none) continue;
@@ -334,6 +363,60 @@ std::vector<std::size_t> to_show(const std::vector<FlightPart>& parts, std::size
   return flights_to_show(flights, most);
 }
 
+/// The first of every so many.
+template <class Entry>
+std::vector<Entry> thinned_out(const std::vector<Entry>& all, std::size_t every) {
+  std::vector<Entry> some;
+  for (std::size_t k = 0; k < all.size(); k += every) some.push_back(all[k]);
+  return some;
+}
+
+/// Adds to the sums of one model the variances that the noise gives them. Its slow parts are those of
+/// all flights, found from six of them at most, its level that of each.
+/// @param records of own flights, of each model
+void add_variances(std::size_t model, const FlightShare& share,
+                   const std::vector<std::vector<SummedRecords>>& records, std::size_t threads,
+                   std::vector<FlightPart>& parts) {
+  BinnedFlights flights;
+  for (std::size_t f = 0; f < parts.size(); ++f) {
+    static const BinnedResidual none;
+    const BinnedResidual& own = share.owns(f) ? records[f][model].residual : none;
+    flights.bins.push_back(own.bins());
+    flights.residuals.push_back(own.means());
+    flights.reference.push_back(0);
+  }
+  flights.outlines = share.of_each_flight<NoiseFlight>([&](std::size_t f) {
+    const Binning& bins = flights.bins[f];
+    return NoiseFlight{bins.size() > 0 ? bins.time().front() : 0.0, bins.size()};
+  });
+  ResidualSums all;
+  for (const FlightPart& part : parts) all.add(part.models[model].all);
+  const double mean = all.statistics().bias;
+  BinnedFit fit;
+  fit.columns = [&](std::size_t f) { return Eigen::MatrixXd::Ones(flights.residuals[f].size(), 1); };
+  fit.left = [&](std::size_t f) { return (flights.residuals[f].array() - mean).matrix(); };
+  const std::vector<NoiseModel> noise = noise_of_flights(
+      share, flights, fit, [threads](const auto& bins, const auto& columns, const auto& left) {
+        constexpr std::size_t enough = 6;
+        const std::size_t every = (bins.size() + enough - 1) / enough;
+        return expected_noise(thinned_out(bins, every), thinned_out(columns, every), thinned_out(left, every),
+                              threads);
+      });
+  const auto variances = share.map<std::vector<double>>(
+      threads, [](std::size_t f) { return f; },
+      [&](std::size_t f, std::size_t) {
+        const SummedRecords& summed = records[f][model];
+        std::vector<double> result;
+        for (const std::vector<std::size_t>& part : summed.parts)
+          result.push_back(part.empty() ? 0.0 : summed.residual.variance_of_sum(part, noise[f], 0));
+        return result;
+      });
+  for (std::size_t f = 0; f < parts.size(); ++f) {
+    auto variance = variances[f].begin();
+    parts[f].models[model].each_part([&](ResidualSums& part) { part.sum_variance = *variance++; });
+  }
+}
+
 /// Holds contenders against a reference. Without samples there are no models in the result.
 Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& flights,
                         const CompareOptions& options, const std::function<void()>& tell) {
@@ -348,20 +431,25 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
       samples.push_back(flights.samples(number, contender.model, reference, options.mask));
     return samples;
   };
-  const auto make = [&](const SamplesOfPairings& samples, bool with_series) {
+  const auto make = [&](const SamplesOfPairings& samples, bool with_series,
+                        std::vector<SummedRecords>& records) {
     std::vector<std::string> notes;
-    FlightPart part = part_of(residuals_on(samples, pairings, options.mask, notes), with_series);
+    FlightPart part = part_of(residuals_on(samples, pairings, options.mask, notes), with_series, records);
     part.notes = std::move(notes);
     return part;
   };
   const bool keeps_all = flights.size() <= options.most_series;
+  const std::size_t threads = Workers(flights.team(), 0).threads;
+  std::vector<std::vector<SummedRecords>> records(flights.size());
   auto parts = flights.share().map<FlightPart>(
-      Workers(flights.team(), 0).threads,
+      threads,
       [&](std::size_t number) {
         tell();
         return read(number);
       },
-      [&](std::size_t, const SamplesOfPairings& samples) { return make(samples, keeps_all); });
+      [&](std::size_t number, const SamplesOfPairings& samples) {
+        return make(samples, keeps_all, records[number]);
+      });
   std::vector<FlightNote> notes;
   PairMoments pressures;
   PairMoments total_pressures;
@@ -376,6 +464,7 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
   result.notes = notes_of_flights(notes);
   if (result.masks[0] == 0) return result;
   for (std::size_t m = 0; m < pairings.size(); ++m) {
+    add_variances(m, flights.share(), records, threads, parts);
     ModelSums sums;
     std::vector<PartStatistics> of_flights;
     for (const FlightPart& part : parts) {
@@ -389,8 +478,10 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
   if (total_pressures.samples > 0) result.total_pressure = ordinary_fit(total_pressures);
   if (keeps_all) return result;
   const std::vector<std::size_t> shown = to_show(parts, options.most_series);
-  for (FlightPart& part : flights.share().of_entries(shown).of_each_flight<FlightPart>(
-           [&](std::size_t k) { return make(read(shown[k]), true); }))
+  for (FlightPart& part : flights.share().of_entries(shown).of_each_flight<FlightPart>([&](std::size_t k) {
+         std::vector<SummedRecords> not_needed;
+         return make(read(shown[k]), true, not_needed);
+       }))
     result.flights.push_back(std::move(*part.series));
   return result;
 }

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <pcor/numerics/noise.hpp>
-#include "numerics/missing.hpp"
-
+#include "numerics/binned_residual.hpp"
 #include "numerics/decompositions.hpp"
+#include "numerics/missing.hpp"
+#include "numerics/triangular_factor.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -18,9 +18,53 @@ bool takes_part(const std::vector<std::vector<double>>& columns, const std::vect
          std::all_of(columns.begin(), columns.end(), [i](const auto& c) { return std::isfinite(c[i]); });
 }
 
-/// The parts of a series without a gap in time.
-std::vector<Stretch> segments_of(const std::vector<double>& time, double step) {
-  return stretches_of(std::vector<double>(time.size(), 0.0), time, step);
+/// The series of flights that follow each other: where the time goes back, or on by more than an hour,
+/// another flight begins. What ends each.
+std::vector<std::size_t> ends_of_flights(const std::vector<double>& time) {
+  constexpr double longest_gap = 3600.0;  // s
+  std::vector<std::size_t> ends;
+  for (std::size_t i = 1; i <= time.size(); ++i) {
+    const bool goes_on = i < time.size() && time[i] > time[i - 1] && time[i] < time[i - 1] + longest_gap;
+    if (!goes_on) ends.push_back(i);
+  }
+  return ends;
+}
+
+std::vector<double> part_of(const std::vector<double>& values, std::size_t first, std::size_t last) {
+  return {values.begin() + static_cast<std::ptrdiff_t>(first),
+          values.begin() + static_cast<std::ptrdiff_t>(last)};
+}
+
+/// The covariance matrix of the sums (column . noise) over the samples that have a residual, which is what
+/// the columns leave.
+Eigen::MatrixXd covariance_of_sums(const std::vector<std::vector<double>>& columns,
+                                   const std::vector<double>& residual, const std::vector<double>& time,
+                                   double step) {
+  std::vector<BinnedResidual> flights;
+  std::vector<Binning> bins;
+  std::vector<Eigen::MatrixXd> columns_of_flights;
+  std::vector<Eigen::VectorXd> means;
+  std::vector<std::size_t> begins;
+  std::size_t first = 0;
+  for (const std::size_t last : ends_of_flights(time)) {
+    const BinnedResidual& flight =
+        flights.emplace_back(part_of(residual, first, last), part_of(time, first, last), step);
+    bins.push_back(flight.bins());
+    means.push_back(flight.means());
+    Eigen::MatrixXd& binned = columns_of_flights.emplace_back(means.back().size(), columns.size());
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      binned.col(as_index(c)) = flight.bins().means(part_of(columns[c], first, last));
+    begins.push_back(first);
+    first = last;
+  }
+  const NoiseModel noise = expected_noise(bins, columns_of_flights, means, 1);
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(as_index(columns.size()), as_index(columns.size()));
+  for (std::size_t f = 0; f < flights.size(); ++f) {
+    std::vector<const double*> here;
+    for (const std::vector<double>& column : columns) here.push_back(column.data() + begins[f]);
+    covariance += flights[f].covariance_of_sums(here, noise, f);
+  }
+  return covariance;
 }
 
 }  // namespace
@@ -55,26 +99,12 @@ LeastSquares least_squares(const std::vector<std::vector<double>>& columns, cons
   for (Eigen::Index r = 0; r < rows; ++r) fit.residuals[places[static_cast<std::size_t>(r)]] = left(r);
   fit.rms = std::sqrt(left.squaredNorm() / static_cast<double>(rows));
 
-  const Autoregression noise = autoregression(fit.residuals, stretches_of(fit.residuals, time, step));
-  std::vector<std::vector<double>> known(width, std::vector<double>(y.size(), 0.0));
-  std::vector<const double*> pointers;
-  for (std::size_t c = 0; c < width; ++c) {
-    for (const std::size_t place : places) known[c][place] = columns[c][place];
-    pointers.push_back(known[c].data());
-  }
-  const std::vector<double> sums = covariance_of_sums(noise, pointers, segments_of(time, step));
-  const Eigen::Map<const Eigen::MatrixXd> middle(sums.data(), across, across);
   const Eigen::MatrixXd inverse = inverse_of(x.transpose() * x);
-  const Eigen::MatrixXd covariance = inverse * middle * inverse;
-  const double memory = noise.samples_per_independent(fit.rms);
-  fit.samples_per_independent = std::isfinite(memory) ? std::max(memory, 1.0) : 1.0;
-  const auto unknowns = static_cast<double>(width);
-  const double independent =
-      std::max(static_cast<double>(fit.samples) / fit.samples_per_independent, unknowns + 1.0);
-  const double taken_up = independent / (independent - unknowns);
+  const Eigen::MatrixXd covariance =
+      inverse * covariance_of_sums(columns, fit.residuals, time, step) * inverse;
   for (std::size_t c = 0; c < width; ++c) {
     const auto place = static_cast<Eigen::Index>(c);
-    fit.coefficients[c] = {solution(place), std::sqrt(std::max(covariance(place, place), 0.0) * taken_up)};
+    fit.coefficients[c] = {solution(place), std::sqrt(std::max(covariance(place, place), 0.0))};
   }
   return fit;
 }

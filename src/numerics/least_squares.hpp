@@ -11,20 +11,19 @@ struct Estimated {
   double error = 0.0;
 };
 
-/// Least squares of a few columns, with errors that know that neighbours in time err alike.
+/// Least squares of a few columns, with errors that know the memory and the slow drift of the noise.
 struct LeastSquares {
   std::vector<Estimated> coefficients{};  ///< one for each column; NaN where the fit is not possible
   std::vector<double> residuals{};        ///< of each sample; NaN where it took no part
   double rms = 0.0;                       ///< of the residuals
   std::size_t samples = 0;
-  double samples_per_independent = 1.0;  ///< of the residuals
 };
 
-/// Fits y = c_1 x_1 + c_2 x_2 + ... over the samples at which all have a value. The noise is the
-/// autoregression that fits the residuals best, and the covariance of the coefficients is
-/// (X'X)^-1 X'C X (X'X)^-1 with its autocovariance C, times n/(n - k) for n independent samples and k
-/// columns. NaN where the columns are not independent or there are fewer than three samples more than
-/// columns.
+/// Fits y = c_1 x_1 + c_2 x_2 + ... over the samples at which all have a value. The covariance of the
+/// coefficients is (X'X)^-1 X'C X (X'X)^-1 with the covariance C of the noise that the residuals show, memory
+/// and slow drift included (`expected_noise`). Where the time goes back, or on by more than an hour, another
+/// flight begins, whose noise is independent. NaN where the columns are not independent or there are fewer
+/// than three samples more than columns.
 LeastSquares least_squares(const std::vector<std::vector<double>>& columns, const std::vector<double>& y,
                            const std::vector<double>& time, double step);
 

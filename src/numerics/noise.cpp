@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include "numerics/local_noise.hpp"
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
@@ -124,12 +123,6 @@ NoiseFloor noise_floor(const std::vector<double>& values, const std::vector<Stre
   }
   floor.samples_per_independent = 1.0 + 2.0 * sum;
   return floor;
-}
-
-double Autoregression::samples_per_independent(double rms) const {
-  const double gain = 1.0 - std::accumulate(coefficients.begin(), coefficients.end(), 0.0);
-  const double level = innovation_rms / (gain * rms);
-  return level * level;
 }
 
 Autoregression autoregression(const std::vector<double>& values, const std::vector<Stretch>& stretches,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numeric>
 
 #include "numerics/decompositions.hpp"
@@ -286,6 +287,74 @@ FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen:
   for (Eigen::VectorXd& level : noise.level) level *= noise.scale;
   for (double& slow : noise.slow) slow *= noise.scale;
   return found;
+}
+
+namespace {
+
+/// Sizes of the slow parts, of the rms of the residuals, and how probable they are before the residuals are
+/// seen. The two parts that a flight tells badly have any of five sizes, or none, which is four times as
+/// probable; beside the slower one that which is slower still has the same size, or, three times as probable,
+/// is absent.
+struct SlowSizes {
+  std::array<double, 3> slowest{};
+  double prior = 1.0;
+};
+
+constexpr std::size_t first_uncertain = 2;  // among the slow parts
+
+std::vector<SlowSizes> possible_sizes() {
+  constexpr std::array<double, 6> sizes{0.0, 0.1, 0.2, 0.4, 0.8, 1.6};
+  constexpr double absent = 4.0;
+  constexpr double beyond = 0.3;
+  std::vector<SlowSizes> possible;
+  for (const double one : sizes) {
+    for (const double next : sizes) {
+      const double prior = one > 0.0 ? 1.0 : absent;
+      possible.push_back({{one, next, 0.0}, next > 0.0 ? prior : prior * absent});
+      if (next > 0.0) possible.push_back({{one, next, next}, prior * beyond});
+    }
+  }
+  return possible;
+}
+
+}  // namespace
+
+NoiseModel expected_noise(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
+                          const std::vector<Eigen::VectorXd>& residuals, std::size_t threads) {
+  NoiseModel noise = find_noise(bins, columns, residuals, threads).model;
+  std::vector<double> all;
+  for (const Eigen::VectorXd& residual : residuals) all.insert(all.end(), residual.begin(), residual.end());
+  const double rms = robust_deviation(all);
+  if (rms == 0.0) {  // most are the same: what differs is white
+    noise.scale = std::sqrt(std::inner_product(all.begin(), all.end(), all.begin(), 0.0) /
+                            static_cast<double>(all.size()));
+    for (Eigen::VectorXd& level : noise.level) level.setConstant(noise.scale);
+  }
+  if (!noise.drifts()) return noise;
+  RestrictedLikelihood likelihood(bins, columns, residuals, threads);
+  NoiseModel tried = noise;
+  std::array<double, slow_times.size()> squares{};
+  double variance = 0.0;
+  double sum = 0.0;
+  double most = -std::numeric_limits<double>::infinity();
+  for (const SlowSizes& sizes : possible_sizes()) {
+    for (std::size_t k = 0; k < sizes.slowest.size(); ++k)
+      tried.slow[first_uncertain + k] = sizes.slowest[k] * rms;
+    const RestrictedLikelihood::Value value = likelihood(tried);
+    const double logarithm = std::log(sizes.prior) - 0.5 * value.restricted;
+    const double before = logarithm > most ? std::exp(most - logarithm) : 1.0;  // in units of the likeliest
+    most = std::max(most, logarithm);
+    const double weight = std::exp(logarithm - most);
+    sum = before * sum + weight;
+    variance = before * variance + weight * value.variance;
+    for (std::size_t k = 0; k < squares.size(); ++k)
+      squares[k] = before * squares[k] + weight * value.variance * tried.slow[k] * tried.slow[k];
+  }
+  const double scale = std::sqrt(variance / sum);
+  noise.scale *= scale;
+  for (Eigen::VectorXd& level : noise.level) level *= scale;
+  for (std::size_t k = 0; k < squares.size(); ++k) noise.slow[k] = std::sqrt(squares[k] / sum);
+  return noise;
 }
 
 NoiseModel with_slower_noise(NoiseModel noise) {

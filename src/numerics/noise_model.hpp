@@ -66,6 +66,12 @@ Eigen::VectorXd level_of_bins(const std::vector<NoiseLevel>& levels, const Binni
 FoundNoise find_noise(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
                       const std::vector<Eigen::VectorXd>& residuals, std::size_t threads = 0);
 
+/// The noise for the errors of means: that of `find_noise`, where it drifts with the variances of its slowest
+/// parts, from 800 s on, as they are expected, averaged over sizes with their restricted likelihood. A few
+/// flights tell these parts badly, and the most likely sizes are too small in the mean.
+NoiseModel expected_noise(const std::vector<Binning>& bins, const std::vector<Eigen::MatrixXd>& columns,
+                          const std::vector<Eigen::VectorXd>& residuals, std::size_t threads = 0);
+
 /// The noise as if it went on beyond what the flights tell: each part as large, at least, as the two before
 /// it are in the mean, as it is of 1/f noise. That the slowest parts are not seen in a flight or two does not
 /// say that they are not there.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "numerics/binned_residual.hpp"
 #include "numerics/missing.hpp"
 
 namespace pcor::internal {
@@ -31,34 +32,18 @@ NoiseFloor noise_of_flight(const FlightSamples& samples, const std::vector<doubl
   return noise_floor(residual, stretches_of(residual, samples.time, samples.step), samples.step);
 }
 
-double memory_of_flight(const FlightSamples& samples, const std::vector<double>& residual,
-                        const NoiseFloor& noise) {
-  std::vector<double> centred = residual;
-  double sum = 0.0;
-  double squares = 0.0;
-  std::size_t count = 0;
-  for (const double value : residual) {
-    if (std::isnan(value)) continue;
-    sum += value;
-    squares += value * value;
-    ++count;
-  }
-  const double mean = sum / static_cast<double>(count);
-  for (double& value : centred) value -= mean;
-  const Autoregression process = autoregression(centred, stretches_of(centred, samples.time, samples.step));
-  const double variance = squares / static_cast<double>(count) - mean * mean;
-  const double memory = process.samples_per_independent(std::sqrt(std::max(variance, 0.0)));
-  return std::isfinite(memory) ? std::max(memory, noise.samples_per_independent)
-                               : noise.samples_per_independent;
-}
-
 ResidualSums sums_of_flight(const FlightSamples& samples, const std::vector<double>& residual,
                             const NoiseFloor& noise) {
-  const double memory = memory_of_flight(samples, residual, noise);
   ResidualSums sums;
+  std::vector<std::size_t> used;
   for (std::size_t i = 0; i < residual.size(); ++i) {
-    if (!std::isnan(residual[i])) sums.add(residual[i], noise.local_rms[i], memory);
+    if (std::isnan(residual[i])) continue;
+    sums.add(residual[i], noise.local_rms[i]);
+    used.push_back(i);
   }
+  const BinnedResidual binned(residual, samples.time, samples.step);
+  const NoiseModel found = noise_about_mean({binned.bins()}, {binned.means()}, 1);
+  sums.sum_variance = binned.variance_of_sum(used, found, 0);
   return sums;
 }
 

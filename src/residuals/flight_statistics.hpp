@@ -23,11 +23,6 @@ std::vector<double> only_where(const std::vector<double>& values, const std::vec
 /// The noise floor of a flight. @param residual NaN where a sample takes no part
 NoiseFloor noise_of_flight(const FlightSamples& samples, const std::vector<double>& residual);
 
-/// For how many samples one independent one stands: in the residual as it is, with what the model misses, or
-/// in the noise alone, whichever is more.
-double memory_of_flight(const FlightSamples& samples, const std::vector<double>& residual,
-                        const NoiseFloor& noise);
-
 /// The sums of a residual that is NaN where it does not count. @param noise of the flight, which may be that
 /// of more samples
 ResidualSums sums_of_flight(const FlightSamples& samples, const std::vector<double>& residual,

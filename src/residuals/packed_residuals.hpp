@@ -58,7 +58,7 @@ void serialize(Archive& archive, pcor::FlightSamples& samples) {
 
 template <class Archive>
 void serialize(Archive& archive, pcor::internal::ResidualSums& sums) {
-  archive(sums.samples, sums.sum, sums.squares, sums.noise_squares, sums.independent);
+  archive(sums.samples, sums.sum, sums.squares, sums.noise_squares, sums.sum_variance);
 }
 
 /// The samples of a flight that several may hold, or none: each that gets them holds its own.

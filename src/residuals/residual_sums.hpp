@@ -12,9 +12,10 @@ struct ResidualSums {
   double sum = 0.0;
   double squares = 0.0;
   double noise_squares = 0.0;
-  double independent = 0.0;  ///< samples that count as independent
+  double sum_variance = 0.0;  ///< of `sum`, by the noise; NaN: not known
 
-  void add(double residual, double noise, double samples_per_independent);
+  /// Adds a sample, without what it adds to `sum_variance`.
+  void add(double residual, double noise);
   void add(const ResidualSums& other);
   Statistics statistics() const;
 };

@@ -12,12 +12,11 @@ namespace pcor {
 
 using namespace internal;
 
-void ResidualSums::add(double residual, double noise, double samples_per_independent) {
+void ResidualSums::add(double residual, double noise) {
   ++samples;
   sum += residual;
   squares += residual * residual;
   noise_squares += noise * noise;
-  independent += 1.0 / samples_per_independent;
 }
 
 void ResidualSums::add(const ResidualSums& other) {
@@ -25,7 +24,7 @@ void ResidualSums::add(const ResidualSums& other) {
   sum += other.sum;
   squares += other.squares;
   noise_squares += other.noise_squares;
-  independent += other.independent;
+  sum_variance += other.sum_variance;
 }
 
 Statistics ResidualSums::statistics() const {
@@ -39,7 +38,7 @@ Statistics ResidualSums::statistics() const {
   result.bias = sum / count;
   result.rms = std::sqrt(squares / count);
   result.noise_rms = std::sqrt(noise_squares / count);
-  result.bias_error = independent > 1.0 ? result.scatter() / std::sqrt(independent) : nan;
+  result.bias_error = std::sqrt(sum_variance) / count;
   return result;
 }
 

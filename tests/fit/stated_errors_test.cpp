@@ -5,12 +5,12 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "support/made_samples.hpp"
 #include "support/many_seeds.hpp"
+#include "support/nuisance.hpp"
 
 // Scores of refitted coefficients, (estimate - truth) / stated error, over flights whose noise is slower and
 // less tidy than an autoregression: their rms is near one.
@@ -22,25 +22,8 @@ using Flights = std::vector<std::shared_ptr<const pcor::FlightSamples>>;
 const std::map<std::string, double> truth{
     {"static-constant.a0", 0.004127875}, {"static-alpha.a1", 0.021279816}, {"static-qp.a2", 0.030849643}};
 
-/// What is added to the reference pressure beside noise of 0.3 hPa that remembers itself for 3 s.
-struct Nuisance {
-  double drift = 0.0;       ///< hPa
-  double drift_time = 1.0;  ///< s
-  double flicker = 0.0;     ///< rms of 1/f noise in a decade of frequency, hPa
-  bool bursts = false;      ///< half a minute with five times the noise, every ten minutes
-  bool stuck = false;       ///< the reference stands still for a minute
-  bool is_off = false;      ///< zero, gain and drift of the reference are off by draws of their usual doubts
-};
-
-void add_process(std::vector<double>& series, std::mt19937_64& engine, double rms, double memory) {
-  std::normal_distribution<double> normal;
-  const double keep = std::exp(-1.0 / memory);
-  double value = rms * normal(engine);
-  for (double& each : series) {
-    each += value;
-    value = keep * value + std::sqrt(1.0 - keep * keep) * rms * normal(engine);
-  }
-}
+/// Beside it stands noise of 0.3 hPa that remembers itself for 3 s.
+using pcor::test::Nuisance;
 
 std::shared_ptr<const pcor::FlightSamples> flight(unsigned seed, const Nuisance& nuisance) {
   made::Plan plan;
@@ -48,24 +31,7 @@ std::shared_ptr<const pcor::FlightSamples> flight(unsigned seed, const Nuisance&
   plan.samples = 7200;
   plan.defect = made::equation_18;
   pcor::FlightSamples samples = made::flight(plan);
-  std::vector<double>& reference = made::reference_pressure(samples);
-  std::mt19937_64 engine(seed + 100000);
-  std::normal_distribution<double> normal;
-  if (nuisance.drift > 0.0) add_process(reference, engine, nuisance.drift, nuisance.drift_time);
-  // Processes an octave apart of equal rms have a spectrum of 1/f between them; 3.3 octaves are a decade.
-  for (double memory = 2.0; nuisance.flicker > 0.0 && memory < 8000.0; memory *= 2.0)
-    add_process(reference, engine, nuisance.flicker / std::sqrt(3.3), memory);
-  if (nuisance.is_off) {
-    const double zero = 0.1 * normal(engine);       // hPa, psfd-bias
-    const double gain = 1e-4 * normal(engine);      // psfd-gain
-    const double per_hour = 0.03 * normal(engine);  // hPa/h, psfd-drift
-    for (std::size_t i = 0; i < reference.size(); ++i)
-      reference[i] += zero + gain * reference[i] + per_hour * static_cast<double>(i) / 3600.0;
-  }
-  for (std::size_t i = 0; i < reference.size(); ++i) {
-    if (nuisance.bursts && i % 600 < 30) reference[i] += 1.5 * normal(engine);
-    if (nuisance.stuck && i > 3000 && i < 3060) reference[i] = reference[3000];
-  }
+  pcor::test::add_nuisance(made::reference_pressure(samples), seed + 100000, nuisance);
   pcor::Interval manoeuvre;
   manoeuvre.regime = pcor::Regime::pitch_manoeuvre;
   for (const std::size_t begin : {1000U, 3500U, 6000U}) {

@@ -46,10 +46,6 @@ NoiseFloor noise_floor(const std::vector<double>& values, const std::vector<Stre
 struct Autoregression {
   std::vector<double> coefficients{};
   double innovation_rms = 0.0;  ///< in the unit of the series
-
-  /// By how much the variance of a mean over many samples is larger than that of independent samples of the
-  /// same rms, (innovation_rms / (1 - sum a))^2 / rms^2.
-  double samples_per_independent(double rms) const;
 };
 
 /// The process that fits a series best: by Burg's method over all stretches together, of the order (0 to 20)

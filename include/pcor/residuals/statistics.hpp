@@ -9,7 +9,7 @@ namespace pcor {
 struct Statistics {
   std::size_t samples = 0;
   double bias = 0.0;        ///< mean residual, hPa
-  double bias_error = 0.0;  ///< its standard error, hPa, for the memory of the noise
+  double bias_error = 0.0;  ///< its standard error, hPa, with memory and drift of the noise
   double rms = 0.0;         ///< about zero, hPa
   double noise_rms = 0.0;   ///< of the noise floor over the same samples, hPa: the lowest of all models
 

@@ -1,0 +1,85 @@
+#include "numerics/binned_residual.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "numerics/missing.hpp"
+#include "numerics/noise_covariance.hpp"
+#include "numerics/triangular_factor.hpp"
+
+namespace pcor::internal {
+namespace {
+
+/// Short series have shorter bins: so many at least, but none shorter than a record.
+constexpr double usual_bins = 200.0;
+
+double width_of_bins(const std::vector<double>& residual, double step) {
+  const auto used = std::count_if(residual.begin(), residual.end(), [](double r) { return !std::isnan(r); });
+  return std::min(Binning::usual_width, static_cast<double>(used) * step / usual_bins);
+}
+
+}  // namespace
+
+BinnedResidual::BinnedResidual(const std::vector<double>& residual, const std::vector<double>& time,
+                               double step)
+    : bins_(residual, time, step, width_of_bins(residual, step)) {
+  means_ = bins_.means(residual);
+  const std::vector<std::size_t>& records = bins_.records();
+  variance_ = Eigen::VectorXd::Zero(means_.size());
+  bin_of_.assign(residual.size(), -1);
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    const Eigen::Index bin = bins_.bins()[k];
+    bin_of_[records[k]] = bin;
+    variance_[bin] +=
+        std::pow(residual[records[k]] - means_[bin], 2) / std::max(bins_.counts()[bin] - 1.0, 1.0);
+  }
+  const auto used = std::count_if(residual.begin(), residual.end(), [](double r) { return !std::isnan(r); });
+  if (!records.empty()) outside_ = static_cast<double>(used) / static_cast<double>(records.size());
+}
+
+Eigen::MatrixXd BinnedResidual::covariance_of_sums(const std::vector<const double*>& columns,
+                                                   const NoiseModel& noise, std::size_t flight) const {
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(means_.size(), as_index(columns.size()));
+  Eigen::MatrixXd within = Eigen::MatrixXd::Zero(sums.cols(), sums.cols());
+  const std::vector<std::size_t>& records = bins_.records();
+  Eigen::VectorXd row(sums.cols());
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    const Eigen::Index bin = bins_.bins()[k];
+    for (Eigen::Index c = 0; c < row.size(); ++c) row[c] = columns[static_cast<std::size_t>(c)][records[k]];
+    sums.row(bin) += row.transpose();
+    within += variance_[bin] * row * row.transpose();
+  }
+  // Of the columns, only what departs from their means over the bins.
+  within -= sums.transpose() * variance_.cwiseQuotient(bins_.counts()).asDiagonal() * sums;
+  return outside_ * outside_ * (within + noise_covariance(sums, bins_, noise, flight));
+}
+
+double BinnedResidual::variance_of_sum(const std::vector<std::size_t>& records, const NoiseModel& noise,
+                                       std::size_t flight) const {
+  if (bins_.size() == 0) return nan;
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(means_.size());
+  for (const std::size_t record : records) {
+    if (bin_of_[record] >= 0) sums[bin_of_[record]] += 1.0;
+  }
+  if (sums.sum() == 0.0) sums[0] = 1.0;  // as if they stood in one bin
+  const double scale = static_cast<double>(records.size()) / sums.sum();
+  const double within =
+      (variance_.array() * sums.array() * (1.0 - sums.array() / bins_.counts().array())).sum();
+  return scale * scale * (within + noise_covariance(sums, bins_, noise, flight)(0, 0));
+}
+
+NoiseModel noise_about_mean(const std::vector<Binning>& bins, std::vector<Eigen::VectorXd> residuals,
+                            std::size_t threads) {
+  double sum = 0.0;
+  Eigen::Index count = 0;
+  std::vector<Eigen::MatrixXd> ones;
+  for (const Eigen::VectorXd& residual : residuals) {
+    sum += residual.sum();
+    count += residual.size();
+    ones.emplace_back(Eigen::MatrixXd::Ones(residual.size(), 1));
+  }
+  for (Eigen::VectorXd& residual : residuals) residual.array() -= sum / static_cast<double>(count);
+  return expected_noise(bins, ones, residuals, threads);
+}
+
+}  // namespace pcor::internal

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstddef>
+#include <vector>
+
+#include "numerics/binning.hpp"
+#include "numerics/noise_model.hpp"
+
+namespace pcor::internal {
+
+/// A residual of a flight in bins, with what the variances of sums over its records follow from.
+class BinnedResidual {
+ public:
+  BinnedResidual() = default;  // of nothing
+  /// @param residual one value for each record, NaN where not used; @param time s; @param step s
+  BinnedResidual(const std::vector<double>& residual, const std::vector<double>& time, double step);
+
+  const Binning& bins() const { return bins_; }
+  /// The residual in bins.
+  const Eigen::VectorXd& means() const { return means_; }
+
+  /// The covariance matrix of the sums (column . noise) over the records: that of the bins' means by the
+  /// noise model, and that of the records about the means of their bins, in which they are independent.
+  /// Records outside the bins count as those inside.
+  ///
+  /// @param columns one value for each record @param flight its number among the levels of the noise
+  Eigen::MatrixXd covariance_of_sums(const std::vector<const double*>& columns, const NoiseModel& noise,
+                                     std::size_t flight) const;
+
+  /// The variance of the sum of the noise over some records; NaN where there is no bin.
+  double variance_of_sum(const std::vector<std::size_t>& records, const NoiseModel& noise,
+                         std::size_t flight) const;
+
+ private:
+  double outside_ = 1.0;  ///< records that are used for each one in a bin
+  Binning bins_{};
+  Eigen::VectorXd means_{};
+  std::vector<Eigen::Index> bin_of_{};  ///< of each record; -1 for none
+  Eigen::VectorXd variance_{};          ///< of the records about the mean of each bin
+};
+
+/// The noise of residuals of flights about their common mean. @param residuals in bins
+NoiseModel noise_about_mean(const std::vector<Binning>& bins, std::vector<Eigen::VectorXd> residuals,
+                            std::size_t threads);
+
+}  // namespace pcor::internal

@@ -1,0 +1,73 @@
+#include "checks/redundant.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "support/many_seeds.hpp"
+#include "support/nuisance.hpp"
+
+// Two systems that measure one pressure: the errors of their difference and of the line through them know the
+// drift of either.
+
+using namespace pcor::internal;
+using pcor::test::Nuisance;
+
+namespace {
+
+/// Three flights of two hours.
+Redundant two_systems(unsigned seed, const Nuisance& nuisance) {
+  Redundant both;
+  for (unsigned flight = 0; flight < 3; ++flight) {
+    std::vector<double> noise(7200, 0.0);
+    std::mt19937_64 engine(3 * seed + flight);
+    pcor::test::add_process(noise, engine, 0.05, 3.0);
+    pcor::test::add_nuisance(noise, 1000 + 3 * seed + flight, nuisance);
+    for (std::size_t i = 0; i < noise.size(); ++i) {
+      const auto time = static_cast<double>(i);
+      both.time.push_back(1e5 * flight + time);
+      both.first.push_back(700.0 + 150.0 * std::sin(time / 900.0 + seed));
+      both.second.push_back(both.first.back() + noise[i]);
+    }
+  }
+  return both;
+}
+
+void expect_right(const Nuisance& nuisance, const std::string& what) {
+  constexpr double size_that_matters = 0.15;  // hPa
+  const std::size_t seeds = pcor::test::number_of_seeds();
+  double difference = 0.0;
+  double slope = 0.0;
+  std::size_t inconsistent = 0;
+  for (std::size_t s = 0; s < seeds; ++s) {
+    const RedundantFit fit = fit_of(two_systems(static_cast<unsigned>(s), nuisance));
+    difference += std::pow(fit.difference.value / fit.difference.error, 2) / static_cast<double>(seeds);
+    slope += std::pow(fit.across.value / fit.across.error, 2) / static_cast<double>(seeds);
+    for (const pcor::KeyNumber& number : judged_of(fit, size_that_matters))
+      if (number.verdict == pcor::CheckVerdict::inconsistent) ++inconsistent;
+  }
+  std::cout << what << ": rms of the scores of difference and slope " << std::sqrt(difference) << ", "
+            << std::sqrt(slope) << ", inconsistent " << inconsistent << " of " << 2 * seeds << "\n";
+  // Within 0.8 and 1.3, for three flights hardly tell the time of a drift, and three standard errors of the
+  // rms of so many scores.
+  const double chance = 3.0 / std::sqrt(2.0 * static_cast<double>(seeds));
+  for (const double score : {std::sqrt(difference), std::sqrt(slope)}) {
+    EXPECT_GT(score, 0.8 - chance) << what;
+    EXPECT_LT(score, 1.3 + chance) << what;
+  }
+  // Three standard errors, of normal scores one in 370.
+  EXPECT_LE(inconsistent, 2 + seeds / 40) << what;
+}
+
+}  // namespace
+
+TEST(RedundantFit, ErrorsKnowDrift) {
+  expect_right({}, "nothing");
+  expect_right({0.15, 900.0}, "0.15 hPa, 900 s");
+  expect_right({0.4, 3600.0}, "0.4 hPa, 3600 s");
+  expect_right({0.0, 1.0, 0.05}, "1/f");
+}
