@@ -10,32 +10,48 @@
 namespace pcor::internal {
 namespace {
 
-/// Of the model that is held against the reference.
-std::vector<SensorDoubt> own_doubts(const ModelFile& model, const Reference& reference) {
-  std::vector<SensorDoubt> doubts;
-  const auto add = [&](const std::vector<std::string_view>& effects) {
-    const std::vector<SensorDoubt> more = doubts_of(model, effects);
-    doubts.insert(doubts.end(), more.begin(), more.end());
-  };
-  if (reference.reads_laser()) add(laser_calibration);
-  // A pressure that was measured or corrected elsewhere has no model of its own. An error of the static
-  // transducer of the model changes the residual by as much, with the other sign.
+struct NamedDoubt {
+  SensorDoubt doubt;
+  std::string name;
+};
+
+void add(std::vector<NamedDoubt>& doubts, const std::vector<SensorDoubt>& more,
+         const std::string& prefix = "") {
+  for (const SensorDoubt& doubt : more) doubts.push_back({doubt, prefix + doubt.name()});
+}
+
+/// Doubts of the sensors of the model, of its laser, and of a measured pressure.
+std::vector<NamedDoubt> own_doubts(const ModelFile& model, const Reference& reference) {
+  std::vector<NamedDoubt> doubts;
+  if (reference.reads_laser()) add(doubts, doubts_of(model, laser_calibration));
+  // A measured pressure has no model. An error of the static transducer of the model changes the residual by
+  // the same amount with the opposite sign. The sizes are those of the catalogue, whatever the model states
+  // of its own transducer.
   if (reference.is_static_pressure() && !reference.reads_laser() && reference.model() == nullptr)
-    add({"psfd-bias", "psfd-gain", "psfd-drift"});
-  if (model.variables.count(Quantity::recovery_temperature) > 0) add(thermometer_calibration);
+    add(doubts, doubts_of(ModelFile{}, {"psfd-bias", "psfd-gain", "psfd-drift"}), reference.name() + ": ");
+  if (model.variables.count(Quantity::recovery_temperature) > 0)
+    add(doubts, doubts_of(model, thermometer_calibration));
   return doubts;
 }
 
-/// Of the law of a second system.
-std::vector<SensorDoubt> second_doubts(const ModelFile& system) {
-  std::vector<SensorDoubt> doubts = doubts_of(system, pressure_calibration);
-  for (SensorDoubt& doubt : doubts) {
-    if (doubt.effect == "psfd-bias")
-      doubt.size = std::hypot(doubt.size, system.uncertainty.static_defect.value_or(0.0));
-    if (doubt.effect == "psfd-gain")
-      doubt.size = std::hypot(doubt.size, system.uncertainty.static_defect_ratio.value_or(0.0));
-  }
+/// Doubts of a second system, and the uncertainty that its law states, as a zero and a gain.
+std::vector<NamedDoubt> second_doubts(const ModelFile& system, const Reference& reference) {
+  const std::string prefix = system.model.name + ": ";
+  std::vector<NamedDoubt> doubts;
+  add(doubts, doubts_of(system, pressure_calibration), prefix);
+  if (!reference.sees_static_defect()) return doubts;
+  const StatedUncertainty& stated = system.uncertainty;
+  if (stated.static_defect.value_or(0.0) > 0.0)
+    doubts.push_back({{"psfd-bias", 0, *stated.static_defect}, prefix + "static_defect"});
+  if (stated.static_defect_ratio.value_or(0.0) > 0.0)
+    doubts.push_back({{"psfd-gain", 0, *stated.static_defect_ratio}, prefix + "static_defect_ratio"});
   return doubts;
+}
+
+ModelFile with_effects_of(const ModelFile& model, const std::vector<NamedDoubt>& doubts) {
+  std::vector<SensorDoubt> sensors;
+  for (const NamedDoubt& each : doubts) sensors.push_back(each.doubt);
+  return with_doubts(model, sensors);
 }
 
 std::size_t place_of(const ModelFile& model, const SensorDoubt& doubt) {
@@ -66,27 +82,23 @@ ReferenceDoubt::ReferenceDoubt(const ModelFile& model, const Reference& referenc
     : model_parameters_(parameter_count(model.model)),
       reference_parameters_(reference.model() != nullptr ? parameter_count(reference.model()->model) : 0) {
   if (trusted) return;
-  const std::vector<SensorDoubt> own = own_doubts(model, reference);
-  std::vector<SensorDoubt> second;
-  model_ = with_doubts(model, own);
-  for (const SensorDoubt& doubt : own) places_.push_back(place_of(model_, doubt));
+  std::vector<NamedDoubt> doubts = own_doubts(model, reference);
+  model_ = with_effects_of(model, doubts);
+  for (const NamedDoubt& each : doubts) places_.push_back(place_of(model_, each.doubt));
   if (reference.model() != nullptr) {
-    second = second_doubts(*reference.model());
-    const ModelFile system = with_doubts(*reference.model(), second);
+    const std::vector<NamedDoubt> second = second_doubts(*reference.model(), reference);
+    const ModelFile system = with_effects_of(*reference.model(), second);
     reference_ = reference.with_model(system);
-    for (const SensorDoubt& doubt : second)
-      places_.push_back(parameter_count(model_.model) + place_of(system, doubt));
+    for (const NamedDoubt& each : second)
+      places_.push_back(parameter_count(model_.model) + place_of(system, each.doubt));
+    doubts.insert(doubts.end(), second.begin(), second.end());
   } else {
     reference_ = std::shared_ptr<const Reference>(std::shared_ptr<const Reference>(), &reference);
   }
-  sizes_.resize(as_index(own.size() + second.size()));
-  for (const SensorDoubt& doubt : own) {
-    sizes_[as_index(names_.size())] = doubt.size;
-    names_.push_back(doubt.name());
-  }
-  for (const SensorDoubt& doubt : second) {
-    sizes_[as_index(names_.size())] = doubt.size;
-    names_.push_back(reference.model()->model.name + ": " + doubt.name());
+  sizes_.resize(as_index(doubts.size()));
+  for (const NamedDoubt& each : doubts) {
+    sizes_[as_index(names_.size())] = each.doubt.size;
+    names_.push_back(each.name);
   }
 }
 
@@ -97,9 +109,11 @@ Eigen::MatrixXd ReferenceDoubt::columns(const std::shared_ptr<const FlightSample
   if (empty() || samples.empty()) return derivatives;
   const Residuals residuals(with_time(flight), model_, *reference_, std::vector<Mask>());
   std::vector<double> all = residuals.parameters();
-  std::copy(parameters, parameters + model_parameters_, all.begin());
-  std::copy(parameters + model_parameters_, parameters + model_parameters_ + reference_parameters_,
-            all.begin() + static_cast<std::ptrdiff_t>(parameter_count(model_.model)));
+  if (parameters != nullptr) {
+    std::copy(parameters, parameters + model_parameters_, all.begin());
+    std::copy(parameters + model_parameters_, parameters + model_parameters_ + reference_parameters_,
+              all.begin() + static_cast<std::ptrdiff_t>(parameter_count(model_.model)));
+  }
   std::vector<double> residual(samples.size());
   residuals.evaluate(samples.data(), samples.size(), all.data(), places_, residual.data(),
                      derivatives.data());

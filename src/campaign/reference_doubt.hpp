@@ -30,9 +30,9 @@ class ReferenceDoubt {
   bool empty() const { return names_.empty(); }
 
   /// What one standard uncertainty of each does to the residual at some samples, hPa, a column each.
-  /// @param parameters of the residuals of the model held against the reference
+  /// @param parameters of the residuals of the model held against the reference; null: those of the files
   Eigen::MatrixXd columns(const std::shared_ptr<const FlightSamples>& flight,
-                          const std::vector<std::size_t>& samples, const double* parameters) const;
+                          const std::vector<std::size_t>& samples, const double* parameters = nullptr) const;
 
  private:
   std::size_t model_parameters_;      // of the model as it came

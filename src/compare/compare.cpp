@@ -13,6 +13,7 @@
 #include <pcor/words/error.hpp>
 
 #include "campaign/binned_flights.hpp"
+#include "campaign/reference_doubt.hpp"
 #include "numerics/binned_residual.hpp"
 #include "numerics/missing.hpp"
 #include "report/shown_flights.hpp"
@@ -87,6 +88,7 @@ struct ModelSums {
   ResidualSums flaps_out{};
   double wanted = 0.0;  // delta-p of the reference
   double wanted_squares = 0.0;
+  Eigen::VectorXd doubt{};  // what each doubt of the reference does to the residuals
   std::array<ResidualSums, regime_count> regimes{};
   std::array<std::map<long, ResidualSums>, bandings.size()> bands{};
   std::vector<WorstInterval> worst{};  // at most `worst_count`
@@ -105,7 +107,7 @@ struct ModelSums {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(all, flaps_out, wanted, wanted_squares, regimes, bands, worst);
+    archive(all, flaps_out, wanted, wanted_squares, doubt, regimes, bands, worst);
   }
 };
 
@@ -121,6 +123,11 @@ void ModelSums::add(const ModelSums& other) {
   flaps_out.add(other.flaps_out);
   wanted += other.wanted;
   wanted_squares += other.wanted_squares;
+  if (doubt.size() == 0) {
+    doubt = other.doubt;
+  } else {
+    doubt += other.doubt;
+  }
   for (std::size_t r = 0; r < regime_count; ++r) regimes[r].add(other.regimes[r]);
   for (std::size_t b = 0; b < bandings.size(); ++b) {
     for (const auto& [band, sums] : other.bands[b]) bands[b][band].add(sums);
@@ -144,6 +151,7 @@ std::vector<WorstInterval> worst_of(const FlightResiduals& flight, const std::ve
       flown |= regimes[i];
     }
     if (sums.samples > 0 && sums.samples >= enough) {
+      sums.sum_variance = nan;  // no error is stated of a minute
       worst.push_back({samples.name, samples.time[first] - 0.5 * samples.step,
                        samples.time[i - 1] + 0.5 * samples.step, sums.statistics(), regimes_text(flown)});
     }
@@ -206,8 +214,10 @@ ModelComparison comparison_of(const std::string& name, const Reference& referenc
   const double variation = sums.wanted_squares - sums.wanted * sums.wanted / count;
   const bool varies = reference.is_static_pressure() && variation > count * smallest_variance;
   result.r_squared = varies ? 1.0 - sums.all.squares / variation : nan;
-  result.samples_per_independent =
-      std::max(1.0, sums.all.sum_variance / (count * result.all.scatter() * result.all.scatter()));
+  if (sums.all.samples > 0)
+    result.reference_error = sums.doubt.norm() / static_cast<double>(sums.all.samples);
+  const double memory = sums.all.sum_variance / (count * result.all.scatter() * result.all.scatter());
+  result.samples_per_independent = std::isfinite(memory) ? std::max(1.0, memory) : nan;
   for (std::size_t r = 0; r < regime_count; ++r) {
     if (sums.regimes[r].samples > 0)
       result.regimes.push_back({std::string(regime_facts[r].name), sums.regimes[r].statistics()});
@@ -431,11 +441,16 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
       samples.push_back(flights.samples(number, contender.model, reference, options.mask));
     return samples;
   };
+  std::vector<ReferenceDoubt> doubts;
+  for (const auto& [contender, reference] : pairings)
+    doubts.emplace_back(contender.model, reference, !reference.is_of_one_sample());
   const auto make = [&](const SamplesOfPairings& samples, bool with_series,
                         std::vector<SummedRecords>& records) {
     std::vector<std::string> notes;
     FlightPart part = part_of(residuals_on(samples, pairings, options.mask, notes), with_series, records);
     part.notes = std::move(notes);
+    for (std::size_t m = 0; m < pairings.size(); ++m)
+      part.models[m].doubt = doubts[m].columns(samples[m], records[m].parts.front()).colwise().sum();
     return part;
   };
   const bool keeps_all = flights.size() <= options.most_series;

@@ -18,10 +18,13 @@ void serialize(Archive& archive, FlightFit& flight) {
 std::optional<HeldOutPart> worst_held_out(const std::vector<FlightFit>& flights) {
   std::optional<HeldOutPart> worst;
   const auto excess = [](const HeldOutPart& part) { return std::abs(part.statistics.bias) / part.expected; };
+  std::size_t parts = 0;
   for (const FlightFit& flight : flights) {
     const HeldOutPart part{flight.flight, flight.after, flight.expected_bias};
+    if (flight.holdout) ++parts;
     if (flight.holdout && part.expected > 0.0 && (!worst || excess(part) > excess(*worst))) worst = part;
   }
+  if (worst) worst->parts = parts;
   return worst;
 }
 

@@ -134,8 +134,8 @@ Eigen::MatrixXd joined(const std::vector<StageScores>& stages, const std::vector
     for (std::size_t i = 0; i < stage.time.size(); ++i) {
       // The middle of a bin moves by less than half its width where other samples of it count.
       auto bin = std::lower_bound(time.begin(), time.end(), stage.time[i] - 0.5 * Binning::usual_width);
-      if (bin == time.end()) continue;
-      all.block(bin - time.begin(), stage.first, 1, stage.columns.cols()) = stage.columns.row(as_index(i));
+      if (bin == time.end() || *bin > stage.time[i] + Binning::usual_width) continue;
+      all.block(bin - time.begin(), stage.first, 1, stage.columns.cols()) += stage.columns.row(as_index(i));
     }
   }
   return all;
@@ -207,7 +207,7 @@ Sums sums_of(FitFlights& flights, const FitEquations& equations, Eigen::Index fi
         const Eigen::VectorXd by_zero = joint.colwise().sum();
         sums.covariance += scores.misfit.between_flights * by_zero * by_zero.transpose();
       }
-    } else {
+    } else if (is_first_reference) {
       scores.stages[number].push_back({first, fit.bins().time(), weighted});
     }
     if (is_first_reference && !fit.is_whitened())

@@ -87,7 +87,7 @@ FitFlights::FitFlights(const FitTask& task, FitSetup setup)
 /// Whether any derivative is not zero, and the bins are enough to find the noise.
 bool FitFlights::sees_parameters() {
   constexpr std::size_t fewest_bins = 100;
-  if (bins_ < fewest_bins) return false;
+  if (bins_ < fewest_bins || setup_.wanted.empty()) return false;
   const auto largest = of_each([this](std::size_t, FitFlight& fit) {
     const Eigen::MatrixXd rows = fit.rows(setup_.values);
     return rows.rows() > 0 ? rows.leftCols(as_index(setup_.wanted.size())).cwiseAbs().maxCoeff() : 0.0;
@@ -98,9 +98,10 @@ bool FitFlights::sees_parameters() {
 bool FitFlights::masks_change_at(const Eigen::VectorXd& parameters) {
   bool change = false;
   for (FitFlights* const each : joint()) {
-    for (const bool one : each->of_each(
-             [&](std::size_t, FitFlight& fit) { return fit.masks_change_at(parameters); }, parameters))
-      change = change || one;
+    for (const int one :
+         each->of_each([&](std::size_t, FitFlight& fit) { return fit.masks_change_at(parameters) ? 1 : 0; },
+                       parameters))
+      change = change || one != 0;
   }
   return change;
 }

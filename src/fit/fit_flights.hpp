@@ -237,6 +237,7 @@ class FitFlights {
   template <class Make>
   auto of_each(const Make& make, const Eigen::VectorXd& parameters = {}) {
     using Part = std::decay_t<decltype(make(std::size_t{}, std::declval<FitFlight&>()))>;
+    static_assert(!std::is_same_v<Part, bool>, "elements of std::vector<bool> share words between threads");
     return task_.flights.share().on_each_flight<Part>(
         [&](std::vector<Part>& parts) {
           visit([&](std::size_t number, FitFlight& fit) { parts[number] = make(number, fit); });

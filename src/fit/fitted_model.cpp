@@ -8,6 +8,7 @@
 #include <pcor/words/utc.hpp>
 #include "fit/lineage.hpp"
 #include "laws/covariance_blocks.hpp"
+#include "laws/sensor_doubt.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -38,10 +39,9 @@ Provenance provenance_of(const RefitResult& fit, Loss loss) {
   return provenance;
 }
 
-/// Whether a name of the covariance is that of a sensor's calibration, of which the model has no effect.
-bool is_sensor(const std::string& name, const RefitResult& fit) {
-  return std::none_of(fit.parameters.begin(), fit.parameters.end(),
-                      [&](const FittedParameter& parameter) { return parameter.name == name; });
+bool is_parameter(const std::string& name, const RefitResult& fit) {
+  return std::any_of(fit.parameters.begin(), fit.parameters.end(),
+                     [&](const FittedParameter& parameter) { return parameter.name == name; });
 }
 
 }  // namespace
@@ -80,7 +80,7 @@ ModelFile fitted_model(const ModelFile& given, std::size_t first, const RefitRes
   }
   if (first == 0) {
     for (std::size_t k = 0; k < known.size(); ++k) {
-      if (!is_sensor(known[k], fit)) continue;
+      if (!has_doubt(known[k]) || is_parameter(known[k], fit)) continue;
       covariance.parameters.push_back(known[k]);
       inside.push_back(k);
     }

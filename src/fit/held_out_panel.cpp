@@ -16,7 +16,9 @@ DotPanel held_out_panel(const std::vector<FlightFit>& flights) {
   panel.title = "Held-out parts";
   panel.caption =
       "The mean residual of each part that took no part in the fit. The bar about zero is the standard "
-      "deviation that the fit expects from how the residual wanders where it was fitted.";
+      "deviation that the fit expects from the changes of the residual where it was fitted, the errors of "
+      "the "
+      "coefficients, and the misfit of the law.";
   panel.axis = "bias";
   panel.unit = "hPa";
   panel.series = {"held out", "expected"};

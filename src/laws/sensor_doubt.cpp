@@ -41,7 +41,8 @@ std::vector<SensorDoubt> doubts_of(const ModelFile& model, const std::vector<std
       if (!(facts.parameters[p].doubt > 0.0)) continue;
       SensorDoubt doubt{std::string(id), p, facts.parameters[p].doubt};
       const auto stated = model.uncertainty.sensors.find(doubt.name());
-      if (stated != model.uncertainty.sensors.end()) doubt.size = stated->second;
+      doubt.is_usual = stated == model.uncertainty.sensors.end();
+      if (!doubt.is_usual) doubt.size = stated->second;
       if (doubt.size > 0.0) doubts.push_back(std::move(doubt));
     }
   }
@@ -49,15 +50,15 @@ std::vector<SensorDoubt> doubts_of(const ModelFile& model, const std::vector<std
 }
 
 ModelFile with_doubts(ModelFile model, const std::vector<SensorDoubt>& doubts) {
+  std::vector<ModelEffect>& effects = model.model.effects;
   for (const SensorDoubt& doubt : doubts) {
-    std::vector<ModelEffect>& effects = model.model.effects;
-    if (effects.empty() || effects.back().id != doubt.effect) {
+    if (!has_effect(model, doubt.effect)) {
       model.fits.resize(effects.size());
       effects.push_back(neutral_effect(doubt.effect));
       model.fits.emplace_back(effects.back().parameters.size());
       for (ParameterFit& fit : model.fits.back()) fit.fixed = true;
     }
-    model.fits.back()[doubt.parameter].standard_error = doubt.size;
+    if (effects.back().id == doubt.effect) model.fits.back()[doubt.parameter].standard_error = doubt.size;
   }
   return model;
 }

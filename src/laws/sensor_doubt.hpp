@@ -14,7 +14,8 @@ namespace pcor::internal {
 struct SensorDoubt {
   std::string effect;
   std::size_t parameter = 0;
-  double size = 0.0;  ///< in the unit of the coefficient
+  double size = 0.0;     ///< in the unit of the coefficient
+  bool is_usual = true;  ///< the model states no other
 
   /// Like "lams-scale.scale".
   std::string name() const;
@@ -34,8 +35,8 @@ bool has_doubt(std::string_view coefficient);
 /// calibration of the thermometer (temp-calibration) stands for its offset.
 std::vector<SensorDoubt> doubts_of(const ModelFile& model, const std::vector<std::string_view>& effects);
 
-/// The model with the effects of these doubts besides, fixed at their neutral values, with the doubts as
-/// standard errors. A covariance of the model that names their coefficients belongs to them.
+/// The model with those effects of these doubts that it lacks, fixed at their neutral values, with the doubts
+/// as standard errors. A covariance of the model that names their coefficients belongs to them.
 ModelFile with_doubts(ModelFile model, const std::vector<SensorDoubt>& doubts);
 
 }  // namespace pcor::internal

@@ -150,12 +150,13 @@ void Processing::choose_roles() {
 /// state that of the thermometer: without its main source that of the temperature would be far too small.
 ModelFile Processing::doubted() const {
   const UncertaintyPart part = options_.uncertainty;
-  const bool wanted = part == UncertaintyPart::systematic || part == UncertaintyPart::total ||
-                      part == UncertaintyPart::total_if_stated;
-  if (!wanted || variable_of(Quantity::recovery_temperature).empty()) return file_;
+  if (part == UncertaintyPart::none || part == UncertaintyPart::random ||
+      variable_of(Quantity::recovery_temperature).empty())
+    return file_;
   const ModelUncertainty stated = uncertainty_of(file_);
-  if (!stated.has_systematic() && !stated.has_random()) return file_;
-  return with_doubts(file_, doubts_of(file_, thermometer_calibration));
+  const bool is_stated =
+      stated.has_systematic() || (part != UncertaintyPart::systematic && stated.has_random());
+  return is_stated ? with_doubts(file_, doubts_of(file_, thermometer_calibration)) : file_;
 }
 
 void Processing::choose_chain() {
@@ -283,6 +284,8 @@ void Processing::note_uncertainty() {
   }
   for (const SensorDoubt& doubt : doubts_of(file_, thermometer_calibration)) {
     if (chain_->effect_count() == file_.model.effects.size()) break;  // none was added
+    const std::vector<std::string>& known = file_.covariance.parameters;
+    if (!doubt.is_usual || std::find(known.begin(), known.end(), doubt.name()) != known.end()) continue;
     note(
         "the uncertainties take {} to be 0 +- {:g}, the usual size, since the model states none; its table "
         "[uncertainty] takes \"{}\"",
@@ -290,9 +293,7 @@ void Processing::note_uncertainty() {
   }
   if (chain_->has_temperature() && !states({Where::temperature, Where::recovery, Where::ambient_temperature},
                                            {Q::recovery_temperature, Q::ambient_temperature})) {
-    note(
-        "the uncertainties of temperature and airspeed leave out the thermometer, which [uncertainty] of the "
-        "model takes for exact");
+    note("the uncertainties of temperature and airspeed leave out the thermometer");
   }
 }
 

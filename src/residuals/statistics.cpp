@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numerics/chi_squared.hpp"
 #include "numerics/missing.hpp"
 #include "residuals/residual_sums.hpp"
 
@@ -63,8 +64,10 @@ std::string flaps_out_text(const Statistics& flaps_out, const std::string& of_wh
 }
 
 bool HeldOutPart::is_off() const {
-  constexpr double limit = 2.5;      // standard errors: chance does it once in eighty times
-  constexpr double smallest = 1e-3;  // hPa: less is the rounding of a file
+  constexpr double chance = 1.0 / 80.0;
+  const double tail = 1.0 - std::pow(1.0 - chance, 1.0 / static_cast<double>(parts));
+  const double limit = std::sqrt(chi_squared_value(tail, 1.0));  // standard errors; 2.5 of one part
+  constexpr double smallest = 1e-3;                              // hPa: less is the rounding of a file
   return statistics.samples > 0 && expected > 0.0 &&
          std::abs(statistics.bias) > std::max(limit * expected, smallest);
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <pcor/batch/batch.hpp>
+#include "campaign/model_parameters.hpp"
 #include "numerics/decompositions.hpp"
 
 namespace pcor::internal {
@@ -43,12 +44,25 @@ std::vector<Eigen::VectorXd> standard_deviations(const std::vector<double>& cova
   return changes;
 }
 
+/// Whether an uncertainty is stated of a coefficient of the law itself, not of a sensor.
+bool states_law(const ModelFile& model, const ModelUncertainty& stated) {
+  std::size_t place = 0;
+  const auto count = static_cast<std::size_t>(std::lround(std::sqrt(stated.covariance.size())));
+  for (const ModelEffect& effect : model.model.effects) {
+    for (std::size_t p = 0; p < effect.parameters.size(); ++p, ++place) {
+      if (where_of(effect) == Where::static_defect && stated.covariance[place * count + place] > 0.0)
+        return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 std::optional<double> stated_law_variance(const ModelFile& model, const FlightAir& air) {
   const ModelUncertainty stated = uncertainty_of(model);
   const bool has_rest = stated.static_defect > 0.0 || stated.static_defect_ratio > 0.0;
-  if (!has_rest && !stated.has_systematic()) return std::nullopt;
+  if (!has_rest && !states_law(model, stated)) return std::nullopt;
   double count = 0.0;
   double sum = 0.0;
   const auto add_mean_square = [&](const auto& value) {

@@ -445,6 +445,7 @@ class TemperatureCalibration {
       const std::size_t terms = prior_.slope == 0.0 ? 1 : one_direction ? 2 : 3;
       const TemperatureFit fit = fit_height_by_least_squares(left, terms);
       const double error = fit.standard_errors[0] * std::sqrt(samples_as_one(left, fit.coefficients));
+      if (!std::isfinite(error) || !(error > 0.0) || !std::isfinite(fit.coefficients[0])) continue;
       weights += 1.0 / (error * error);
       sum += fit.coefficients[0] / (error * error);
     }

@@ -84,6 +84,23 @@ TEST(Compare, ShowsAShiftAsABias) {
   EXPECT_LT(result.models[1].r_squared, result.models[0].r_squared);
 }
 
+TEST(Compare, StatesHowMuchTheCalibrationOfTheLaserMayShiftTheBias) {
+  Contender given = laser_contender();
+  given.model.uncertainty.sensors = {{"lams-elevation.dtheta1", 0.0},
+                                     {"lams-azimuth.dtheta2", 0.0},
+                                     {"temp-offset.offset", 0.0},
+                                     {"recovery-factor.da", 0.0}};
+  Contender scaled = given;
+  scaled.name = "laser scale 0.2 % off";
+  scaled.model.model.effects.push_back(pcor::neutral_effect("lams-scale"));
+  scaled.model.model.effects.back().parameters = {0.002};  // the usual doubt
+  const Comparison comparison = pcor::compare({flight_file()}, {given, scaled});
+  const double shift = comparison.models[1].all.bias - comparison.models[0].all.bias;
+  // The residual is not linear in the speed: 1 % for a step of 0.2 %.
+  EXPECT_NEAR(comparison.models[0].reference_error / std::abs(shift), 1.0, 0.01);
+  EXPECT_EQ(comparison.models[1].reference_error, 0.0);  // the model says what its laser is off by
+}
+
 TEST(Compare, FindsWhatTheScenarioFlew) {
   const Comparison result = pcor::compare({flight_file()}, {laser_contender()});
   const std::vector<pcor::PartStatistics>& regimes = result.models.front().regimes;

@@ -47,6 +47,7 @@ nlohmann::ordered_json as_json(const ModelComparison& model) {
   result["r2"] = model.r_squared;
   result["flaps_out"] = as_json(model.flaps_out);
   result["samples_per_independent"] = model.samples_per_independent;
+  result["reference_stderr_hpa"] = model.reference_error;
   result["regimes"] = as_json(model.regimes);
   result["bands"] = as_json(model.bands);
   result["flights"] = as_json(model.flights);
@@ -129,6 +130,9 @@ void print_model(const ModelComparison& model, bool with_name) {
   }
   say("R2 {:.4f}; the residuals are correlated in time: {:.1f} samples count as one independent one\n",
       model.r_squared, model.samples_per_independent);
+  if (model.reference_error > 0.0)
+    say("The calibration of the reference may shift the bias by {:.2f} hPa (one standard uncertainty).\n",
+        model.reference_error);
 }
 
 /// Of a further reference: all samples and each regime.

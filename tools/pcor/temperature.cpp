@@ -170,8 +170,9 @@ void print_law_errors(const TemperatureResult& result) {
   for (const LawError& error : result.law_errors)
     say("By the heights {} of {} lacks {}, a range of {:.2f} hPa over the flights: it is taken off.\n",
         error.parameter, error.effect, with_error(error.change, error.standard_error), error.range);
-  say("The vapour pressure lacks {} of it: that is taken off.\n",
-      with_error(result.humidity_change, result.humidity_error));
+  if (result.humidity_change != 0.0)
+    say("The heights change the vapour pressure by {} of its value.\n",
+        with_error(result.humidity_change, result.humidity_error));
 }
 
 void print(const TemperatureResult& result) {

@@ -41,6 +41,10 @@ struct ModelComparison {
   /// for a reference that is no static pressure.
   double r_squared = 0.0;
   double samples_per_independent = 1.0;
+  /// By how much the calibration of the reference and of the thermometer may shift the bias of all samples,
+  /// hPa, beside `Statistics::bias_error`: usual sizes (`ParameterFacts::doubt`), or what `[uncertainty]` of
+  /// the models states. Zero for references of many samples (wind, height).
+  double reference_error = 0.0;
   std::vector<PartStatistics> regimes;  ///< those that occur, in the order of `Regime`
   std::vector<PartStatistics> bands;    ///< altitude, Mach, angle of attack, sideslip
   std::vector<PartStatistics> flights;

@@ -89,9 +89,9 @@ struct ParameterFacts {
   /// Other values that nature may have, and 0 behind them: of a shape, and of a time over which a need is
   /// found (`EffectFacts::memory`). A diagnosis tries them all, a fit begins at the best of them.
   std::array<double, 10> tried{};
-  /// Standard uncertainty of a calibrated sensor, in the unit of the coefficient, for a sensor that serves as
-  /// a reference and for the thermometer: part of every stated error unless the model states another. Zero
-  /// where none is assumed. Sources: those of the effect.
+  /// Standard uncertainty of the calibration of a reference or of the thermometer, in the unit of the
+  /// coefficient. Stated errors include it unless the model states another value. Zero: no doubt by default.
+  /// Sources: `EffectFacts::source` and `size` of the effect.
   double doubt = 0.0;
 };
 

@@ -48,7 +48,7 @@ class Residuals {
   /// effects of the catalogue at the static ports, where delta-p has no lower limit.
   const std::vector<bool>& is_linear() const;
 
-  /// Which samples take part; with the parameters of the files unless masks were set.
+  /// The mask of every sample, at the parameters of the files unless `set_mask` replaced it.
   const std::vector<Mask>& mask() const;
 
   /// The masks with the residual at these parameters: bursts are seen in it.

@@ -32,11 +32,13 @@ struct HeldOutPart {
   std::string flight;
   Statistics statistics;
   /// The standard deviation of the bias, hPa, if the model were as right there as where it was fitted: from
-  /// how the means over five minutes, and over flights, wander in the fit; after a fit also from the errors of
-  /// its coefficients and from what the law lacks.
+  /// how the means over five minutes, and over flights, wander in the fit; after a fit also from the errors
+  /// of its coefficients and from what the law lacks.
   double expected = 0.0;
 
-  /// Whether the bias is more than chance makes it: beyond 2.5 times what is expected.
+  std::size_t parts = 1;  ///< of which this one was chosen, being furthest off
+
+  /// Whether the bias is more than chance makes it, once in eighty times in all parts together (Sidak).
   bool is_off() const;
   /// What that says, a sentence without its full stop.
   std::string text() const;
