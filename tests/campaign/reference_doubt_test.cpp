@@ -20,7 +20,8 @@ TEST(ReferenceDoubt, OfAMeasuredPressureIsItsZeroItsGainAndItsDrift) {
   const pcor::ModelFile model = made::model({"static-constant", "static-qp"});
   const auto reference = made::pressure_reference().front();
   const ReferenceDoubt doubt(model, *reference, false);
-  EXPECT_THAT(doubt.names(), ElementsAre("psfd-bias.offset", "psfd-gain.gain", "psfd-drift.per_hour"));
+  EXPECT_THAT(doubt.names(), ElementsAre("pressure:PS_A: psfd-bias.offset", "pressure:PS_A: psfd-gain.gain",
+                                         "pressure:PS_A: psfd-drift.per_hour"));
   const std::vector<std::size_t> samples{0, 1800, 3599};
   const std::vector<double> parameters{0.004, 0.03};
   const Eigen::MatrixXd columns = doubt.columns(flight, samples, parameters.data());
@@ -46,9 +47,14 @@ TEST(ReferenceDoubt, OfASecondSystemHoldsWhatItsLawStates) {
   second.uncertainty.sensors["psfd-drift.per_hour"] = 0.0;
   const auto reference = pcor::static_system_reference(second);
   const ReferenceDoubt doubt(made::model({"static-constant"}), *reference, false);
-  EXPECT_THAT(doubt.names(),
+  EXPECT_THAT(doubt.names(), ElementsAre("made: psfd-bias.offset", "made: psfd-gain.gain",
+                                         "made: qcf-zero.offset", "made: static_defect"));
+  EXPECT_DOUBLE_EQ(doubt.sizes()[0], 0.1);
+  EXPECT_DOUBLE_EQ(doubt.sizes()[3], 0.24);
+  // A static defect cancels in a total pressure.
+  const auto total = pcor::total_pressure_reference(second);
+  EXPECT_THAT(ReferenceDoubt(made::model({"static-constant"}), *total, false).names(),
               ElementsAre("made: psfd-bias.offset", "made: psfd-gain.gain", "made: qcf-zero.offset"));
-  EXPECT_DOUBLE_EQ(doubt.sizes()[0], 0.26);  // with the zero of 0.1 hPa
 }
 
 }  // namespace
