@@ -337,7 +337,16 @@ NoiseModel expected_noise(const std::vector<Binning>& bins, const std::vector<Ei
   double variance = 0.0;
   double sum = 0.0;
   double most = -std::numeric_limits<double>::infinity();
+  double longest = 0.0;  // s
+  for (const Binning& flight : bins) {
+    if (flight.size() > 0) longest = std::max(longest, flight.time().back() - flight.time().front());
+  }
   for (const SlowSizes& sizes : possible_sizes()) {
+    // A drift slower than the flights is a zero in each of them: the flights say nothing of its size.
+    bool is_seen = true;
+    for (std::size_t k = 0; k < sizes.slowest.size(); ++k)
+      is_seen = is_seen && (sizes.slowest[k] == 0.0 || slow_times[first_uncertain + k] <= longest);
+    if (!is_seen) continue;
     for (std::size_t k = 0; k < sizes.slowest.size(); ++k)
       tried.slow[first_uncertain + k] = sizes.slowest[k] * rms;
     const RestrictedLikelihood::Value value = likelihood(tried);

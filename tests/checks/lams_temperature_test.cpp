@@ -44,7 +44,7 @@ kind = "climb"
 altitude = 3000
 [[leg]]
 kind = "level"
-duration = 900
+duration = 5400
 )" + more;
   const test::TemporaryDirectory directory;
   simulate_flight(parse_scenario(text, "laser.toml"), directory / "flight.nc");
