@@ -15,9 +15,8 @@ DotPanel held_out_panel(const std::vector<FlightFit>& flights) {
   DotPanel panel;
   panel.title = "Held-out parts";
   panel.caption =
-      "The mean residual of each part that took no part in the fit. The bar about zero is the standard "
-      "deviation that the fit expects from the changes of the residual where it was fitted, the errors of "
-      "the "
+      "The mean residual of each part that was not used in the fit. The bar about zero is the standard "
+      "deviation that the fit expects: from the changes of the residual in the fit, the errors of the "
       "coefficients, and the misfit of the law.";
   panel.axis = "bias";
   panel.unit = "hPa";
@@ -25,11 +24,10 @@ DotPanel held_out_panel(const std::vector<FlightFit>& flights) {
   for (const FlightFit& flight : flights) {
     if (!flight.holdout) continue;
     const HeldOutPart part{flight.flight, flight.after, flight.expected_bias};
-    panel.rows.push_back(
-        {flight.flight,
-         {{flight.after.bias, 0.0}, {0.0, flight.expected_bias}},
-         fmt::format("{:+.3f} hPa, expected 0 ± {:.3f}", flight.after.bias, flight.expected_bias),
-         part.is_off() ? ReportTone::bad : ReportTone::good});
+    panel.rows.push_back({flight.flight,
+                          {{flight.after.bias, 0.0}, {0.0, flight.expected_bias}},
+                          fmt::format("{:+.3f} hPa, expected 0 ± {:.3f}{}", flight.after.bias,
+                                      flight.expected_bias, part.is_off() ? ": off" : "")});
   }
   return panel;
 }
