@@ -87,7 +87,7 @@ class Solver {
     if (!flights_.shares_noise()) {
       choose_times();
       linear_step({});
-      measure(false);
+      measure();
       // The solution of a convex loss is unique; from Huber's the others find the minimum of the bulk.
       settles_with(loss == Loss::none ? loss : Loss::huber);
       // The noise is that of residuals at the solution.
@@ -99,14 +99,14 @@ class Solver {
         if (stands_still(before)) break;
       }
     }
-    measure(false);
+    measure();
     constexpr int rounds = 10;
     // The weight of each reference is that of its residuals at the solution.
     for (int round = 0; round < rounds && flights_.joint().size() > 1; ++round) {
       const Eigen::VectorXd before = unknowns_;
       settles_with(loss);
       if (stands_still(before)) break;
-      measure(false);
+      measure();
     }
     for (int round = 0; round < rounds; ++round) {
       const Eigen::VectorXd before = unknowns_;
@@ -167,8 +167,8 @@ class Solver {
     }
   }
 
-  void measure(bool drift) {
-    flights_.measure_noise(solution_.values, drift);
+  void measure() {
+    flights_.measure_noise(solution_.values, false);
     find_deviation();
   }
 
