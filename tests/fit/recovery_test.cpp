@@ -52,8 +52,7 @@ struct Study {
   double r_squared = 0.0;
 };
 
-Study study(const std::string& scenario_name, const std::string& model_name,
-            pcor::RefitOptions options) {
+Study study(const std::string& scenario_name, const std::string& model_name, pcor::RefitOptions options) {
   options.trust_reference = true;  // it is exact in these flights
   const pcor::test::TemporaryDirectory directory;
   const pcor::ModelFile model = pcor::read_model(scenarios / "models" / (model_name + ".toml"));

@@ -63,8 +63,8 @@ struct StatedUncertainty {
   std::map<Quantity, double> roles{};
   std::optional<double> static_defect{};        ///< hPa
   std::optional<double> static_defect_ratio{};  ///< a part of the static pressure
-  /// Of sensors, in place of `ParameterFacts::doubt`, by the coefficients that would correct them, for example
-  /// "lams-scale.scale". Zero where the sensor counts as exact.
+  /// Of sensors, in place of `ParameterFacts::doubt`, by the coefficients that would correct them, for
+  /// example "lams-scale.scale". Zero where the sensor counts as exact.
   std::map<std::string, double> sensors{};
 };
 
