@@ -10,6 +10,15 @@ std::size_t parameter_count(const Model& model) {
   return count;
 }
 
+std::optional<std::size_t> first_parameter_of(const ModelFile& model, std::string_view effect) {
+  std::size_t place = 0;
+  for (const ModelEffect& each : model.model.effects) {
+    if (each.id == effect) return place;
+    place += each.parameters.size();
+  }
+  return std::nullopt;
+}
+
 std::vector<std::size_t> free_parameters(const ModelFile& model) {
   std::vector<std::size_t> free;
   std::size_t number = 0;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include <pcor/laws/model_file.hpp>
@@ -9,6 +11,9 @@ namespace pcor::internal {
 
 /// How many parameters a model has: those of its effects, and behind them one for each place of additions.
 std::size_t parameter_count(const Model& model);
+
+/// The place of the first parameter of an effect among those of a model; nothing where the model lacks it.
+std::optional<std::size_t> first_parameter_of(const ModelFile& model, std::string_view effect);
 
 /// The places among all parameters of a model of those that are fitted.
 std::vector<std::size_t> free_parameters(const ModelFile& model);

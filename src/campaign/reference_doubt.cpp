@@ -54,13 +54,9 @@ ModelFile with_effects_of(const ModelFile& model, const std::vector<NamedDoubt>&
   return with_doubts(model, sensors);
 }
 
+/// @param model has the effect
 std::size_t place_of(const ModelFile& model, const SensorDoubt& doubt) {
-  std::size_t place = doubt.parameter;
-  for (const ModelEffect& effect : model.model.effects) {
-    if (effect.id == doubt.effect) break;
-    place += effect.parameters.size();
-  }
-  return place;
+  return *first_parameter_of(model, doubt.effect) + doubt.parameter;
 }
 
 /// The samples with the time since the first, which drifts need, among the inputs of both models.

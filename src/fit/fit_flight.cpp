@@ -15,16 +15,6 @@ namespace pcor::internal {
 
 namespace {
 
-/// Where the coefficients of an effect begin among those of a model's effects; nothing where it has none.
-std::optional<std::size_t> place_of(const ModelFile& model, const std::string& effect) {
-  std::size_t place = 0;
-  for (const ModelEffect& each : model.model.effects) {
-    if (each.id == effect) return place;
-    place += each.parameters.size();
-  }
-  return std::nullopt;
-}
-
 /// A coefficient of an effect that the model and the reference's model have alike, and its neutral value.
 struct Alike {
   std::size_t place;  ///< among the parameters of residuals
@@ -38,7 +28,7 @@ std::vector<Alike> alike_in(const FitTask& task) {
   for (const std::string& effect : task.options.alike) {
     const std::vector<double> neutral = neutral_effect(effect).parameters;
     const auto add = [&](const ModelFile& model, std::size_t first) {
-      const std::optional<std::size_t> place = place_of(model, effect);
+      const std::optional<std::size_t> place = first_parameter_of(model, effect);
       for (std::size_t i = 0; place && i < neutral.size(); ++i)
         alike.push_back({first + *place + i, neutral[i]});
     };

@@ -11,7 +11,7 @@ namespace pcor::internal {
 namespace {
 
 /// The bias of each held-out part, and what the fit expects.
-DotPanel held_out_panel(const std::vector<FlightFit>& flights) {
+DotPanel held_out_panel(const std::vector<FlightFit>& flights, std::size_t parts) {
   DotPanel panel;
   panel.title = "Held-out parts";
   panel.caption =
@@ -23,7 +23,7 @@ DotPanel held_out_panel(const std::vector<FlightFit>& flights) {
   panel.series = {"held out", "expected"};
   for (const FlightFit& flight : flights) {
     if (!flight.holdout) continue;
-    const HeldOutPart part{flight.flight, flight.after, flight.expected_bias};
+    const HeldOutPart part{flight.flight, flight.after, flight.expected_bias, parts};
     panel.rows.push_back({flight.flight,
                           {{flight.after.bias, 0.0}, {0.0, flight.expected_bias}},
                           fmt::format("{:+.3f} hPa, expected 0 ± {:.3f}{}", flight.after.bias,
@@ -38,7 +38,7 @@ void add_held_out(Report& report, const std::vector<FlightFit>& flights) {
   const std::optional<HeldOutPart> worst = worst_held_out(flights);
   if (!worst) return;
   if (worst->is_off()) report.summary.push_back(sentence(worst->text()));
-  report.items.emplace_back(held_out_panel(flights));
+  report.items.emplace_back(held_out_panel(flights, worst->parts));
 }
 
 }  // namespace pcor::internal

@@ -13,9 +13,13 @@ namespace {
 /// Short series have shorter bins: so many at least, but none shorter than a record.
 constexpr double usual_bins = 200.0;
 
+double used_records(const std::vector<double>& residual) {
+  return static_cast<double>(
+      std::count_if(residual.begin(), residual.end(), [](double r) { return !std::isnan(r); }));
+}
+
 double width_of_bins(const std::vector<double>& residual, double step) {
-  const auto used = std::count_if(residual.begin(), residual.end(), [](double r) { return !std::isnan(r); });
-  return std::min(Binning::usual_width, static_cast<double>(used) * step / usual_bins);
+  return std::min(Binning::usual_width, used_records(residual) * step / usual_bins);
 }
 
 }  // namespace
@@ -33,8 +37,7 @@ BinnedResidual::BinnedResidual(const std::vector<double>& residual, const std::v
     variance_[bin] +=
         std::pow(residual[records[k]] - means_[bin], 2) / std::max(bins_.counts()[bin] - 1.0, 1.0);
   }
-  const auto used = std::count_if(residual.begin(), residual.end(), [](double r) { return !std::isnan(r); });
-  if (!records.empty()) outside_ = static_cast<double>(used) / static_cast<double>(records.size());
+  if (!records.empty()) outside_ = used_records(residual) / static_cast<double>(records.size());
 }
 
 Eigen::MatrixXd BinnedResidual::covariance_of_sums(const std::vector<const double*>& columns,
