@@ -51,6 +51,7 @@ struct BaseCoefficient {
   double value = 0.0;  ///< in its model
   Bounds bounds{};
   bool of_reference = false;
+  double usual = 0.0;  ///< the size it usually has, in its unit; 0 where nobody knows
 };
 
 /// Candidates, and the models that have them.

@@ -260,32 +260,41 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
   const Eigen::Index width = as_index(places.size()) + 1;
   const auto part_of = [this](std::size_t f, double time) { return held_out_part(*flight(f).samples, time); };
   std::vector<Eigen::MatrixXd> white(binned_.bins.size());
-  // The sums of the parts side by side.
+  // The sums of the parts side by side, of whitened rows and then of rows as they are.
   const auto information = share_.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
     Eigen::MatrixXd all(binned_.columns[f].rows(), width);
     all << binned_.columns[f](Eigen::all, places), binned_.residuals[f];
     white[f] = whitened(all, binned_.bins[f], noise_[f], 0);
-    Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(width, width * as_index(held_out_parts));
-    for (Eigen::Index i = 0; i < white[f].rows(); ++i) {
+    Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(width, 2 * width * as_index(held_out_parts));
+    for (Eigen::Index i = 0; i < all.rows(); ++i) {
       const std::size_t part = part_of(f, binned_.bins[f].time()[static_cast<std::size_t>(i)]);
-      sums.middleCols(width * as_index(part), width)
-          .selfadjointView<Eigen::Lower>()
-          .rankUpdate(white[f].row(i).transpose());
+      for (const Eigen::MatrixXd* const rows : {&white[f], &all}) {
+        const std::size_t place = part + (rows == &all ? held_out_parts : 0);
+        sums.middleCols(width * as_index(place), width)
+            .selfadjointView<Eigen::Lower>()
+            .rankUpdate(rows->row(i).transpose());
+      }
     }
     return sums;
   });
-  std::vector<Eigen::MatrixXd> parts;
-  Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(width, width);
-  for (std::size_t part = 0; part < held_out_parts; ++part) {
-    const Eigen::MatrixXd lower = information.middleCols(width * as_index(part), width);
-    whole += parts.emplace_back(lower.selfadjointView<Eigen::Lower>());
-  }
-  std::vector<Eigen::VectorXd> estimates;
-  for (const Eigen::MatrixXd& part : parts) {
-    const Eigen::MatrixXd rest = whole - part;
-    estimates.push_back(pseudo_solution(rest.topLeftCorner(width - 1, width - 1),
-                                        rest.col(width - 1).head(width - 1), least_eigenvalue));
-  }
+  // Of each part, fitted to the others.
+  const auto estimates_from = [&](std::size_t first) {
+    std::vector<Eigen::MatrixXd> parts;
+    Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(width, width);
+    for (std::size_t part = 0; part < held_out_parts; ++part) {
+      const Eigen::MatrixXd lower = information.middleCols(width * as_index(first + part), width);
+      whole += parts.emplace_back(lower.selfadjointView<Eigen::Lower>());
+    }
+    std::vector<Eigen::VectorXd> estimates;
+    for (const Eigen::MatrixXd& part : parts) {
+      const Eigen::MatrixXd rest = whole - part;
+      estimates.push_back(pseudo_solution(rest.topLeftCorner(width - 1, width - 1),
+                                          rest.col(width - 1).head(width - 1), least_eigenvalue));
+    }
+    return estimates;
+  };
+  const std::vector<Eigen::VectorXd> estimates = estimates_from(0);
+  const std::vector<Eigen::VectorXd> least_squares = estimates_from(held_out_parts);
   HeldOut result;
   result.chi2 = scores_->by_minutes([&](std::size_t f) {
     Eigen::VectorXd squares(white[f].rows());
@@ -301,7 +310,7 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
                    .sum_of_each_flight<SquareSum>([&](std::size_t f) {
                      SquareSum sum;
                      std::vector<std::vector<double>> predicted;
-                     for (const Eigen::VectorXd& estimate : estimates)
+                     for (const Eigen::VectorXd& estimate : least_squares)
                        predicted.push_back(added(f, groups, estimate));
                      for (const std::size_t record : binned_.bins[f].records()) {
                        if (flights_[f].residual[record] != flights_[f].given[record]) continue;  // an outlier

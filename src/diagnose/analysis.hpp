@@ -22,7 +22,8 @@ std::size_t held_out_part(const FlightSamples& samples, double time);
 
 /// What is left on stretches that took no part in a fit.
 struct HeldOut {
-  double rms = 0.0;      ///< hPa, with the first reference, without outliers
+  /// Of a correction by least squares, as refit makes it: hPa, with the first reference, without outliers.
+  double rms = 0.0;
   Eigen::VectorXd chi2;  ///< of each minute, squared innovations of all references in units of the noise
 };
 

@@ -146,6 +146,10 @@ std::string missing_variable(const ModelEffect& effect, const FlightSet& flights
   return "";
 }
 
+bool is_of_laser(Where where) {
+  return where == Where::beam_elevation || where == Where::beam_azimuth || where == Where::beam_speed;
+}
+
 /// Whether an effect there can be one of the other system as well.
 bool has_a_twin(Where where) {
   return where == Where::static_transducer || where == Where::dynamic_transducer ||
@@ -218,16 +222,24 @@ std::vector<BaseCoefficient> base_of(const ModelFile& model) {
       if (model.fit(e, p).fixed) continue;
       base.push_back({effect.id + "." + names[p],
                       std::string(facts == nullptr ? "" : facts->parameters[p].unit), effect.parameters[p],
-                      model.bounds(e, p)});
+                      model.bounds(e, p), false, facts == nullptr ? 0.0 : facts->parameters[p].typical});
     }
   }
   return base;
 }
 
+void fix_all(ModelFile& model) {
+  model.fits.resize(model.model.effects.size());
+  for (std::size_t e = 0; e < model.fits.size(); ++e) {
+    model.fits[e].resize(parameter_names(model.model.effects[e]).size());
+    for (ParameterFit& fit : model.fits[e]) fit.fixed = true;
+  }
+}
+
 /// Everything that the own system may have, a system that it is held against may have too. One residual of
 /// both knows their difference alone.
 void add_those_of_the_references(CandidateSet& set, const References& references, const FlightSet& flights,
-                                 const std::vector<double>& dates) {
+                                 const std::vector<double>& dates, bool trusted) {
   for (std::size_t r = 0; r < references.size(); ++r) {
     const ModelFile* const model = references[r]->model();
     std::optional<ModelFile>& other = set.others.emplace_back();
@@ -235,6 +247,8 @@ void add_those_of_the_references(CandidateSet& set, const References& references
     set.base_of_others.push_back(set.base.size());
     set.effects_of_others.push_back(model == nullptr ? 0 : model->model.effects.size());
     if (model == nullptr) continue;
+    ModelFile law = *model;
+    if (trusted) fix_all(law);
     const std::string system = name_of_system(*model, references);
     const auto same = std::find_if(references.begin(), references.begin() + static_cast<std::ptrdiff_t>(r),
                                    [model](const auto& before) {
@@ -243,37 +257,44 @@ void add_those_of_the_references(CandidateSet& set, const References& references
     if (same != references.begin() + static_cast<std::ptrdiff_t>(r)) {
       set.base_of_others.back() = set.base_of_others[static_cast<std::size_t>(same - references.begin())];
     } else {
-      for (BaseCoefficient& coefficient : base_of(*model)) {
+      for (BaseCoefficient& coefficient : base_of(law)) {
         coefficient.name = id_on_other_system(system, coefficient.name);
         coefficient.of_reference = true;
         set.base.push_back(std::move(coefficient));
       }
     }
-    other = *model;
+    other = std::move(law);
     name_usual_variables(*other, flights);
     Chain chain = chain_of(other->model, roles_of(*other, false));
     for (const EffectFacts& facts : effect_facts) {
-      if (!has_a_twin(facts.where) || has_effect(*model, facts.id)) continue;
-      Candidate twin = candidate_of(facts);
+      if (trusted || !has_a_twin(facts.where) || has_effect(*model, facts.id)) continue;
+      Candidate usual = candidate_of(facts);
       if (reads_date(facts)) {
         if (dates.empty()) continue;
-        twin.effect.parameters[1] = dates.front();
+        usual.effect.parameters[1] = dates.front();
       }
-      twin.system = system;
-      twin.id = id_on_other_system(system, twin.effect.id);
-      twin.title += system.empty() ? ", of the other system" : ", of the system " + system;
-      BindingError error;
-      std::optional<Chain> with = chain.with_effect(twin.effect, &error);
-      if (!with) continue;
-      chain = std::move(*with);
-      auto place = std::find_if(set.candidates.begin(), set.candidates.end(),
-                                [&twin](const Candidate& each) { return each.id == twin.id; });
-      if (place == set.candidates.end()) {
-        twin.numbers_in_others.resize(references.size());
-        place = set.candidates.insert(place, std::move(twin));
+      usual.system = system;
+      usual.id = id_on_other_system(system, usual.effect.id);
+      usual.title += system.empty() ? ", of the other system" : ", of the system " + system;
+      std::vector<Candidate> shapes = variants_of(usual, dates);
+      shapes.insert(shapes.begin(), std::move(usual));
+      for (Candidate& twin : shapes) {
+        BindingError error;
+        std::optional<Chain> with = chain.with_effect(twin.effect, &error);
+        if (!with) continue;
+        chain = std::move(*with);
+        auto place =
+            std::find_if(set.candidates.begin(), set.candidates.end(), [&twin](const Candidate& each) {
+              return each.id == twin.id && each.effect.parameters == twin.effect.parameters &&
+                     each.effect.scaling == twin.effect.scaling;
+            });
+        if (place == set.candidates.end()) {
+          twin.numbers_in_others.resize(references.size());
+          place = set.candidates.insert(place, std::move(twin));
+        }
+        place->numbers_in_others[r] = other->model.effects.size();
+        other->model.effects.push_back(place->effect);
       }
-      place->numbers_in_others[r] = other->model.effects.size();
-      other->model.effects.push_back(place->effect);
     }
     set.references.back() = references[r]->with_model(*other);
   }
@@ -283,7 +304,7 @@ void add_those_of_the_references(CandidateSet& set, const References& references
 
 CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffect>& formulas,
                              const FlightSet& flights, const References& references,
-                             const std::vector<double>& dates) {
+                             const std::vector<double>& dates, bool trust_reference) {
   CandidateSet set;
   set.extended = model;
   name_usual_variables(set.extended, flights);
@@ -322,6 +343,7 @@ CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffe
   }
   for (const EffectFacts& facts : effect_facts) {
     if (has_effect(model, facts.id)) continue;
+    if (trust_reference && is_of_laser(facts.where)) continue;
     if (facts.where == Where::ambient_temperature) {
       set.not_testable.push_back(
           {std::string(facts.id), std::string(facts.title),
@@ -352,7 +374,7 @@ CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffe
   const bool two_systems = std::any_of(references.begin(), references.end(),
                                        [](const auto& each) { return each->model() != nullptr; });
   add_derived_ones(set, two_systems);
-  add_those_of_the_references(set, references, flights, dates);
+  add_those_of_the_references(set, references, flights, dates, trust_reference);
   return set;
 }
 

@@ -22,6 +22,6 @@ struct CandidateSet : CandidateModels {
 /// @param dates on which a step is tried, as the role date has them
 CandidateSet find_candidates(const ModelFile& model, const std::vector<ModelEffect>& formulas,
                              const FlightSet& flights, const References& references,
-                             const std::vector<double>& dates = {});
+                             const std::vector<double>& dates = {}, bool trust_reference = false);
 
 }  // namespace pcor::internal

@@ -38,18 +38,28 @@ std::string description_of(const References& references) {
   return text;
 }
 
-/// The variables that effects of the catalogue read.
-std::set<std::string> inputs_of(const std::vector<Finding>& findings, const ModelFile& model) {
-  std::set<std::string> names;
+/// What the effects of findings read, on either system; an angle is also read as its differential pressure.
+EffectInputs inputs_of(const std::vector<Finding>& findings, const ModelFile& model) {
+  EffectInputs inputs;
+  const auto read = [&](Quantity quantity) {
+    inputs.quantities.insert(quantity);
+    const auto variable = model.variables.find(quantity);
+    if (variable != model.variables.end()) inputs.variables.insert(variable->second);
+  };
   for (const Finding& finding : findings) {
     const std::size_t known = effect_named(finding.effect.id);
-    if (known == catalogue_size || finding.of_reference) continue;
+    if (known == catalogue_size) continue;
     for (const Quantity need : effect_facts[known].needs) {
-      const auto variable = model.variables.find(need);
-      if (variable != model.variables.end()) names.insert(variable->second);
+      if (need == Quantity::count) continue;
+      read(need);
+      const bool is_attack = need == Quantity::attack || need == Quantity::attack_ratio;
+      const bool is_sideslip = need == Quantity::sideslip || need == Quantity::sideslip_ratio;
+      if (is_attack) read(Quantity::attack_differential_pressure);
+      if (is_sideslip) read(Quantity::sideslip_differential_pressure);
+      if (is_attack || is_sideslip) read(is_attack ? Quantity::attack : Quantity::sideslip);
     }
   }
-  return names;
+  return inputs;
 }
 
 /// The own flights; of the others nothing.
@@ -264,7 +274,8 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelFile& model,
   Diagnosis& diagnosis = result.diagnosis;
   const References references = usable_references(all_references, diagnosis.notes);
   diagnosis.reference = description_of(references);
-  CandidateSet set = find_candidates(model, options.formulas, files, references, dates);
+  CandidateSet set =
+      find_candidates(model, options.formulas, files, references, dates, options.trust_reference);
   TeamColumns columns = columns_of_flights(files, files.size(), model, set, options, diagnosis.notes);
   diagnosis.masks = count_masks(columns);
   leave_out_empty(columns);
@@ -279,11 +290,12 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelFile& model,
   }
   const FlapsCandidates flaps = find_flaps_candidates(set, columns);
   drop_untestable(set, columns);
+  hold_imitated_coefficients(set, columns);
   diagnosis.candidates = static_cast<std::size_t>(
       std::count_if(set.candidates.begin(), set.candidates.end(),
                     [](const Candidate& candidate) { return !candidate.is_variant; }));
 
-  const Analysis analysis(std::move(columns), groups_of(model, set.candidates), options.seed,
+  const Analysis analysis(std::move(columns), groups_of(set, set.candidates), options.seed,
                           options.explained);
   diagnosis.threshold = analysis.result().threshold;
   result.found = diagnosis.findings = findings_of(analysis, set.candidates);
@@ -308,7 +320,7 @@ SearchedDiagnosis diagnosis_with(const FlightSet& files, const ModelFile& model,
     diagnosis.flights[f].traced = std::move(structure.traced[f]);
   if (structure.overrules) overrule(diagnosis);
   if (!flaps.empty())
-    diagnose_flaps(analysis, flaps, groups_of(model, flaps.candidates), options.seed, diagnosis);
+    diagnose_flaps(analysis, flaps, groups_of(set, flaps.candidates), options.seed, diagnosis);
   keep_series(analysis, options.series_of, diagnosis.flights);
   double explained = 0.0;
   for (const Finding& finding : diagnosis.findings) explained += finding.chi2;

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <utility>
 
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/words/error.hpp>
+#include "numerics/decompositions.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "residuals/frozen.hpp"
@@ -36,33 +38,6 @@ std::string trouble_of(const std::vector<FlightColumns>& flights,
   return "";
 }
 
-/// Whether an effect reads the flow angles, which the radome tells by more than one sensor.
-bool reads_flow_angles(const EffectFacts& facts) {
-  return std::any_of(facts.needs.begin(), facts.needs.end(), [](Quantity need) {
-    return need == Quantity::attack || need == Quantity::attack_ratio || need == Quantity::sideslip ||
-           need == Quantity::sideslip_ratio;
-  });
-}
-
-// Of an effect of flow angles where the model has one: what is left of its variance may be the noise by which
-// two sensors of one angle differ. Another scaling of it differs still less.
-constexpr double left_by_same_angle = 0.005;
-constexpr double left_by_same_sensors = 0.02;
-
-/// Whether an effect of the catalogue is of the family and the place of one that a model has, by other
-/// sensors.
-bool is_like_one_of(const ModelFile& model, const Candidate& candidate) {
-  const std::size_t known = effect_named(candidate.effect.id);
-  if (known == catalogue_size || candidate.is_of_reference()) return false;
-  const EffectFacts& facts = effect_facts[known];
-  if (!reads_flow_angles(facts)) return false;
-  return std::any_of(model.model.effects.begin(), model.model.effects.end(), [&](const ModelEffect& effect) {
-    const std::size_t other = effect_named(effect.id);
-    return other != catalogue_size && effect_facts[other].family == facts.family &&
-           effect_facts[other].where == facts.where;
-  });
-}
-
 }  // namespace
 
 Testability testability_of(const FlightColumns& flight, const std::vector<double>& given, Eigen::Index first,
@@ -77,6 +52,9 @@ Testability testability_of(const FlightColumns& flight, const std::vector<double
   }
   return found;
 }
+
+/// Single precision of the columns leaves a millionth of their length, squared here.
+constexpr double imitation_rank = 1e-12;
 
 References usable_references(const References& references, std::vector<std::string>& notes) {
   References result;
@@ -196,18 +174,49 @@ void drop_untestable(CandidateSet& set, TeamColumns& columns) {
     flight.candidates = Eigen::MatrixXf(flight.candidates(Eigen::all, kept));
 }
 
-std::vector<ColumnGroup> groups_of(const ModelFile& model, const std::vector<Candidate>& candidates) {
+void hold_imitated_coefficients(CandidateSet& set, TeamColumns& columns, TeamColumns* further) {
+  constexpr double notable = 0.03;  // hPa, rms
+  const Eigen::Index count = as_index(set.base.size());
+  // Of all columns with each other; last the number of rows.
+  const auto sums = columns.share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
+    const Eigen::MatrixXd base = columns.flights[f].base.cast<double>();
+    Eigen::MatrixXd own(count, count + 1);
+    own.leftCols(count) = base.transpose() * base;
+    own.rightCols(1).setConstant(static_cast<double>(
+        std::count(columns.flights[f].mask.begin(), columns.flights[f].mask.end(), Mask::none)));
+    return own;
+  });
+  std::vector<Eigen::Index> kept;
+  std::vector<BaseCoefficient> base;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    BaseCoefficient& coefficient = set.base[static_cast<std::size_t>(k)];
+    if (coefficient.of_reference && coefficient.usual > 0.0) {
+      const Eigen::VectorXd across = sums(kept, k);
+      const double left = sums(k, k) - across.dot(pseudo_solution(sums(kept, kept), across, imitation_rank));
+      if (!(coefficient.usual * std::sqrt(std::max(0.0, left) / sums(k, count)) > notable)) continue;
+    }
+    kept.push_back(k);
+    base.push_back(std::move(coefficient));
+  }
+  set.base = std::move(base);
+  for (TeamColumns* const each : {&columns, further}) {
+    if (each == nullptr) continue;
+    for (FlightColumns& flight : each->flights) flight.base = Eigen::MatrixXf(flight.base(Eigen::all, kept));
+  }
+}
+
+std::vector<ColumnGroup> groups_of(const CandidateSet& set, const std::vector<Candidate>& candidates) {
+  // A difference of two systems is the same with an effect on either, so only one of them can be told.
+  const bool differences_alone =
+      std::all_of(set.references.begin(), set.references.end(),
+                  [](const auto& reference) { return reference->model() != nullptr; });
   std::vector<ColumnGroup> groups;
   Eigen::Index first = 0;
-  std::size_t effect = 0;
-  std::string before;
+  std::map<std::string, std::size_t> effects;
   for (const Candidate& candidate : candidates) {
-    if (candidate.id != before) ++effect;
-    before = candidate.id;
     ColumnGroup& group = groups.emplace_back();
-    group.effect = effect;
-    if (is_like_one_of(model, candidate))
-      group.least_left = candidate.is_variant ? left_by_same_sensors : left_by_same_angle;
+    group.effect =
+        effects.emplace(differences_alone ? candidate.effect.id : candidate.id, effects.size()).first->second;
     group.first = first;
     group.count = as_index(candidate.tested.size());
     for (const CandidateParameter& parameter : candidate.tested) {

@@ -62,7 +62,15 @@ void leave_out_empty(TeamColumns& columns);
 /// Takes out the candidates that cannot be tested, and their columns.
 void drop_untestable(CandidateSet& set, TeamColumns& columns);
 
+/// Holds the coefficients of the references' laws that the model's own coefficients imitate: those of which,
+/// at their usual size, less than 0.03 hPa (rms) is left. Against a second system alone, that is all
+/// coefficients of the same kind: the difference of two nearly equal columns, at an impossible size, would
+/// imitate anything.
+/// @param further flights, of which the same columns are kept
+void hold_imitated_coefficients(CandidateSet& set, TeamColumns& columns, TeamColumns* further = nullptr);
+
 /// The columns of each candidate, one group after another.
-std::vector<ColumnGroup> groups_of(const ModelFile& model, const std::vector<Candidate>& candidates);
+/// @param set with the references @param candidates of the set
+std::vector<ColumnGroup> groups_of(const CandidateSet& set, const std::vector<Candidate>& candidates);
 
 }  // namespace pcor::internal

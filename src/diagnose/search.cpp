@@ -18,6 +18,8 @@ namespace pcor::internal {
 namespace {
 
 constexpr double redundant_below = 1e-3;  // of what the base leaves, given others
+/// Of a column's variance the base has to leave more than this: single precision leaves a millionth.
+constexpr double least_left = 1e-6;
 constexpr double errors_beyond_bounds = 2.0;
 constexpr double least_share = 0.08;  // of the rms that is explained already, for one more effect
 constexpr double enough_blocks = 12.0;
@@ -124,7 +126,7 @@ Search::Search(const Scores& scores, Eigen::Index base, const std::vector<Column
       Eigen::Index next = 0;
       const double most = left.diagonal().maxCoeff(&next);
       if (told.empty()) remaining_.back() = std::clamp(most, 0.0, 1.0);
-      if (!(most > group.least_left)) break;
+      if (!(most > least_left)) break;
       told.push_back(next);
       left -= Eigen::MatrixXd(left.col(next) * left.row(next) / most);
       for (const Eigen::Index column : told) left(column, column) = 0.0;

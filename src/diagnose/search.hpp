@@ -16,8 +16,6 @@ struct ColumnGroup {
   Eigen::Index count = 0;
   std::size_t effect = 0;        ///< groups of one effect, in several shapes, exclude each other
   std::vector<Bounds> bounds{};  ///< of each column's coefficient; an effect beyond them is impossible
-  /// Of its variance the base has to leave more than this: single precision leaves a millionth.
-  double least_left = 1e-6;
   /// As large as each coefficient is met in practice; 0, or nothing, where nobody knows.
   std::vector<double> usual{};
 };

@@ -283,14 +283,38 @@ void find_places(const Analysis& analysis, const Tested& tested, const std::vect
   }
 }
 
+/// Whether a variable is the record of a quantity under another name: the two are correlated above 0.95.
+bool is_image(const Analysis& analysis, const TestedVariable& variable, Quantity quantity) {
+  constexpr double image = 0.95;
+  using Sums = Eigen::Matrix<double, 6, 1>;
+  const Sums sums = analysis.share().sum_of_each_flight<Sums>([&](std::size_t f) {
+    Sums own = Sums::Zero();
+    const std::vector<double>& known = analysis.flights()[f].quantity(quantity);
+    if (known.empty()) return own;
+    for (const std::size_t record : analysis.bins()[f].records()) {
+      const double x = (*variable.values[f])[record];
+      const double y = known[record];
+      if (std::isfinite(x) && std::isfinite(y)) own += (Sums() << 1.0, x, y, x * x, y * y, x * y).finished();
+    }
+    return own;
+  });
+  const double covariance = sums[5] * sums[0] - sums[1] * sums[2];
+  const double variances = (sums[3] * sums[0] - sums[1] * sums[1]) * (sums[4] * sums[0] - sums[2] * sums[2]);
+  return covariance * covariance > image * image * variances;
+}
+
 /// The line in a variable that explains most beside the base, of those that may be a cause and are no input
 /// of an effect. It has a slope of its own against each reference, since where the cause acts is not known.
-GroupScore best_line(const Analysis& analysis, const Tested& tested, const std::set<std::string>& inputs) {
+GroupScore best_line(const Analysis& analysis, const Tested& tested, const EffectInputs& inputs) {
+  const auto is_input = [&](const TestedVariable& variable) {
+    return inputs.variables.count(variable.name) != 0 ||
+           std::any_of(inputs.quantities.begin(), inputs.quantities.end(),
+                       [&](Quantity quantity) { return is_image(analysis, variable, quantity); });
+  };
   std::vector<std::size_t> causes;
   for (std::size_t i = 0; i < tested.variables.size(); ++i) {
     const TestedVariable& variable = *tested.variables[i];
-    if (variable.may_be_cause && variable.turn == 0.0 && inputs.count(variable.name) == 0)
-      causes.push_back(i);
+    if (variable.may_be_cause && variable.turn == 0.0 && !is_input(variable)) causes.push_back(i);
   }
   const std::size_t references = reference_count(analysis);
   std::vector<ColumnGroup> groups(causes.size());
@@ -314,7 +338,7 @@ GroupScore best_line(const Analysis& analysis, const Tested& tested, const std::
 /// many variables may win with has to be that much better. What an effect reads is no rival of it. Both are
 /// measured by all references.
 bool line_overrules(const Analysis& analysis, const std::vector<std::size_t>& chosen, const Tested& tested,
-                    const std::set<std::string>& inputs) {
+                    const EffectInputs& inputs) {
   if (tested.variables.empty()) return false;
   const Search& search = analysis.search();
   const auto rows = static_cast<double>(analysis.scores().row_count);
@@ -380,7 +404,7 @@ std::vector<FlightStep> steps_between(const Analysis& analysis, const std::vecto
 
 UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightSet& files,
                                       const ModelFile& model, const References& references,
-                                      const std::set<std::string>& inputs, const DiagnoseOptions& options,
+                                      const EffectInputs& inputs, const DiagnoseOptions& options,
                                       double residual_rms, double noise_rms) {
   UnexplainedStructure result;
   Unexplained& found = result.found;

@@ -10,6 +10,12 @@
 
 namespace pcor::internal {
 
+/// What chosen effects read. A variable that one of them reads is no rival of it.
+struct EffectInputs {
+  std::set<Quantity> quantities{};
+  std::set<std::string> variables{};
+};
+
 /// Structure that base and chosen effects leave.
 struct UnexplainedStructure {
   Unexplained found;
@@ -27,7 +33,7 @@ struct UnexplainedStructure {
 /// @param residual_rms and @param noise_rms after the chosen effects, hPa
 UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightSet& files,
                                       const ModelFile& model, const References& references,
-                                      const std::set<std::string>& inputs, const DiagnoseOptions& options,
+                                      const EffectInputs& inputs, const DiagnoseOptions& options,
                                       double residual_rms, double noise_rms);
 
 }  // namespace pcor::internal

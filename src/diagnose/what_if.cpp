@@ -340,13 +340,14 @@ WhatIf what_if(const FlightSet& flights, const ModelFile& model, const Reference
       formulas.push_back(*each.effect);
   }
   CandidateSet set = find_candidates(model, formulas, files, usable_references(all_references, notes),
-                                     dates_for(wanted, files));
+                                     dates_for(wanted, files), options.diagnose.trust_reference);
   keep(set, wanted);
   TeamColumns columns = columns_of_flights(files, flights.size(), model, set, options.diagnose, notes);
   leave_out_empty(columns);
   if (columns.flights.empty()) throw Error("no sample is left to try effects on");
   drop_untestable(set, columns);
   TeamColumns others = held_out_columns(files, flights.size(), columns, model, set, options);
+  hold_imitated_coefficients(set, columns, &others);
   CandidateSet ordered = set;
   const std::vector<WhatIfCandidate> found = put_in_order(ordered, columns, wanted);
   put_in_order(set, others, wanted);
@@ -390,7 +391,7 @@ WhatIf what_if(const FlightSet& flights, const ModelFile& model, const Reference
     if (found[e].stands_for == found[e].id) are_found.push_back(e);
   }
   const WhatIfFit fit(std::move(columns), std::move(others), panel.coefficients,
-                      groups_of(model, ordered.candidates), are_found, options.is_robust,
+                      groups_of(ordered, ordered.candidates), are_found, options.is_robust,
                       [&](const FlightColumns& flight, const std::vector<std::size_t>& groups) {
                         return residual_with(model, ordered, flight, groups);
                       });

@@ -551,6 +551,7 @@ Improvement improve(const FlightSet& flights, const ModelFile& model, const Refe
   diagnose_with.mask = options.refit.mask;
   diagnose_with.formulas = options.formulas;
   diagnose_with.training_share = options.refit.training_share;
+  diagnose_with.trust_reference = options.refit.trust_reference;
   diagnose_with.progress = options.refit.progress;
 
   std::map<std::string, double> found;  // chi2 of the findings of all rungs, by effect

@@ -29,6 +29,7 @@ struct Options {
   std::vector<std::string> not_variables;
   bool no_file_variables = false;
   double training_share = 1.0;
+  bool trust_reference = false;
   bool full = false;
 };
 
@@ -196,6 +197,7 @@ void run(const Options& options) {
   diagnose_with.whole_file = !options.no_file_variables;
   diagnose_with.not_variables = options.not_variables;
   diagnose_with.training_share = options.training_share;
+  diagnose_with.trust_reference = options.trust_reference;
   Diagnosis diagnosis;
   WhatIf tried;
   {
@@ -207,6 +209,7 @@ void run(const Options& options) {
       tried = what_if(flights, model, references.used, what_if_candidates(diagnosis, diagnose_with.formulas),
                       {diagnose_with, {}, true, diagnosis.own});
       std::string fit = command_line(options.comparison);
+      if (options.trust_reference) fit += " --trust-reference";
       if (options.training_share < 1.0) fit += fmt::format(" --training-share {}", options.training_share);
       add_commands(tried, options.model, options.comparison.flights.front(), fit);
     }
@@ -237,6 +240,8 @@ std::function<void()> add_diagnose(CLI::App& program) {
       ->type_name("NAME");
   command->add_flag("--no-file-variables", options->no_file_variables,
                     "search no variable of the flights for structure that no effect explains");
+  command->add_flag("--trust-reference", options->trust_reference,
+                    "take the references for exact: no missing effect is looked for in them");
   command
       ->add_option("--training-share", options->training_share,
                    "use only this share of every flight, its first part")

@@ -10,8 +10,9 @@ namespace pcor::tool {
 void add_trust_option(CLI::App& command, bool& trust) {
   command.add_flag(
       "--trust-reference", trust,
-      "take the calibration of the reference and of the thermometer for exact: standard errors "
-      "leave out what it may be wrong by, as [uncertainty] of the model or the usual sizes state");
+      "take the calibration of the reference and of the thermometer for exact: standard errors leave "
+      "out what it may be wrong by, as [uncertainty] of the model or the usual sizes state, and no "
+      "missing effect is looked for in the reference");
 }
 
 void print_fit_summary(const RefitResult& fit) {

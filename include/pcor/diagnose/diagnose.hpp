@@ -41,6 +41,8 @@ struct DiagnoseOptions {
   bool whole_file = true;                    ///< look for structure in every variable of the files
   std::vector<std::string> not_variables{};  ///< variables of the files that are not looked at
   double training_share = 1.0;  ///< only the first part of every flight, this share of the samples
+  bool trust_reference =
+      false;  ///< the references are exact: no effect of a laser or of another system is tested
   /// chi2 of effects that were found before and are in the model now: what is found further must be at least
   /// 8 % of their rms, otherwise it may only refine earlier findings.
   double explained = 0.0;
