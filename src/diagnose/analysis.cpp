@@ -268,16 +268,27 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
     Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(width, 2 * width * as_index(held_out_parts));
     for (Eigen::Index i = 0; i < all.rows(); ++i) {
       const std::size_t part = part_of(f, binned_.bins[f].time()[static_cast<std::size_t>(i)]);
-      for (const Eigen::MatrixXd* const rows : {&white[f], &all}) {
-        const std::size_t place = part + (rows == &all ? held_out_parts : 0);
+      for (const Eigen::MatrixXd* const each : {&white[f], &all}) {
+        const std::size_t place = part + (each == &all ? held_out_parts : 0);
         sums.middleCols(width * as_index(place), width)
             .selfadjointView<Eigen::Lower>()
-            .rankUpdate(rows->row(i).transpose());
+            .rankUpdate(each->row(i).transpose());
       }
     }
     return sums;
   });
+  // What the other parts hardly see of an effect stays near its usual size: a prior as in the search.
+  Eigen::VectorXd precision = Eigen::VectorXd::Zero(width - 1);
+  Eigen::Index place = base_;
+  for (const std::size_t group : groups) {
+    for (std::size_t k = 0; k < groups_[group].usual.size(); ++k) {
+      const double deviation = spread_of_sizes * groups_[group].usual[k];
+      if (deviation > 0.0) precision[place + as_index(k)] = 1.0 / (deviation * deviation);
+    }
+    place += groups_[group].count;
+  }
   // Of each part, fitted to the others.
+  const auto rows = static_cast<double>(scores_->row_count);
   const auto estimates_from = [&](std::size_t first) {
     std::vector<Eigen::MatrixXd> parts;
     Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(width, width);
@@ -288,8 +299,10 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
     std::vector<Eigen::VectorXd> estimates;
     for (const Eigen::MatrixXd& part : parts) {
       const Eigen::MatrixXd rest = whole - part;
-      estimates.push_back(pseudo_solution(rest.topLeftCorner(width - 1, width - 1),
-                                          rest.col(width - 1).head(width - 1), least_eigenvalue));
+      Eigen::MatrixXd normal = rest.topLeftCorner(width - 1, width - 1);
+      // In units of the variance of the rows.
+      normal.diagonal() += rest(width - 1, width - 1) / rows * precision;
+      estimates.push_back(pseudo_solution(normal, rest.col(width - 1).head(width - 1), least_eigenvalue));
     }
     return estimates;
   };

@@ -25,9 +25,8 @@ constexpr double least_share = 0.08;  // of the rms that is explained already, f
 constexpr double enough_blocks = 12.0;
 constexpr double few_blocks_penalty = 6.0;
 
-// Sizes of effects: three times the usual one is a standard deviation. A part of all effects is larger, and a
-// part much smaller, as what is left of an effect that a law has but not quite.
-constexpr double spread_of_sizes = 3.0;
+// A part of all effects is larger than by `spread_of_sizes`, and a part much smaller, as what is left of an
+// effect that a law has but not quite.
 struct Tail {
   double times;
   double share;

@@ -10,6 +10,9 @@
 
 namespace pcor::internal {
 
+/// Three times the usual size of an effect is a standard deviation of its size in nature.
+inline constexpr double spread_of_sizes = 3.0;
+
 /// Columns that belong together: the tested parameters of one effect.
 struct ColumnGroup {
   Eigen::Index first = 0;  ///< among the candidates' columns

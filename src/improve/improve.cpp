@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -14,8 +15,9 @@
 #include <pcor/words/error.hpp>
 #include "diagnose/traced_effect.hpp"
 #include "fit/lineage.hpp"
-#include "improve/average.hpp"
 #include "improve/improve_loop.hpp"
+#include "improve/model_trials.hpp"
+#include "improve/rival_choice.hpp"
 #include "numerics/missing.hpp"
 #include "residuals/flight_statistics.hpp"
 #include "team/flight_share.hpp"
@@ -175,7 +177,7 @@ class Climb {
     while (result_.why_stopped.empty()) climb_on();
     result_.model = result_.fit.model;
     result_.refitted = refitted_;
-    average();
+    choose_among_rivals();
     compare_with_the_given();
     return std::move(result_);
   }
@@ -184,81 +186,94 @@ class Climb {
   const Diagnosis& diagnosis() const { return result_.steps.back().diagnosis; }
   TrialModel top() const { return {result_.fit.model, alike_}; }
 
-  /// The model with one choice of each rung; without the effect of the rung number `without`.
-  TrialModel model_with(const std::vector<std::size_t>& choice, std::size_t without) const {
+  using RungChoice = std::optional<std::size_t>;  // among the rivals of a rung; nothing: none of them
+
+  /// The model with one choice of each rung, fitted.
+  TrialModel model_with(const std::vector<RungChoice>& choices) const {
     TrialModel model = given_;
     for (std::size_t rung = 0; rung < rungs_.size(); ++rung) {
-      if (rung != without) model = loop_.add(model, rungs_[rung][choice[rung]].added);
+      if (choices[rung]) model = loop_.add(model, rungs_[rung][*choices[rung]].added);
     }
     model.file = loop_.refit(model).model;
     return model;
   }
 
-  /// Where it matters for the static pressure which of a rung's rivals is there, the model gets their
-  /// average.
-  void average() {
-    std::vector<Mixture> mixtures;
+  /// Where it matters for the static pressure which of a rung's rivals is there, the model gets the one that
+  /// `choose_rival` chooses, or none; the doubt is part of its stated error.
+  void choose_among_rivals() {
+    std::vector<RungChoice> choices(rungs_.size(), 0);
+    ProvenanceList rivals;
+    double squares = 0.0;
     for (std::size_t rung = 0; rung < rungs_.size(); ++rung) {
       if (rungs_[rung].size() < 2) continue;
-      Mixture mixture = mixture_of(rung, result_.steps[rung + 1]);
-      if (!mixture.rivals.empty()) mixtures.push_back(std::move(mixture));
-    }
-    if (mixtures.empty()) return;
-    result_.model = averaged(result_.fit.model, mixtures);
-    ProvenanceList rivals;
-    for (const ImproveStep& step : result_.steps) {
+      ImproveStep& step = result_.steps[rung + 1];
+      choices[rung] = choice_of(rung, step);
+      squares += step.rival_error * step.rival_error;
       for (const RungRival& rival : step.rivals)
-        rivals.emplace_back(fmt::format("{} for {}: probability {:.3f}, {:.0f} % of the average applied",
-                                        rival.effect, step.added, rival.probability, 100.0 * step.share));
+        rivals.emplace_back(fmt::format("{} for {}: probability {:.3f}{}", rival.effect, step.added,
+                                        rival.probability,
+                                        rival.effect == step.delivered ? ", applied" : ""));
     }
-    result_.model.provenance.emplace_back("averaged_over", ProvenanceValue{std::move(rivals)});
+    const bool is_top =
+        std::all_of(choices.begin(), choices.end(), [](const RungChoice& choice) { return choice == 0U; });
+    delivered_ = is_top ? top() : model_with(choices);
+    result_.model = delivered_.file;
+    if (squares > 0.0) {
+      double& stated = result_.model.uncertainty.static_defect.emplace(
+          result_.model.uncertainty.static_defect.value_or(0.0));
+      stated = std::sqrt(stated * stated + squares);
+    }
+    if (!rivals.empty()) result_.model.provenance.emplace_back("rivals", ProvenanceValue{std::move(rivals)});
   }
 
-  /// The models that the rivals of a rung make, and that without any of them; none where it does not matter
-  /// which of the rivals is there.
-  Mixture mixture_of(std::size_t rung, ImproveStep& step) const {
-    Mixture mixture;
-    std::vector<std::size_t> choice(rungs_.size(), 0);
+  /// Measures what the rivals of a rung do to the static pressure, all else as at the top of the ladder.
+  /// Where that is alike, the first one stays.
+  RungChoice choice_of(std::size_t rung, ImproveStep& step) const {
+    std::vector<RungChoice> choices(rungs_.size(), 0);
     std::vector<TrialModel> models;
-    std::vector<std::string> names;
+    std::vector<std::size_t> tested;
+    try {
+      choices[rung].reset();
+      models.push_back(model_with(choices));
+    } catch (const Error&) {
+      return 0;
+    }
     for (std::size_t k = 0; k < rungs_[rung].size(); ++k) {
-      choice[rung] = k;
+      choices[rung] = k;
       try {
-        if (k == 0) models.push_back(model_with(choice, rung));
-        models.push_back(k == 0 ? top() : model_with(choice, rungs_.size()));
+        models.push_back(k == 0 ? top() : model_with(choices));
       } catch (const Error&) {
-        if (k == 0) return {};
         continue;  // what cannot be fitted here is no rival
       }
-      names.push_back(rungs_[rung][k].added.effect.id);
-      mixture.rivals.push_back({models.back().file, rungs_[rung][k].probability});
+      tested.push_back(k);
     }
-    mixture.without = models.front().file;
     double sum = 0.0;
-    for (const WeighedModel& rival : mixture.rivals) sum += rival.weight;
-    std::vector<double> weights;
-    for (WeighedModel& rival : mixture.rivals) weights.push_back(rival.weight /= sum);
+    for (const std::size_t k : tested) sum += rungs_[rung][k].probability;
     const std::vector<TrialFlight> tried = loop_.try_models(models);
     const std::vector<double> without = static_pressures_of(tried, 0);
     std::vector<std::vector<double>> changes;
-    for (std::size_t k = 1; k < models.size(); ++k) {
-      std::vector<double>& change = changes.emplace_back(static_pressures_of(tried, k));
-      for (std::size_t i = 0; i < change.size(); ++i) change[i] -= without[i];
+    std::vector<double> weights;
+    for (std::size_t i = 0; i < tested.size(); ++i) {
+      weights.push_back(rungs_[rung][tested[i]].probability / sum);
+      std::vector<double>& change = changes.emplace_back(static_pressures_of(tried, i + 1));
+      for (std::size_t sample = 0; sample < change.size(); ++sample) change[sample] -= without[sample];
     }
     const double matters = negligible * step.noise_rms;
-    const double spread = spread_of(changes, weights);
-    if (!(spread > matters)) return {};
-    mixture.share = harmless_share(changes, weights, matters);
-    step.spread = spread;
-    step.share = mixture.share;
-    for (std::size_t k = 0; k < weights.size(); ++k)
-      step.rivals.push_back({names[k], weights[k], rms_of(changes[k])});
-    return mixture;
+    const RivalChoice choice = choose_rival(changes, weights, matters);
+    if (choice.rival == 0U && !(choice.error > matters)) return 0;
+    step.rival_error = choice.error;
+    step.delivered.clear();
+    for (std::size_t i = 0; i < tested.size(); ++i)
+      step.rivals.push_back({rungs_[rung][tested[i]].added.effect.id, weights[i], rms_of(changes[i])});
+    if (!choice.rival) return std::nullopt;
+    step.delivered = step.rivals[*choice.rival].effect;
+    return tested[*choice.rival];
   }
 
   /// What the whole ladder came to.
   void compare_with_the_given() {
-    std::vector<TrialFlight> tried = loop_.try_models({given_, {refitted_}, {result_.model, alike_}, top()});
+    std::vector<TrialFlight> tried =
+        loop_.try_models({given_, {refitted_}, {result_.model, delivered_.alike}, top()});
     const Comparison train = comparison_of(tried, 0, 2, false);
     const Comparison holdout = comparison_of(tried, 0, 2, true);
     if (result_.model.law.rms_hpa) result_.model.law.rms_hpa = train.rms_after;
@@ -266,7 +281,8 @@ class Climb {
     result_.rms_train = train.rms_after;
     result_.given_rms_holdout = holdout.rms_before;
     result_.rms_holdout = holdout.rms_after;
-    // An average hedges, so it leaves more than its best rival; whether the loop did harm the best tells.
+    // Where no rival is applied, less is explained than by the best one, which tells whether the loop did
+    // harm.
     result_.worse = why_worse(comparison_of(tried, 0, 3, loop_.has_holdout));
     for (TrialFlight& flight : tried) {
       if (!flight.first_reference) continue;
@@ -321,8 +337,7 @@ class Climb {
     if (now.verdict == Verdict::silent) return candidates;
     candidates.all = now.verdict == Verdict::identified || now.verdict == Verdict::ambiguous;
     for (const Finding& finding : now.findings) {
-      if (!may_be_of_reference(finding) && !has(result_.fit.model, finding.effect.id) &&
-          !is_a_gamble(finding, now))
+      if (!may_be_of_reference(finding) && !has(result_.fit.model, finding.effect.id))
         candidates.effects.push_back(candidate_of(finding, now.verdict));
     }
     if (candidates.all || !loop_.trace_variables) return candidates;
@@ -332,18 +347,6 @@ class Climb {
       break;
     }
     return candidates;
-  }
-
-  /// Whether the effect is not surely the cause, and changes the static pressure by much more than it takes
-  /// off the residual.
-  static bool is_a_gamble(const Finding& finding, const Diagnosis& diagnosis) {
-    constexpr double tolerable = 0.35;  // of the noise
-    constexpr double leverage = 2.0;
-    if (diagnosis.verdict != Verdict::partial) return false;
-    const double explained = std::sqrt(
-        std::max(0.0, finding.rms_before * finding.rms_before - finding.rms_after * finding.rms_after));
-    return finding.static_change >
-           std::max(tolerable * diagnosis.noise_rms_with_findings, leverage * explained);
   }
 
   std::string why_nothing_is_added() const {
@@ -362,16 +365,10 @@ class Climb {
     for (const Finding& finding : now.findings) {
       if (may_be_of_reference(finding)) {
         return fmt::format(
-            "{} {} of the system that the model is held against, and nothing of the model is to be changed "
-            "for it{}{}",
+            "{} {} of the system that the model is held against, so the model stays as it is (with "
+            "--trust-reference that system counts as right){}{}",
             finding.id(), is_of_reference(finding) ? "is" : "may be an error",
             finding.advice.sentence.empty() ? "" : "; ", finding.advice.sentence);
-      }
-      if (is_a_gamble(finding, now)) {
-        return fmt::format(
-            "{} may not be the cause, and would change the corrected static pressure by {}, much more than "
-            "it takes off the residual; choose it yourself with pcor add",
-            finding.id(), shown(finding.static_change));
       }
     }
     if (!now.findings.empty()) return "what the diagnosis names is in the model already";
@@ -391,6 +388,7 @@ class Climb {
     const std::string& id = candidate.effect().id;
     ImproveStep step;
     step.added = id;
+    step.delivered = id;
     step.title = candidate.title;
     step.aliases = candidate.aliases;
     TrialModel model;
@@ -478,7 +476,8 @@ class Climb {
   Improvement result_;
   TrialModel given_;
   ModelFile refitted_;
-  std::vector<std::string> alike_{};          // effects of the model at the top of the ladder
+  std::vector<std::string> alike_{};  // effects of the model at the top of the ladder
+  TrialModel delivered_{};
   std::vector<std::vector<Choice>> rungs_{};  // what may be each effect that was added, itself first
 };
 
@@ -516,16 +515,13 @@ std::string rivals_text(const ImproveStep& step) {
     each.push_back(fmt::format("{} (probability {:.2f}, changes it by {:.3f} hPa)", rival.effect,
                                rival.probability, rival.static_change));
   }
-  const std::string share =
-      step.share >= 1.0 ? "their average is applied"
-      : step.share < 0.01
-          ? "none of them is applied, since one of them calls any change a harm"
-          : fmt::format("{:.0f} % of their average is applied, since one of them calls more a harm",
-                        100.0 * step.share);
   return fmt::format(
-      "which of its rivals is there matters for the corrected static pressure: {}; {}, and how they differ, "
-      "{:.3f} hPa, is part of its stated error",
-      fmt::join(each, ", "), share, step.spread);
+      "which of its rivals is there matters for the corrected static pressure: {}; {}, and the expected "
+      "error of that choice, {:.3f} hPa, is part of the stated error",
+      fmt::join(each, ", "),
+      step.delivered.empty() ? "the model has none of them, since one of them calls each of the others a harm"
+                             : "the model has " + step.delivered,
+      step.rival_error);
 }
 
 Improvement ImproveLoop::run(const ModelFile& model) const { return Climb(*this, model).run(); }

@@ -59,9 +59,9 @@ std::vector<std::string> held_out_names(const Improvement& improvement) {
 
 std::string rung_name(const ImproveStep& step) { return step.added.empty() ? "refitted" : "+ " + step.added; }
 
-bool is_averaged(const Improvement& improvement) {
+bool delivers_rivals(const Improvement& improvement) {
   return std::any_of(improvement.steps.begin(), improvement.steps.end(),
-                     [](const ImproveStep& step) { return !step.rivals.empty(); });
+                     [](const ImproveStep& step) { return step.delivered != step.added; });
 }
 
 DotPanel ladder_picture(const Improvement& improvement) {
@@ -92,7 +92,7 @@ DotPanel ladder_picture(const Improvement& improvement) {
   };
   add("as it came", improvement.given_rms_train, improvement.given_rms_holdout);
   for (const ImproveStep& step : improvement.steps) add(rung_name(step), step.rms_train, step.rms_holdout);
-  if (is_averaged(improvement)) add("averaged over rivals", improvement.rms_train, improvement.rms_holdout);
+  if (delivers_rivals(improvement)) add("as it is written", improvement.rms_train, improvement.rms_holdout);
   return panel;
 }
 

@@ -15,8 +15,8 @@ std::vector<std::string> held_out_names(const Improvement& improvement);
 /// What a rung is called: "refitted", "+ static-lag".
 std::string rung_name(const ImproveStep& step);
 
-/// Whether the model that is delivered has an average over effects that could not be told apart.
-bool is_averaged(const Improvement& improvement);
+/// Whether the written model has another effect than a step of the ladder added, or none in its place.
+bool delivers_rivals(const Improvement& improvement);
 
 /// The rms residual of every rung, in the fit and on what was held out, with the noise as a line.
 DotPanel ladder_picture(const Improvement& improvement);

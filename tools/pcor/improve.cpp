@@ -49,8 +49,8 @@ nlohmann::ordered_json as_json(const ImproveStep& step) {
   json["noise_rms_hpa"] = step.noise_rms;
   json["terms"] = step.terms;
   json["learnt"] = step.learnt;
-  json["share"] = step.share;
-  json["spread_hpa"] = step.spread;
+  json["delivered"] = step.delivered;
+  json["rival_error_hpa"] = step.rival_error;
   json["rivals"] = nlohmann::ordered_json::array();
   for (const RungRival& rival : step.rivals) {
     json["rivals"].push_back({{"effect", rival.effect},
@@ -90,14 +90,14 @@ void print(const Improvement& improvement, const ChosenReferences& references, c
   say("{:<24} {:>10} {:>10} {:>10} {:>13}\n", "rms, hPa", "training", "held out", "noise", "coefficients");
   say("{:<24} {:>10} {:>10}\n", "as it came", figure(improvement.given_rms_train),
       figure(improvement.given_rms_holdout));
-  bool is_averaged = false;
+  bool delivers_rivals = false;
   for (const ImproveStep& step : improvement.steps) {
     say("{:<24} {:>10.4f} {:>10.4f} {:>10.4f} {:>13}\n", step.added.empty() ? "refitted" : "+ " + step.added,
         step.rms_train, step.rms_holdout, step.noise_rms, step.terms);
-    is_averaged = is_averaged || !step.rivals.empty();
+    delivers_rivals = delivers_rivals || step.delivered != step.added;
   }
-  if (is_averaged) {
-    say("{:<24} {:>10} {:>10}\n", "averaged over rivals", figure(improvement.rms_train),
+  if (delivers_rivals) {
+    say("{:<24} {:>10} {:>10}\n", "as it is written", figure(improvement.rms_train),
         figure(improvement.rms_holdout));
   }
   if (!options.holdout.empty()) {
@@ -114,8 +114,7 @@ void print(const Improvement& improvement, const ChosenReferences& references, c
   say("\n");
   for (const ImproveStep& step : improvement.steps) {
     say("{}\n", step.learnt);
-    if (const std::string text = rivals_text(step); !text.empty())
-      say("  the coefficients above are as if it alone were there; {}\n", text);
+    if (const std::string text = rivals_text(step); !text.empty()) say("  {}\n", text);
   }
   say("stopped: {}\n", improvement.why_stopped);
   print_unexplained(improvement.steps.back().diagnosis.unexplained);

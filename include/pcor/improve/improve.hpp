@@ -25,7 +25,7 @@ struct ImproveOptions {
   std::function<void(const std::string& what)> progress{};
 };
 
-/// What the added effect of a rung may be, and what the correction makes of it.
+/// What the added effect of a rung may be.
 struct RungRival {
   std::string effect{};
   double probability = 0.0;    ///< among the rivals of the rung
@@ -44,12 +44,10 @@ struct ImproveStep {
   std::size_t terms = 0;   ///< free coefficients
   std::string learnt{};    ///< a sentence: what the step taught
   Diagnosis diagnosis{};   ///< of the model at this rung: what is still missing
-  /// Where it matters which of them is there: the model that is delivered has the average of what they
-  /// correct, weighed by their probabilities. The added effect is the first.
+  /// Where it matters for the static pressure which of them is there. The added effect is the first.
   std::vector<RungRival> rivals{};
-  /// Of that average so much is applied: all, or as much as none of the rivals would call a harm.
-  double share = 1.0;
-  double spread = 0.0;  ///< of the corrected static pressure between the rivals, rms hPa
+  std::string delivered{};   ///< id of the effect that the written model has: the added one, a rival, or none
+  double rival_error = 0.0;  ///< expected error of that choice, rms hPa; part of the stated error
 };
 
 /// The residuals of a flight with the first reference, of all samples, hPa; NaN where they do not count.
@@ -63,7 +61,7 @@ struct ImprovedFlight {
 };
 
 struct Improvement {
-  ModelFile model;     ///< the best one, refitted, its correction averaged over the rivals that remain
+  ModelFile model;     ///< the best one, refitted, with the rivals that are applied
   ModelFile refitted;  ///< the one that came, refitted
   double given_rms_train =
       std::numeric_limits<double>::quiet_NaN();  ///< of the model as it came, hPa, on the samples of the fit
@@ -73,7 +71,7 @@ struct Improvement {
   double rms_holdout = std::numeric_limits<double>::quiet_NaN();
   std::vector<ImproveStep> steps{};
   std::string why_stopped{};  ///< a sentence
-  RefitResult fit;            ///< of the best model, before it was averaged
+  RefitResult fit;            ///< of the best model, before rivals were weighed
   std::vector<ImprovedFlight> flights{};
   bool holdout_is_flights = false;  ///< rms_holdout is of held-out flights or parts, not of parts in turn
   /// Why the best model is worse than the one to begin with, as it was given; empty where it is not.
@@ -85,8 +83,8 @@ std::string rivals_text(const ImproveStep& step);
 
 /// Refits the model, learns what is missing, adds it, and begins again, until nothing is missing, what is
 /// left cannot be explained, or held-out flights say that another effect does not help. Where flights cannot
-/// tell several effects apart and it matters for the static pressure which of them is there, the correction
-/// is their average, with their spread in its stated error.
+/// tell several effects apart and it matters for the static pressure which of them is there, the model has
+/// the one of the least expected error, or none where one of them would call each other one a harm.
 ///
 /// @throws Error as `refit` and `diagnose`.
 Improvement improve(const FlightSet& flights, const ModelFile& model, const References& references,
