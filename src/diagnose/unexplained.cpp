@@ -25,8 +25,8 @@ constexpr std::size_t most_variables = 10;
 /// Twice the gain in log-likelihood by drift. Noise of short memory gains 17 at most in a dozen flights
 /// without drift, since no autoregression describes it wholly.
 constexpr double least_drift_gain = 30.0;
-/// Of the noise: drift below it adds less than half a percent to the rms of the residual.
-constexpr double least_drift = 0.1;
+/// Transducers drift by this, hPa rms; what drifts less, or less than the noise, is noise, too.
+constexpr double usual_drift = 0.06;
 
 std::set<std::string> left_out(const FlightSet& files, const ModelFile& model, const Reference& reference,
                                const DiagnoseOptions& options) {
@@ -427,7 +427,8 @@ UnexplainedStructure find_unexplained(const Analysis& analysis, const FlightSet&
   const Tested& shown = result.overrules ? *beside_base : beside_all;
 
   found.drift_rms = rms_of(analysis.share(), [&](std::size_t f) { return analysis.drift(f, chosen); });
-  const bool drifts = analysis.drift_gain() > least_drift_gain && found.drift_rms > least_drift * noise_rms;
+  const bool drifts =
+      analysis.drift_gain() > least_drift_gain && found.drift_rms > std::max(usual_drift, noise_rms);
   found.steps = steps_between(analysis, chosen);
   found.significant = by_variables < chance || drifts || !found.steps.empty() || result.overrules;
   if (!found.significant) return result;

@@ -11,6 +11,7 @@
 #include "residuals/masks.hpp"
 #include "residuals/model_on_samples.hpp"
 #include "residuals/moving_columns.hpp"
+#include "residuals/radome_prediction.hpp"
 #include "residuals/reference_on_samples.hpp"
 
 namespace pcor {
@@ -219,7 +220,9 @@ std::shared_ptr<const FlightSamples> Residuals::at_common_pressures() const {
   for (const Quantity pressure : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
     std::vector<double>& ours = column(result->model, pressure);
     std::vector<double>& theirs = column(result->reference, pressure);
-    for (std::size_t i = 0; i < size(); ++i) ours[i] = theirs[i] = 0.5 * (ours[i] + theirs[i]);
+    for (std::size_t i = 0; i < size(); ++i) ours[i] = 0.5 * (ours[i] + theirs[i]);
+    if (pressure == Quantity::dynamic_pressure) ours = predicted_by_radome(std::move(ours), result->model);
+    theirs = ours;
   }
   return result;
 }

@@ -1,0 +1,84 @@
+#include "residuals/radome_prediction.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+using pcor::Quantity;
+using pcor::internal::predicted_by_radome;
+
+namespace {
+
+using Series = std::vector<double>;
+
+/// A flight that climbs and speeds up, with slow turns of both flow angles.
+struct Radome {
+  Series dynamic_pressure{};  // truth, hPa
+  pcor::ModelSamples samples{};
+
+  explicit Radome(std::size_t size) {
+    Series radome;
+    Series attack;
+    Series sideslip;
+    Series pressure;
+    for (std::size_t i = 0; i < size; ++i) {
+      const double t = static_cast<double>(i);
+      radome.push_back(60.0 + 20.0 * std::sin(t / 211.0));
+      attack.push_back(3.0 + 4.0 * std::sin(t / 97.0));
+      sideslip.push_back(2.0 * std::sin(t / 53.0));
+      pressure.push_back(800.0 - 0.1 * t);
+      dynamic_pressure.push_back(0.4 + 1.02 * radome[i] + 1.3 * attack[i] * attack[i] / radome[i] +
+                                 0.7 * sideslip[i] * sideslip[i] / radome[i] -
+                                 0.2 * radome[i] * radome[i] / pressure[i]);
+    }
+    samples.columns = {{Quantity::radome_dynamic_pressure, radome},
+                       {Quantity::attack_differential_pressure, attack},
+                       {Quantity::sideslip_differential_pressure, sideslip},
+                       {Quantity::static_pressure, pressure}};
+  }
+};
+
+TEST(RadomePrediction, ReproducesAPressureThatTheRadomeDetermines) {
+  const Radome flight(1000);
+  const Series predicted = predicted_by_radome(flight.dynamic_pressure, flight.samples);
+  for (std::size_t i = 0; i < predicted.size(); ++i)
+    EXPECT_NEAR(predicted[i], flight.dynamic_pressure[i], 1e-6);  // hPa: normal equations in double precision
+}
+
+TEST(RadomePrediction, LeavesOutTheNoiseOfThePressureUnderTest) {
+  const Radome flight(3000);
+  std::mt19937 engine(7);
+  std::normal_distribution<double> noise(0.0, 0.2);
+  Series noisy = flight.dynamic_pressure;
+  for (double& value : noisy) value += noise(engine);
+  const Series predicted = predicted_by_radome(noisy, flight.samples);
+  double product = 0.0;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < noisy.size(); ++i) {
+    const double error = noisy[i] - flight.dynamic_pressure[i];
+    product += error * (predicted[i] - flight.dynamic_pressure[i]);
+    squares += error * error;
+  }
+  EXPECT_LT(std::abs(product / squares), 0.01);  // five coefficients of 3000 samples: 0.0017 on average
+}
+
+TEST(RadomePrediction, KeepsTheValuesWhereTheRadomeHasNone) {
+  Radome flight(1000);
+  flight.samples.columns[0].second[500] = std::numeric_limits<double>::quiet_NaN();
+  flight.dynamic_pressure[500] = 77.0;
+  EXPECT_EQ(predicted_by_radome(flight.dynamic_pressure, flight.samples)[500], 77.0);
+  flight.samples.columns.erase(flight.samples.columns.begin());
+  EXPECT_EQ(predicted_by_radome(flight.dynamic_pressure, flight.samples), flight.dynamic_pressure);
+}
+
+TEST(RadomePrediction, KeepsTheValuesOfAShortFlight) {
+  const Radome flight(299);
+  Series odd = flight.dynamic_pressure;
+  odd[3] += 5.0;
+  EXPECT_EQ(predicted_by_radome(odd, flight.samples), odd);
+}
+
+}  // namespace
