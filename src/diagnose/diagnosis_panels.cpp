@@ -367,7 +367,9 @@ void add_tables(DiagnosisPanels& panels, const Diagnosis& diagnosis) {
 void add_unexplained(DiagnosisPanels& panels, const Diagnosis& diagnosis, const std::string& left) {
   const Unexplained& unexplained = diagnosis.unexplained;
   if (!unexplained.significant) return;
-  panels.add(ReportText{"What no effect explains", unexplained_text(unexplained)});
+  ReportText page{"What no effect explains", unexplained_text(unexplained)};
+  for (std::string& text : untested_text(unexplained)) page.paragraphs.push_back(std::move(text));
+  panels.add(std::move(page));
   if (panels.add_column("drift", "slow drift", "hPa", diagnosis.flights,
                         [](const FlightDiagnosis& f) { return f.drift; }))
     panels.add_time("Residual that is left, and its slow drift",

@@ -233,14 +233,21 @@ std::vector<std::string> unexplained_text(const Unexplained& unexplained) {
                     step.flight, with_error(std::abs(step.size), step.standard_error),
                     step.size < 0.0 ? "below" : "above", probability(step.p_value)));
   }
+  return all;
+}
+
+std::vector<std::string> untested_text(const Unexplained& unexplained) {
+  std::vector<std::string> all;
   if (!unexplained.computed.empty()) {
-    all.push_back(fmt::format(
-        "Not looked at, since the files say that they are computed from the residual's own sensors: {}.",
-        list_text(unexplained.computed)));
+    all.push_back(
+        fmt::format("Variables that were not tested, because the files say that they are computed from the "
+                    "residual's own sensors: {}.",
+                    list_text(unexplained.computed)));
   }
   if (!unexplained.shares_noise.empty()) {
-    all.push_back(fmt::format("Not looked at, since their noise is that of the residual: {}.",
-                              list_text(unexplained.shares_noise)));
+    all.push_back(
+        fmt::format("Variables that were not tested, because their noise is that of the residual: {}.",
+                    list_text(unexplained.shares_noise)));
   }
   return all;
 }

@@ -43,6 +43,9 @@ std::string finding_summary(const Finding& finding);
 /// What a diagnosis left without an explanation, in sentences.
 std::vector<std::string> unexplained_text(const Unexplained& unexplained);
 
+/// Which variables of the files were not tested, and why; a sentence each.
+std::vector<std::string> untested_text(const Unexplained& unexplained);
+
 /// A finding in words that an instrument scientist can put into the report of a project.
 /// @param threshold chi2 that an effect had to exceed
 ReportText finding_page(const Finding& finding, double threshold, const std::string& heading);

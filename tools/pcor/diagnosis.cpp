@@ -261,13 +261,11 @@ void print_unexplained(const Unexplained& unexplained) {
     say("{} lies {:.3f} +- {:.3f} hPa {} the rest of the flights (p {})\n", step.flight, std::abs(step.size),
         step.standard_error, step.size < 0.0 ? "below" : "above", probability(step.p_value));
   }
-  if (!unexplained.computed.empty()) {
-    say("not looked at, because the files say that they are computed from the residual's own sensors: {}\n",
-        fmt::join(unexplained.computed, ", "));
-  }
-  if (!unexplained.shares_noise.empty()) {
-    say("not looked at, because their noise is that of the residual: {}\n",
-        fmt::join(unexplained.shares_noise, ", "));
+  const std::size_t untested = unexplained.computed.size() + unexplained.shares_noise.size();
+  if (untested > 0) {
+    say("{} variables were not tested, because they hold what the residual is computed from; --json and "
+        "--report name them\n",
+        untested);
   }
 }
 
