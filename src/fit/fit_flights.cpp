@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "campaign/gps_rows.hpp"
 #include "numerics/binned_rows.hpp"
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
@@ -80,7 +81,9 @@ FitFlights::FitFlights(const FitTask& task, FitSetup setup)
   if (!setup_.regimes.empty()) return;
   for (const FitTask& with : task_.further) {
     further_.push_back(std::make_unique<FitFlights>(with, setup_));
-    if (further_.back()->sees_parameters()) seeing_.push_back(further_.back().get());
+    // GPS is fitted after the others, by a likelihood of its own.
+    if (!gps_kind(with.reference) && further_.back()->sees_parameters())
+      seeing_.push_back(further_.back().get());
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <pcor/words/error.hpp>
@@ -11,6 +12,7 @@
 #include "fit/before_and_after.hpp"
 #include "fit/fit_covariance.hpp"
 #include "fit/fitted_model.hpp"
+#include "fit/gps_fit.hpp"
 #include "fit/identifiability.hpp"
 #include "fit/lineage.hpp"
 #include "fit/omissions.hpp"
@@ -126,9 +128,8 @@ void repeat_stages(Fitted& fitted, const FitTask& task, const std::vector<std::v
   }
 }
 
-Fitted fit_in_stages(const FitTask& task) {
-  const std::vector<std::vector<std::size_t>> stages =
-      fit_stages(task.parameters, task.options.stages, task.model.model.name);
+/// What is to be fitted, with the start as the solution.
+Fitted at_start(const FitTask& task, const std::vector<std::vector<std::size_t>>& stages) {
   Fitted fitted;
   fitted.stage_of.resize(task.parameters.size(), 0);
   for (std::size_t s = 0; s < stages.size(); ++s) {
@@ -138,8 +139,16 @@ Fitted fit_in_stages(const FitTask& task) {
   for (std::size_t p = 0; p < task.parameters.size(); ++p) {
     if (fitted.stage_of[p] == 0 && task.doubt(as_index(p), as_index(p)) > 0.0) fitted.held.push_back(p);
   }
+  fitted.solution.values = task.start;
+  fitted.solution.at_bound.resize(task.parameters.size(), false);
+  return fitted;
+}
+
+Fitted fit_in_stages(const FitTask& task) {
+  const std::vector<std::vector<std::size_t>> stages =
+      fit_stages(task.parameters, task.options.stages, task.model.model.name);
+  Fitted fitted = at_start(task, stages);
   Solution& solution = fitted.solution;
-  solution.values = task.start;
   constexpr int most_masks = 3;
   for (int round = 0; round < most_masks; ++round) {
     fitted.flights = std::make_unique<FitFlights>(task, FitSetup{solution.values, fitted.parameters});
@@ -156,6 +165,57 @@ Fitted fit_in_stages(const FitTask& task) {
   if (fitted.equations.empty())
     fitted.equations.push_back({fitted.flights.get(), fitted.parameters, solution});
   return fitted;
+}
+
+/// The flights as the fit reads them, at the start, for references of GPS alone.
+Fitted prepared_for_gps(const FitTask& task) {
+  if (!task.options.stages.empty())
+    throw Error("--stage: a fit to GPS alone has no stages; give a further reference, or leave the stages out");
+  Fitted fitted = at_start(task, fit_stages(task.parameters, {}, task.model.model.name));
+  fitted.flights = std::make_unique<FitFlights>(task, FitSetup{task.start, fitted.parameters});
+  if (fitted.flights->samples() == 0) {
+    throw Error(fmt::format("no sample is left for the fit: {}; see the variables of the model and "
+                            "--min-airspeed, --max-flaps, --exclude",
+                            mask_text(fitted.flights->masks())));
+  }
+  return fitted;
+}
+
+/// Fits to GPS what was fitted to the others, if to any, and sets the covariance.
+std::optional<GpsFit> add_gps(Fitted& fitted, const FitTask& task, FitCovariance& covariance) {
+  std::vector<FitFlights*> by_gps;
+  const bool is_alone = is_by_gps(task.reference);
+  if (is_alone) by_gps.push_back(fitted.flights.get());
+  for (const std::unique_ptr<FitFlights>& each : fitted.flights->further()) {
+    if (is_by_gps(each->task().reference)) by_gps.push_back(each.get());
+  }
+  if (by_gps.empty()) return std::nullopt;
+  Solution& solution = fitted.solution;
+  const Eigen::Index count = as_index(fitted.parameters.size());
+  BeforeGps before{solution.values(fitted.parameters), {}};
+  if (!is_alone) before.covariance = covariance.matrix.topLeftCorner(count, count);
+  GpsFit gps = fit_gps(by_gps, solution.values, before, fitted.parameters);
+  solution.values(fitted.parameters) = gps.values;
+  if (is_alone) {
+    covariance.matrix = gps.covariance;
+    covariance.by_noise = gps.by_noise;
+    covariance.by_flights = gps.covariance;
+    covariance.jackknife = gps.jackknife;
+    covariance.blocks = gps.parts;
+    const Eigen::Index all = count + as_index(fitted.held.size());
+    covariance.matrix.conservativeResizeLike(Eigen::MatrixXd::Zero(all, all));
+    for (std::size_t h = 0; h < fitted.held.size(); ++h) {
+      const Eigen::Index p = as_index(fitted.held[h]);
+      covariance.matrix(count + as_index(h), count + as_index(h)) = task.doubt(p, p);
+    }
+    fitted.flights->measure_noise(solution.values, false);
+    solution.deviation = fitted.flights->deviation(solution.values);
+  } else {
+    covariance.matrix.topLeftCorner(count, count) = gps.covariance;
+    covariance.by_flights = gps.covariance;
+    covariance.by_noise = gps.covariance;
+  }
+  return gps;
 }
 
 /// The coefficients after the fit, and their covariance.
@@ -217,15 +277,19 @@ void add_thermometer(RefitResult& result, const Fitted& fitted, const FitCovaria
 
 /// What a user should know, the gravest first.
 std::vector<std::string> notes_of(const RefitResult& result, const FitTask& task, const Fitted& fitted,
-                                  const Eigen::MatrixXd& covariance, const BeforeAndAfter& compared) {
+                                  const Eigen::MatrixXd& covariance, const std::optional<GpsFit>& gps,
+                                  const BeforeAndAfter& compared) {
   std::vector<std::string> notes;
   const auto add = [&notes](const std::vector<std::string>& more) {
     notes.insert(notes.end(), more.begin(), more.end());
   };
-  add(identifiability_notes(task, fitted.solution, covariance, fitted.parameters, result.condition_number,
-                            compared.flown));
-  add(error_notes(result, fitted.flights->count(), fitted.stands_still,
-                  task.uses_prior() || !fitted.held.empty()));
+  if (gps) add(gps->notes);
+  if (!is_by_gps(task.reference)) {
+    add(identifiability_notes(task, fitted.solution, covariance, fitted.parameters, result.condition_number,
+                              compared.flown));
+    add(error_notes(result, fitted.flights->count(), fitted.stands_still,
+                    task.uses_prior() || !fitted.held.empty()));
+  }
   add(compared.notes);
   add(bound_notes(task, fitted.solution, result.condition_number));
   if (task.uses_prior()) {
@@ -242,6 +306,9 @@ std::string reference_text(FitFlights& flights) {
   std::vector<std::string> descriptions;
   for (const FitFlights* const each : flights.joint())
     descriptions.push_back(each->task().reference.description());
+  for (const std::unique_ptr<FitFlights>& each : flights.further()) {
+    if (is_by_gps(each->task().reference)) descriptions.push_back(each->task().reference.description());
+  }
   return fmt::format("{}", fmt::join(descriptions, ", "));
 }
 
@@ -258,32 +325,41 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelFile& model, const R
                 const RefitOptions& options) {
   const Reference& reference = first_of(references);
   const FitTask task = task_of(model, references, options, fitted_flights);
-  Fitted fitted = fit_in_stages(task);
+  const bool by_gps_alone = is_by_gps(reference);
+  Fitted fitted = by_gps_alone ? prepared_for_gps(task) : fit_in_stages(task);
   const Solution& solution = fitted.solution;
   FitFlights& flights = *fitted.flights;
-  const MisfitColumns misfit_columns(flights);
-  const Misfit misfit = find_misfit(flights, misfit_columns, solution);
-  // The weights are those of the noise without the misfit from now on.
-  fitted.solution.deviation = flights.deviation(solution.values);
-  for (FitEquations& each : fitted.equations) {
-    each.solution.deviation = solution.deviation;
-    if (each.flights == &flights) continue;
-    each.flights->share_noise(flights);
-    each.flights->prepare(solution.values);
-  }
-
   RefitResult result;
+  FitCovariance covariance;
+  Misfit misfit;
+  if (!by_gps_alone) {
+    const MisfitColumns misfit_columns(flights);
+    misfit = find_misfit(flights, misfit_columns, solution);
+    // The weights are those of the noise without the misfit from now on.
+    fitted.solution.deviation = flights.deviation(solution.values);
+    for (FitEquations& each : fitted.equations) {
+      each.solution.deviation = solution.deviation;
+      if (each.flights == &flights) continue;
+      each.flights->share_noise(flights);
+      each.flights->prepare(solution.values);
+    }
+    result.condition_number = condition_number(unweighted(flights, solution.values), task, fitted.parameters);
+    covariance = fit_covariance(fitted.equations, fitted.held, misfit, misfit_columns);
+  }
+  const std::optional<GpsFit> gps = add_gps(fitted, task, covariance);
+  if (by_gps_alone) {
+    result.condition_number = gps->condition_number;
+    result.estimator = refit_estimator_of_gps;
+  }
   result.reference_text = reference_text(flights);
   result.masks = flights.masks();
-  result.condition_number = condition_number(unweighted(flights, solution.values), task, fitted.parameters);
-  FitCovariance covariance = fit_covariance(fitted.equations, fitted.held, misfit, misfit_columns);
   result.jackknife_parts = covariance.blocks;
   const FitSums sums = sums_at(flights, solution.values, solution.deviation);
   result.samples = sums.samples;
   result.rms = sums.rms_of(sums.squares);
   result.rms_over_pressure = sums.rms_of(sums.relative_squares);
   result.bulk_rms = sums.rms_of(sums.bulk_squares);
-  result.samples_per_independent =
+  if (covariance.information > 0.0) result.samples_per_independent =
       std::max(static_cast<double>(sums.samples) /
                    (sums.bulk_squares / static_cast<double>(sums.samples) * covariance.information),
                1.0);
@@ -292,7 +368,7 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelFile& model, const R
   const FitSums before = sums_at(flights, task.start, solution.deviation);
   result.rms_before = before.rms_of(before.squares);
   const SquaredResiduals squares(flights, solution);
-  result.omissions = omissions(flights, solution, sums, squares);
+  if (!gps) result.omissions = omissions(flights, solution, sums, squares);
   BeforeAndAfter compared = before_and_after(flights, solution.values, covariance.by_flights, misfit.left);
   result.noise_rms = compared.noise_rms(result.samples);
   result.flights = std::move(compared.flights);
@@ -302,10 +378,11 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelFile& model, const R
   add_thermometer(result, fitted, covariance);
   result.drift_rms = flights.drift_rms();
   result.left = misfit.left;
-  result.worse = why_worse(result, before.rms_of(before.bulk_squares));
-  result.least_squares_rms = sums.rms_of(squares.least());
+  // Gusts are in the residual of the wind: a better law need not make it smaller.
+  result.worse = why_worse(result, by_gps_alone ? infinity : before.rms_of(before.bulk_squares));
+  result.least_squares_rms = gps ? result.rms : sums.rms_of(squares.least());
   result.warnings = fit_warnings(flights, result, solution.values);
-  result.notes = notes_of(result, task, fitted, covariance.by_noise, compared);
+  result.notes = notes_of(result, task, fitted, covariance.by_noise, gps, compared);
   result.model = fitted_model(model, 0, result, options.loss, fitted_flights.title());
   if (options.fit_reference) {
     result.reference = fitted_model(*reference.model(), parameter_count(model.model), result, options.loss,
@@ -319,7 +396,10 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelFile& model, const R
 RefitResult refit(const FlightSet& flights, const ModelFile& model, const References& references,
                   const RefitOptions& options) {
   require_sense(flights, references, options);
-  RefitResult result = fit(flights, model, references, options);
+  References in_order = references;
+  std::stable_partition(in_order.begin(), in_order.end(),
+                        [](const auto& reference) { return !is_by_gps(*reference); });
+  RefitResult result = fit(flights, model, in_order, options);
   flights.with(options.holdout).require_unchanged();
   return result;
 }

@@ -25,7 +25,7 @@ void print_fit_summary(const RefitResult& fit) {
 }
 
 void add_fit_summary(nlohmann::ordered_json& json, const RefitResult& fit) {
-  json["estimator"] = std::string(refit_estimator);
+  json["estimator"] = std::string(fit.estimator);
   json["left_hpa"] = fit.left;
   json["drift_hpa"] = fit.drift_rms;
   json["least_squares_rms_hpa"] = fit.least_squares_rms;

@@ -186,7 +186,7 @@ void print_result(const RefitResult& result, const ChosenReferences& references)
   print_fit_summary(result);
   print_references(references);
   for (const std::string& warning : result.warnings) say("Warning: {}.\n\n", warning);
-  say("{}\n", refit_estimator);
+  say("{}\n", result.estimator);
   say("reference: {}\n", result.reference_text);
   say("fitted to {} samples; not used: {}\n", result.samples, mask_text(result.masks));
   print_flaps_out(result.flaps_out, "the fit");
@@ -206,10 +206,12 @@ void print_result(const RefitResult& result, const ChosenReferences& references)
       "outliers\n",
       result.rms, result.rms_over_pressure, result.rms_before, result.bulk_rms, result.noise_rms,
       result.outliers);
-  say("R2 {:.4f}; condition number {:.0f}\nwith memory and drift of the noise, {} samples tell as much of a "
-      "mean as {:.0f} independent ones, and the standard errors allow for it\n",
-      result.r_squared, result.condition_number, result.samples,
-      static_cast<double>(result.samples) / result.samples_per_independent);
+  say("R2 {:.4f}; condition number {:.0f}\n", result.r_squared, result.condition_number);
+  if (result.samples_per_independent > 1.0) {
+    say("with memory and drift of the noise, {} samples tell as much of a mean as {:.0f} independent ones, and "
+        "the standard errors allow for it\n",
+        result.samples, static_cast<double>(result.samples) / result.samples_per_independent);
+  }
   if (result.omissions.size() > 1) {
     say("\n{:<36} {:>10} {:>10}\n", "left out, the others refitted", "rms, hPa", "R2");
     for (const Omission& omission : result.omissions)

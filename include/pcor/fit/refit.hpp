@@ -96,6 +96,15 @@ struct FlightFit {
 /// Of the parts that were held out, that whose bias is largest compared with what the fit expects.
 std::optional<HeldOutPart> worst_held_out(const std::vector<FlightFit>& flights);
 
+/// How coefficients and errors are found, in a sentence.
+inline constexpr std::string_view refit_estimator =
+    "Coefficients by least squares with Huber's loss, four robust deviations wide; errors from the noise "
+    "with its "
+    "drift and from the misfit of the law.";
+inline constexpr std::string_view refit_estimator_of_gps =
+    "Coefficients by the likelihood of GPS, with winds, D-value, and errors of GPS and instruments as "
+    "processes beside them; errors from these or from the scatter of parts of five minutes, the larger ones.";
+
 struct RefitResult {
   ModelFile model;                       ///< with coefficients, standard errors, covariance and provenance
   std::optional<ModelFile> reference{};  ///< of the reference's model, where it was fitted too
@@ -128,18 +137,13 @@ struct RefitResult {
   Statistics
       flaps_out;  ///< of samples that are in no fit because flaps are out, with the fitted coefficients
   std::string reference_text{};
+  std::string_view estimator = refit_estimator;
   /// Why the model should not be used: the fit is worse than the coefficients of the file, or a held-out part
   /// is off by more than the fit expects. Empty otherwise.
   std::string worse{};
   std::vector<std::string> warnings{};  ///< why the fit should not be trusted, a sentence each
   std::vector<std::string> notes{};     ///< what a user should know, a sentence each, the gravest first
 };
-
-/// How coefficients and errors are found, in a sentence.
-inline constexpr std::string_view refit_estimator =
-    "Coefficients by least squares with Huber's loss, four robust deviations wide; errors from the noise "
-    "with its "
-    "drift and from the misfit of the law.";
 
 /// Fits the free coefficients of `model` to the flights, with all references at once: the sum of their
 /// likelihoods, each with a noise of its own. A reference that no free coefficient changes takes no part.

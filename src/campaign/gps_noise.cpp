@@ -1,0 +1,215 @@
+#include "campaign/gps_noise.hpp"
+
+#include <ceres/gradient_problem.h>
+#include <ceres/gradient_problem_solver.h>
+
+#include <array>
+#include <cmath>
+
+#include <pcor/physics/constants.hpp>
+#include "numerics/missing.hpp"
+#include "numerics/triangular_factor.hpp"
+
+namespace pcor::internal {
+namespace {
+
+// Median and deviation of the logarithm of a size.
+struct Size {
+  double median;
+  double deviation;
+};
+
+enum WindSize : Eigen::Index { gusts, white, drift, drift_time, with_height, wander };
+constexpr std::array<Size, 6> wind_sizes{
+    {{1.0, 0.7}, {0.05, 0.7}, {0.5, 1.0}, {600.0, 0.7}, {0.03, 1.0}, {0.05, 0.5}}};
+
+enum HeightSize : Eigen::Index { value, value_with_height, gps, warmth };
+constexpr std::array<Size, 4> height_sizes{{{0.05, 1.0}, {0.02, 1.0}, {0.2, 0.7}, {0.3, 0.7}}};
+
+constexpr std::array<double, 3> gust_times{2.0, 8.0, 32.0};  // s
+
+const Size& size_of(GpsKind kind, Eigen::Index k) {
+  const auto place = static_cast<std::size_t>(k);
+  return kind == GpsKind::wind ? wind_sizes[place] : height_sizes[place];
+}
+
+double stays_for(double seconds, double time) { return std::exp(-seconds / time); }
+
+WhiteRows white_wind(const Eigen::VectorXd& sizes, const GpsRows& rows, const Eigen::VectorXd& more) {
+  // Gusts, drift and walk on the height of the east wind, then of the north wind, and the heading.
+  constexpr int of_each = 5;
+  constexpr int count = 2 * of_each + 1;
+  using States = LatentFilter<count>::States;
+  constexpr double wander_time = 120.0;  // s
+  constexpr double wind = 20.0;          // m/s
+  States variance = States::Ones();
+  for (int component = 0; component < 2; ++component) {
+    variance[component * of_each + 3] = sizes[drift] * sizes[drift];
+    variance[component * of_each + 4] = wind * wind;
+  }
+  variance[count - 1] = sizes[wander] * sizes[wander];
+  const Eigen::Index size = as_index(rows.time.size());
+  LatentFilter<count> filter(variance, rows.rows.cols(), 2 * size);
+  const double noise = sizes[white] * sizes[white];
+  const double walk = sizes[with_height] * sizes[with_height];
+  States stays;
+  States added;
+  double before = rows.time.empty() ? 0.0 : rows.time.front();
+  double risen = 0.0;
+  const auto last = rows.rows.cols() - 1;
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const auto sample = static_cast<std::size_t>(i);
+    risen += std::abs(rows.rise[sample]);
+    if (std::isnan(rows.rows(i, last))) continue;
+    const double passed = rows.time[sample] - before;
+    before = rows.time[sample];
+    if (passed > 0.0) {
+      for (int component = 0; component < 2; ++component) {
+        const int first = component * of_each;
+        for (int g = 0; g < 3; ++g) stays[first + g] = stays_for(passed, gust_times[static_cast<std::size_t>(g)]);
+        stays[first + 3] = stays_for(passed, sizes[drift_time]);
+        stays[first + 4] = 1.0;
+      }
+      stays[count - 1] = stays_for(passed, wander_time);
+      added = variance.cwiseProduct(States::Ones() - stays.cwiseAbs2());
+      added[4] = added[of_each + 4] = walk * risen;
+      filter.pass(stays, added);
+      risen = 0.0;
+    }
+    for (int component = 0; component < 2; ++component) {
+      const int first = component * of_each;
+      States by = States::Zero();
+      for (int g = 0; g < 3; ++g) {
+        by[first + g] = sizes[gusts] * std::sqrt(rows.level[sample] *
+                                                 std::pow(gust_times[static_cast<std::size_t>(g)], 2.0 / 3.0));
+      }
+      by[first + 3] = by[first + 4] = 1.0;
+      const double across = component == 0 ? rows.north[sample] : -rows.east[sample];
+      by[count - 1] = rows.airspeed[sample] * across * constants::radians_per_degree;
+      const Eigen::Index row = component * size + i;
+      filter.read(row, rows.rows.row(row), by, noise + more[row]);
+    }
+  }
+  return std::move(filter.white());
+}
+
+WhiteRows white_height(const Eigen::VectorXd& sizes, const GpsRows& rows, const Eigen::VectorXd& more) {
+  constexpr int count = 3;
+  using States = LatentFilter<count>::States;
+  constexpr double gps_time = 60.0;      // s
+  constexpr double warmth_time = 900.0;  // s
+  constexpr double unknown = 1e6;        // m2
+  constexpr double noise = 0.01;         // m2
+  const States variance(unknown, sizes[gps] * sizes[gps], sizes[warmth] * sizes[warmth]);
+  LatentFilter<count> filter(variance, rows.rows.cols(), rows.rows.rows());
+  const auto last = rows.rows.cols() - 1;
+  double before = rows.time.empty() ? 0.0 : rows.time.front();
+  double walked = 0.0;
+  for (Eigen::Index i = 0; i < rows.rows.rows(); ++i) {
+    const auto sample = static_cast<std::size_t>(i);
+    const double passed = rows.time[sample] - before;
+    before = rows.time[sample];
+    if (rows.is_break[sample]) walked += unknown;
+    const double rise = rows.rise[sample];
+    if (passed > 0.0) {
+      const double gps_stays = stays_for(passed, gps_time);
+      const double warmth_stays = stays_for(passed, warmth_time);
+      const double walk = sizes[value] * sizes[value] * passed +
+                          sizes[value_with_height] * sizes[value_with_height] * std::abs(rise) + walked;
+      walked = 0.0;
+      filter.couple(0, 2, rise * rows.warmth[sample]);
+      filter.pass({1.0, gps_stays, warmth_stays},
+                  {walk, variance[1] * (1.0 - gps_stays * gps_stays),
+                   variance[2] * (1.0 - warmth_stays * warmth_stays)});
+    }
+    if (std::isnan(rows.rows(i, last))) continue;
+    filter.read(i, rows.rows.row(i), States(1.0, 1.0, 0.0), noise + more[i]);
+  }
+  return std::move(filter.white());
+}
+
+class Likelihood final : public ceres::FirstOrderFunction {
+ public:
+  Likelihood(const GpsNoise& noise, const GpsRows& rows, const Eigen::VectorXd& more, const GpsPrior& prior)
+      : noise_(noise), rows_(rows), more_(more), prior_(prior) {}
+
+  bool Evaluate(const double* const at, double* cost, double* gradient) const override {
+    const Eigen::Map<const Eigen::VectorXd> logarithms(at, NumParameters());
+    const auto value = [&](const Eigen::VectorXd& where) {
+      return 0.5 * noise_.cost(where, rows_, more_, prior_);
+    };
+    *cost = value(logarithms);
+    if (gradient != nullptr) {
+      constexpr double step = 1e-3;
+      for (int k = 0; k < NumParameters(); ++k) {
+        Eigen::VectorXd moved = logarithms;
+        moved[k] += step;
+        gradient[k] = (value(moved) - *cost) / step;
+      }
+    }
+    return std::isfinite(*cost);
+  }
+
+  int NumParameters() const override { return static_cast<int>(noise_.logarithms().size()); }
+
+ private:
+  const GpsNoise& noise_;
+  const GpsRows& rows_;
+  const Eigen::VectorXd& more_;
+  const GpsPrior& prior_;
+};
+
+}  // namespace
+
+GpsNoise::GpsNoise(GpsKind kind)
+    : kind_(kind), logarithms_(as_index(kind == GpsKind::wind ? wind_sizes.size() : height_sizes.size())) {
+  for (Eigen::Index k = 0; k < logarithms_.size(); ++k)
+    logarithms_[k] = std::log(size_of(kind, k).median);
+}
+
+WhiteRows GpsNoise::white_at(const Eigen::VectorXd& logarithms, const GpsRows& rows,
+                             const Eigen::VectorXd& more) const {
+  const Eigen::VectorXd sizes = logarithms.array().exp();
+  return kind_ == GpsKind::wind ? white_wind(sizes, rows, more) : white_height(sizes, rows, more);
+}
+
+WhiteRows GpsNoise::white(const GpsRows& rows, const Eigen::VectorXd& more) const {
+  return white_at(logarithms_, rows, more);
+}
+
+double GpsNoise::cost(const Eigen::VectorXd& logarithms, const GpsRows& rows, const Eigen::VectorXd& more,
+                      const GpsPrior& prior) const {
+  const WhiteRows white = white_at(logarithms, rows, more);
+  const Eigen::Index count = white.rows.cols() - 1;
+  const Eigen::MatrixXd products = white.rows.transpose() * white.rows;
+  // In units of the prior the matrix is one of its own kind, whatever the units of the columns.
+  const Eigen::VectorXd& unit = prior.deviation;
+  Eigen::MatrixXd matrix = unit.asDiagonal() * products.topLeftCorner(count, count) * unit.asDiagonal();
+  matrix.diagonal().array() += 1.0;
+  const Eigen::VectorXd mean = prior.mean.cwiseQuotient(unit);
+  const Eigen::VectorXd right = unit.cwiseProduct(products.col(count).head(count)) + mean;
+  const Eigen::LLT<Eigen::MatrixXd> factor(matrix);
+  double result = white.log_determinant + products(count, count) + mean.squaredNorm() -
+                  right.dot(factor.solve(right)) +
+                  2.0 * factor.matrixLLT().diagonal().array().log().sum();
+  for (Eigen::Index k = 0; k < logarithms.size(); ++k) {
+    const Size& size = size_of(kind_, k);
+    const double off = (logarithms[k] - std::log(size.median)) / size.deviation;
+    result += off * off;
+  }
+  return result;
+}
+
+void GpsNoise::maximise(const GpsRows& rows, const Eigen::VectorXd& more, const GpsPrior& prior) {
+  ceres::GradientProblemSolver::Options options;
+  options.max_num_iterations = 15;
+  options.function_tolerance = 1e-6;
+  options.logging_type = ceres::SILENT;
+  ceres::GradientProblemSolver::Summary summary;
+  Eigen::VectorXd found = logarithms_;
+  const ceres::GradientProblem problem(new Likelihood(*this, rows, more, prior));
+  ceres::Solve(options, problem, found.data(), &summary);
+  if (found.allFinite()) logarithms_ = found;
+}
+
+}  // namespace pcor::internal

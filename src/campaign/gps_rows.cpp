@@ -1,0 +1,496 @@
+#include "campaign/gps_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <pcor/physics/constants.hpp>
+#include <pcor/physics/hydrostatic.hpp>
+#include <pcor/physics/moist_air.hpp>
+#include "numerics/missing.hpp"
+#include "numerics/triangular_factor.hpp"
+#include "residuals/model_on_samples.hpp"
+#include "residuals/reference_on_samples.hpp"
+
+namespace pcor::internal {
+namespace {
+
+using constants::radians_per_degree;
+using Series = std::vector<double>;
+
+// Nuisances in the order of their columns.
+enum Column : Eigen::Index {
+  thermometer,
+  recovery,
+  heading_offset,
+  sideslip_offset,
+  attack_offset,
+  velocity_lag,
+  height_lag,
+  shear_east,
+  shear_north,
+  isobar_east,
+  isobar_north
+};
+
+// A Gaussian as low-pass, deviation in samples, over the values that are there.
+Series low_passed(const Series& values, double deviation) {
+  const auto reach = static_cast<std::ptrdiff_t>(std::ceil(3.0 * deviation));
+  std::vector<double> weight;
+  for (std::ptrdiff_t k = 0; k <= reach; ++k)
+    weight.push_back(std::exp(-0.5 * std::pow(static_cast<double>(k) / deviation, 2)));
+  const auto size = static_cast<std::ptrdiff_t>(values.size());
+  Series result(values.size(), nan);
+  for (std::ptrdiff_t i = 0; i < size; ++i) {
+    double sum = 0.0;
+    double weights = 0.0;
+    for (std::ptrdiff_t j = std::max<std::ptrdiff_t>(0, i - reach); j <= std::min(size - 1, i + reach); ++j) {
+      const double value = values[static_cast<std::size_t>(j)];
+      if (std::isnan(value)) continue;
+      const double w = weight[static_cast<std::size_t>(std::abs(j - i))];
+      sum += w * value;
+      weights += w;
+    }
+    if (weights > 0.0 && !std::isnan(values[static_cast<std::size_t>(i)]))
+      result[static_cast<std::size_t>(i)] = sum / weights;
+  }
+  return result;
+}
+
+double value_or(const Series& series, std::size_t i, double otherwise) {
+  return series.empty() || std::isnan(series[i]) ? otherwise : series[i];
+}
+
+// The rate of change at a sample by its two neighbours, NaN where one is missing.
+double rate_at(const Series& values, const Series& time, std::size_t i) {
+  if (i == 0 || i + 1 >= values.size()) return nan;
+  return (values[i + 1] - values[i - 1]) / (time[i + 1] - time[i - 1]);
+}
+
+// What the law makes of every sample; NaN where it cannot, or no air flows.
+struct Air {
+  Series pressure, dynamic, temperature, airspeed, gas_constant;
+};
+
+constexpr double least_airspeed = 40.0;  // m/s
+
+Air air_of(const FlightSamples& samples, const ModelOnSamples& law, const double* parameters) {
+  const std::size_t size = samples.time.size();
+  Air air{Series(size, nan), Series(size, nan), Series(size, nan), Series(size, nan), Series(size, nan)};
+  for (std::size_t i = 0; i < size; ++i) {
+    State<double> state;
+    law.air(i, parameters, state);
+    const double airspeed = state[Quantity::corrected_airspeed];
+    if (!(airspeed > least_airspeed)) continue;
+    air.pressure[i] = state[Quantity::corrected_static_pressure];
+    air.dynamic[i] = state[Quantity::corrected_dynamic_pressure];
+    air.temperature[i] = state[Quantity::ambient_temperature];
+    air.airspeed[i] = airspeed;
+    air.gas_constant[i] = moist_air(state[Quantity::humidity]).gas_constant;
+  }
+  return air;
+}
+
+Series* find(ModelSamples& samples, Quantity quantity) {
+  for (auto& [each, values] : samples.columns) {
+    if (each == quantity) return &values;
+  }
+  return nullptr;
+}
+
+// What the model would have read at the airspeed without gusts, in the same static pressure and temperature.
+ModelSamples without_gusts(const FlightSamples& samples, const ModelFile& file, const double* parameters,
+                           const Air& air, const Series& airspeed) {
+  ModelSamples calm = samples.model;
+  Series& static_pressure = *find(calm, Quantity::static_pressure);
+  Series& dynamic_pressure = *find(calm, Quantity::dynamic_pressure);
+  Series* const recovery_temperature = find(calm, Quantity::recovery_temperature);
+  for (const Quantity independent : {Quantity::mach, Quantity::true_airspeed}) {
+    if (Series* const values = find(calm, independent)) *values = low_passed(*values, 45.0 / samples.step);
+  }
+  for (std::size_t i = 0; i < airspeed.size(); ++i) {
+    if (std::isnan(airspeed[i])) continue;
+    const double heat = 2.0 * 3.5 * air.gas_constant[i] * air.temperature[i];
+    const double heating = airspeed[i] * airspeed[i] / heat;
+    const double was = air.airspeed[i] * air.airspeed[i] / heat;
+    dynamic_pressure[i] += air.pressure[i] * (std::pow(1.0 + heating, 3.5) - 1.0) - air.dynamic[i];
+    if (recovery_temperature == nullptr) continue;
+    double& recorded = (*recovery_temperature)[i];
+    recorded += (recorded - air.temperature[i]) * (heating / was - 1.0);
+  }
+  // What the static port feels hangs on the dynamic pressure.
+  const ModelOnSamples calm_law(file, calm);
+  constexpr int rounds = 4;
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t i = 0; i < airspeed.size(); ++i) {
+      if (std::isnan(airspeed[i])) continue;
+      State<double> state;
+      const double p = calm_law.corrected_static_pressure(i, parameters, state);
+      if (std::isnan(p)) continue;
+      const double change = air.pressure[i] - p;
+      static_pressure[i] += change;
+      dynamic_pressure[i] -= change;
+    }
+  }
+  return calm;
+}
+
+// Derivatives of airspeed, static pressure, temperature by some parameters at a sample.
+struct Derivatives {
+  Eigen::RowVectorXd airspeed, pressure, temperature, log_pressure;
+};
+
+class Differentiation {
+ public:
+  Differentiation(const ModelOnSamples& law, const double* parameters, const std::vector<std::size_t>& wanted)
+      : law_(law), parameters_(parameters), wanted_(wanted), dual_(law.parameters().size()) {
+    const Eigen::Index size = as_index(wanted.size());
+    at_.airspeed.resize(size);
+    at_.pressure.resize(size);
+    at_.temperature.resize(size);
+    at_.log_pressure.resize(size);
+  }
+
+  const Derivatives& operator()(std::size_t sample) {
+    for (std::size_t first = 0; first < wanted_.size(); first += jet_width) {
+      const std::size_t width = std::min<std::size_t>(jet_width, wanted_.size() - first);
+      for (std::size_t p = 0; p < dual_.size(); ++p) dual_[p] = Jet(parameters_[p]);
+      for (std::size_t k = 0; k < width; ++k)
+        dual_[wanted_[first + k]].v[static_cast<Eigen::Index>(k)] = 1.0;
+      State<Jet> state;
+      law_.air(sample, dual_.data(), state);
+      const Jet& pressure = state[Quantity::corrected_static_pressure];
+      for (std::size_t k = 0; k < width; ++k) {
+        const auto d = static_cast<Eigen::Index>(k);
+        const Eigen::Index to = as_index(first + k);
+        at_.airspeed[to] = state[Quantity::corrected_airspeed].v[d];
+        at_.pressure[to] = pressure.v[d];
+        at_.temperature[to] = state[Quantity::ambient_temperature].v[d];
+        at_.log_pressure[to] = pressure.v[d] / pressure.a;
+      }
+    }
+    return at_;
+  }
+
+ private:
+  const ModelOnSamples& law_;
+  const double* parameters_;
+  const std::vector<std::size_t>& wanted_;
+  std::vector<Jet> dual_;
+  Derivatives at_{};
+};
+
+// East and north of a unit vector along the airspeed. Angles in degrees.
+struct Direction2 {
+  double east, north;
+};
+
+Direction2 along_air(double heading, double pitch, double roll, double attack, double sideslip) {
+  const double down = std::tan(attack * radians_per_degree);
+  const double side = std::tan(sideslip * radians_per_degree);
+  const double length = std::sqrt(1.0 + side * side + down * down);
+  const double cp = std::cos(pitch * radians_per_degree);
+  const double sp = std::sin(pitch * radians_per_degree);
+  const double cr = std::cos(roll * radians_per_degree);
+  const double sr = std::sin(roll * radians_per_degree);
+  const double ahead = cp + side * sr * sp + down * cr * sp;
+  const double right = side * cr - down * sr;
+  const double sh = std::sin(heading * radians_per_degree);
+  const double ch = std::cos(heading * radians_per_degree);
+  return {(ahead * sh + right * ch) / length, (ahead * ch - right * sh) / length};
+}
+
+// The angles of a sample. Where pitch or attack is not known, the path of the aircraft is that of its climb.
+struct Angles {
+  double heading, pitch, roll, attack, sideslip;
+  bool has_attack;
+
+  Direction2 direction(double d_attack = 0.0, double d_sideslip = 0.0) const {
+    return along_air(heading, pitch, roll, attack + d_attack, sideslip + d_sideslip);
+  }
+};
+
+Angles angles_at(const FlightMotion& motion, const Series& heading, const Series& airspeed, std::size_t i) {
+  Angles angles{heading[i],
+                value_or(motion.pitch, i, nan),
+                value_or(motion.roll, i, 0.0),
+                value_or(motion.attack, i, nan),
+                value_or(motion.sideslip, i, 0.0),
+                true};
+  if (std::isnan(angles.pitch) || std::isnan(angles.attack)) {
+    const double climb = value_or(motion.vertical_speed, i, 0.0) / airspeed[i];
+    angles.pitch = std::asin(std::clamp(climb, -1.0, 1.0)) / radians_per_degree;
+    angles.attack = 0.0;
+    angles.has_attack = false;
+  }
+  return angles;
+}
+
+// Height above some level, m: of GPS, else of the pressure.
+Series heights(const FlightSamples& samples, const Air& air) {
+  Series z = samples.motion.altitude;
+  z.resize(air.pressure.size(), nan);
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    if (std::isnan(z[i])) z[i] = 44330.8 * (1.0 - std::pow(air.pressure[i] / 1013.25, 0.19026));
+  }
+  return z;
+}
+
+double mean_of(const Series& values) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (const double value : values) {
+    if (std::isnan(value)) continue;
+    sum += value;
+    count += 1.0;
+  }
+  return sum / count;
+}
+
+// The variance of a gust of one second in a cascade of -5/3 that makes the steps of the residual over 4 s
+// within 150 s around each sample. The factor is that of processes of 2, 8 and 32 s.
+Series gust_level(const Series& east, const Series& north, const Series& time, double step) {
+  constexpr double over = 4.0;
+  constexpr double within = 150.0;
+  constexpr double factor = 8.26;
+  constexpr double least = 1e-6;
+  const auto lag = static_cast<std::size_t>(std::max(1.0, std::round(over / step)));
+  const auto reach = static_cast<std::size_t>(std::round(within / step));
+  const std::size_t size = east.size();
+  Series sums(size + 1, 0.0);
+  Series counts(size + 1, 0.0);
+  for (std::size_t i = 0; i < size; ++i) {
+    sums[i + 1] = sums[i];
+    counts[i + 1] = counts[i];
+    if (i < lag || time[i] - time[i - lag] > 1.5 * over) continue;
+    const double square =
+        0.5 * (std::pow(east[i] - east[i - lag], 2) + std::pow(north[i] - north[i - lag], 2));
+    if (std::isnan(square)) continue;
+    sums[i + 1] += square;
+    counts[i + 1] += 1.0;
+  }
+  Series level(size, least);
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::size_t from = i - std::min(i, reach);
+    const std::size_t to = std::min(i + reach + 1, size);
+    const double count = counts[to] - counts[from];
+    const double mean =
+        count > 0.0 ? (sums[to] - sums[from]) / count : sums.back() / std::max(1.0, counts.back());
+    level[i] = std::max(least, mean / factor);
+  }
+  return level;
+}
+
+void add_rises(GpsRows& result, const Series& z) {
+  double before = nan;
+  for (const double height : z) {
+    result.rise.push_back(std::isnan(height - before) ? 0.0 : height - before);
+    if (!std::isnan(height)) before = height;
+  }
+}
+
+GpsRows wind_rows(const FlightSamples& samples, const ModelFile& file, const std::vector<std::size_t>& used,
+                  const double* parameters, const std::vector<std::size_t>& wanted) {
+  const ModelOnSamples law(file, samples.model);
+  const Air air = air_of(samples, law, parameters);
+  const std::size_t size = samples.time.size();
+  const Series& heading = *samples.reference.find(Quantity::heading);
+  const Series& ground_speed = *samples.reference.find(Quantity::ground_speed);
+  const Series& ground_track = *samples.reference.find(Quantity::ground_track);
+  const Series z = heights(samples, air);
+  const double mean_height = mean_of(z);
+  const Series airspeed = low_passed(air.airspeed, 45.0 / samples.step);
+
+  Series ground_east(size), ground_north(size), east(size, nan), north(size, nan), course(size, nan),
+      level_share(size, nan);
+  double course_before = nan;
+  for (std::size_t i = 0; i < size; ++i) {
+    ground_east[i] = ground_speed[i] * std::sin(ground_track[i] * radians_per_degree);
+    ground_north[i] = ground_speed[i] * std::cos(ground_track[i] * radians_per_degree);
+    if (std::isnan(air.airspeed[i])) continue;
+    const Direction2 u = angles_at(samples.motion, heading, air.airspeed, i).direction();
+    east[i] = ground_east[i] - air.airspeed[i] * u.east;
+    north[i] = ground_north[i] - air.airspeed[i] * u.north;
+    level_share[i] = std::hypot(u.east, u.north);
+    double now = std::atan2(u.east, u.north);
+    if (!std::isnan(course_before))
+      now += 2.0 * M_PI * std::round((course_before - now) / (2.0 * M_PI));
+    course[i] = now;
+    if (!std::isnan(now)) course_before = now;
+  }
+  for (const FrozenSpan& span : samples.reference.frozen) {
+    for (std::size_t i = span.first; i < span.first + span.count; ++i) east[i] = north[i] = nan;
+  }
+  const Series calm_course = low_passed(course, 15.0 / samples.step);
+  const Series calm_share = low_passed(level_share, 15.0 / samples.step);
+  const Series calm_ground_east = low_passed(ground_east, 5.0 / samples.step);
+  const Series calm_ground_north = low_passed(ground_north, 5.0 / samples.step);
+
+  GpsRows result;
+  result.time = samples.time;
+  result.level = gust_level(east, north, samples.time, samples.step);
+  result.airspeed.resize(size, 0.0);
+  result.east.resize(size, 0.0);
+  result.north.resize(size, 0.0);
+  add_rises(result, z);
+  const Eigen::Index count = as_index(wanted.size());
+  const Eigen::Index records = as_index(size);
+  result.rows = Eigen::MatrixXd::Constant(2 * records, count + gps_nuisance_count + 1, nan);
+  result.defect = Eigen::MatrixXd::Zero(as_index(used.size()), count);
+  const ModelSamples calm = without_gusts(samples, file, parameters, air, airspeed);
+  const ModelOnSamples calm_law(file, calm);
+  Differentiation differentiate(calm_law, parameters, wanted);
+  Eigen::Index number = 0;
+  for (const std::size_t i : used) {
+    if (std::isnan(east[i]) || std::isnan(north[i])) continue;
+    const Derivatives& by = differentiate(i);
+    if (!by.airspeed.allFinite()) continue;
+    result.defect.row(number++) = by.pressure;
+    const double speed = airspeed[i];
+    const double sine = std::sin(calm_course[i]);
+    const double cosine = std::cos(calm_course[i]);
+    const double share = calm_share[i];
+    result.airspeed[i] = speed;
+    result.east[i] = sine;
+    result.north[i] = cosine;
+    const double heat = 2.0 * 3.5 * air.gas_constant[i] * air.temperature[i];
+    const double heating = speed * speed / heat;
+    const double by_temperature = 0.5 * speed / air.temperature[i];
+    const double by_recovery = -0.5 * speed * heating / (1.0 + heating);
+    // The offset of an angle moves the direction ahead and to the right.
+    const Angles angles = angles_at(samples.motion, heading, air.airspeed, i);
+    const Direction2 raw = angles.direction();
+    constexpr double small = 0.05;  // deg
+    const Direction2 by_attack =
+        angles.has_attack ? angles.direction(small) : raw;
+    const Direction2 by_sideslip = angles.direction(0.0, small);
+    const double raw_length = std::hypot(raw.east, raw.north);
+    const auto ahead = [&](const Direction2& moved) {
+      return ((moved.east - raw.east) * raw.east + (moved.north - raw.north) * raw.north) / raw_length / small;
+    };
+    const auto right = [&](const Direction2& moved) {
+      return ((moved.east - raw.east) * raw.north - (moved.north - raw.north) * raw.east) / raw_length / small;
+    };
+    const double acceleration_east = rate_at(calm_ground_east, samples.time, i);
+    const double acceleration_north = rate_at(calm_ground_north, samples.time, i);
+    const double above = (z[i] - mean_height) / 1000.0;
+    const auto fill = [&](Eigen::Index row, double along, double across, double shear_at, double other_shear,
+                          double acceleration, double residual) {
+      auto to = result.rows.row(row);
+      to.head(count) = by.airspeed * (share * along);
+      to.segment(count, gps_nuisance_count).setZero();
+      to[count + thermometer] = by_temperature * share * along;
+      to[count + recovery] = by_recovery * share * along;
+      to[count + heading_offset] = speed * share * across * radians_per_degree;
+      to[count + sideslip_offset] = speed * (ahead(by_sideslip) * along + right(by_sideslip) * across);
+      to[count + attack_offset] = speed * (ahead(by_attack) * along + right(by_attack) * across);
+      to[count + velocity_lag] = std::isnan(acceleration) ? 0.0 : acceleration;
+      to[count + shear_east] = shear_at;
+      to[count + shear_north] = other_shear;
+      to[count + gps_nuisance_count] = residual;
+    };
+    const double up = std::isnan(above) ? 0.0 : above;
+    fill(as_index(i), sine, cosine, up, 0.0, acceleration_east, east[i]);
+    fill(records + as_index(i), cosine, -sine, 0.0, up, acceleration_north, north[i]);
+  }
+  result.defect.conservativeResize(number, count);
+  return result;
+}
+
+GpsRows height_rows(const FlightSamples& samples, const ModelFile& file,
+                    const std::vector<std::size_t>& used, const double* parameters,
+                    const std::vector<std::size_t>& wanted) {
+  const ModelOnSamples law(file, samples.model);
+  const Air air = air_of(samples, law, parameters);
+  const std::size_t size = samples.time.size();
+  const Series& altitude = *samples.reference.find(Quantity::altitude);
+  Series logarithm(size, nan);
+  for (std::size_t i = 0; i < size; ++i) logarithm[i] = std::log(air.pressure[i]);
+  const Series calm_logarithm = low_passed(logarithm, 5.0 / samples.step);
+  const Series calm_altitude = low_passed(altitude, 5.0 / samples.step);
+  const double latitude = mean_of(samples.latitude);
+  const double longitude = mean_of(samples.longitude);
+
+  GpsRows result;
+  result.kind = GpsKind::height;
+  result.time = samples.time;
+  result.warmth.resize(size, 0.0);
+  result.is_break.resize(size, true);
+  add_rises(result, altitude);
+  const Eigen::Index count = as_index(wanted.size());
+  const Eigen::Index columns = count + gps_nuisance_count;
+  result.rows = Eigen::MatrixXd::Constant(as_index(size), columns + 1, nan);
+  result.defect = Eigen::MatrixXd::Zero(as_index(used.size()), count);
+  std::vector<bool> takes_part(size, false);
+  for (const std::size_t i : used) takes_part[i] = true;
+
+  Differentiation differentiate(law, parameters, wanted);
+  Derivatives before;
+  Eigen::RowVectorXd height = Eigen::RowVectorXd::Zero(columns + 1);  // and its derivatives
+  double recovery_before = 0.0;
+  std::size_t last = size;
+  Eigen::Index number = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    if (std::isnan(air.pressure[i] + air.temperature[i])) continue;
+    const Derivatives& by = differentiate(i);
+    if (!by.log_pressure.allFinite() || !by.temperature.allFinite()) continue;
+    const double temperature = air.temperature[i];
+    const double heating =
+        air.airspeed[i] * air.airspeed[i] / (2.0 * 3.5 * air.gas_constant[i] * temperature);
+    const double by_recovery = -temperature * heating / (1.0 + heating);
+    result.warmth[i] = 1.0 / temperature;
+    const bool goes_on = last < size && samples.time[i] - samples.time[last] < 3.5 * samples.step;
+    if (goes_on) {
+      const double fall = air.gas_constant[i] / constants::standard_gravity;
+      const double step = -fall * (logarithm[i] - logarithm[last]);
+      const double calm_step = -fall * (calm_logarithm[i] - calm_logarithm[last]);
+      const double mean = 0.5 * (air.temperature[last] + temperature);
+      height.head(count) += 0.5 * step * (by.temperature + before.temperature) -
+                            fall * mean * (by.log_pressure - before.log_pressure);
+      height[count + thermometer] += calm_step;
+      height[count + recovery] += 0.5 * calm_step * (by_recovery + recovery_before);
+      height[columns] += mean * step;
+      result.is_break[i] = false;
+    }
+    before = by;
+    recovery_before = by_recovery;
+    last = i;
+    if (!takes_part[i] || std::isnan(altitude[i])) continue;
+    auto row = result.rows.row(as_index(i));
+    row = height;
+    row[columns] = altitude[i] - height[columns];
+    const double climb = rate_at(calm_altitude, samples.time, i);
+    row[count + height_lag] = std::isnan(climb) ? 0.0 : climb;
+    if (!samples.latitude.empty() && !samples.longitude.empty()) {
+      constexpr double per_degree = 1.112;  // of latitude, 100 km
+      const double along = per_degree * std::cos(latitude * radians_per_degree);
+      const double to_east = along * (samples.longitude[i] - longitude);
+      const double to_north = per_degree * (samples.latitude[i] - latitude);
+      if (!std::isnan(to_east + to_north)) {
+        row[count + isobar_east] = to_east;
+        row[count + isobar_north] = to_north;
+      }
+    }
+    result.defect.row(number++) = by.pressure;
+  }
+  result.defect.conservativeResize(number, count);
+  return result;
+}
+
+}  // namespace
+
+std::optional<GpsKind> gps_kind(const Reference& reference) {
+  const std::string name = reference.name();
+  if (name == "wind") return GpsKind::wind;
+  if (name == "height") return GpsKind::height;
+  return std::nullopt;
+}
+
+GpsRows gps_rows(GpsKind kind, const FlightSamples& samples, const ModelFile& model,
+                 const std::vector<std::size_t>& used, const double* parameters,
+                 const std::vector<std::size_t>& wanted) {
+  return kind == GpsKind::wind ? wind_rows(samples, model, used, parameters, wanted)
+                               : height_rows(samples, model, used, parameters, wanted);
+}
+
+}  // namespace pcor::internal

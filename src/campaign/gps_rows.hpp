@@ -1,0 +1,77 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include <pcor/laws/model_file.hpp>
+#include <pcor/residuals/reference.hpp>
+#include <pcor/residuals/samples.hpp>
+
+namespace pcor::internal {
+
+/// What GPS is held against: the airspeed and a wind, or the hydrostatic height.
+enum class GpsKind { wind, height };
+
+/// Nothing for a reference that is not one of GPS.
+std::optional<GpsKind> gps_kind(const Reference& reference);
+
+/// What else than the law moves the rows, and how well it is known: errors of the instruments, which all
+/// flights share, then what each flight has of its own.
+struct GpsNuisance {
+  std::string_view name;
+  double deviation;
+  bool of_flight;
+};
+
+inline constexpr std::array<GpsNuisance, 11> gps_nuisances{{
+    {"thermometer, K", 0.3, false},
+    {"recovery factor", 0.005, false},
+    {"heading, deg", 0.2, false},
+    {"sideslip, deg", 0.3, false},
+    {"attack, deg", 0.3, false},
+    {"lag of the velocity, s", 0.2, false},
+    {"lag of the height, s", 0.2, false},
+    {"shear of the east wind, m/s per km", 3.0, true},
+    {"shear of the north wind, m/s per km", 3.0, true},
+    {"slope of isobars to the east, m per 100 km", 10.0, true},
+    {"slope of isobars to the north, m per 100 km", 10.0, true},
+}};
+
+inline constexpr Eigen::Index gps_nuisance_count = gps_nuisances.size();
+inline constexpr Eigen::Index gps_shared_nuisances = 7;
+
+/// The rows of one flight. Each has the derivatives by the wanted coefficients of the law, by all nuisances,
+/// and the residual; NaN where a sample takes no part. Columns hold no gusts, and little noise: noise that a
+/// column shares with its own row would pull the coefficient, however long the flight.
+struct GpsRows {
+  GpsKind kind = GpsKind::wind;
+  std::vector<double> time;      ///< of each sample, s
+  std::vector<double> rise;      ///< since the sample before, m
+  std::vector<double> level;     ///< wind: variance of a gust of one second that its spectrum lets expect
+  std::vector<double> airspeed;  ///< wind: without gusts, m/s
+  std::vector<double> east;      ///< wind: of the direction of the airspeed, without gusts
+  std::vector<double> north;
+  std::vector<double> warmth;  ///< height: 1/T, 1/K
+  std::vector<bool> is_break;  ///< height: the height since the sample before is not known
+  Eigen::MatrixXd rows;        ///< wind: of the east, then of the north component of all samples
+  Eigen::MatrixXd defect;      ///< derivatives of the corrected static pressure by the wanted coefficients
+};
+
+/// The rows at these coefficients.
+///
+/// Wind, m/s: the velocity over the ground less that through the air, V u(heading, pitch, roll, attack,
+/// sideslip), each component. Height, m: that of GPS less that of the hydrostatic equation.
+///
+/// In the columns of the wind stands in place of the recorded pressures what they would be without gusts: V
+/// low-passed by a Gaussian of 45 s, its direction by one of 15 s.
+/// @param used the samples that take part
+/// @param parameters of the model, all of them; `wanted` are those of which the rows have derivatives
+GpsRows gps_rows(GpsKind kind, const FlightSamples& samples, const ModelFile& model,
+                 const std::vector<std::size_t>& used, const double* parameters,
+                 const std::vector<std::size_t>& wanted);
+
+}  // namespace pcor::internal

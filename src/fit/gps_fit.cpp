@@ -1,0 +1,410 @@
+#include "fit/gps_fit.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "campaign/gps_noise.hpp"
+#include "campaign/gps_rows.hpp"
+#include "fit/fit_task.hpp"
+#include "numerics/decompositions.hpp"
+#include "numerics/missing.hpp"
+
+namespace pcor::internal {
+namespace {
+
+constexpr double prior_in_typical_sizes = 1.25;
+constexpr double least_information = 3.0;  // of the prior's
+constexpr double block_time = 300.0;       // s
+
+/// The products of white rows (wanted, nuisances, residual) of some minutes.
+struct Products {
+  std::int64_t block = 0;
+  std::vector<double> values{};
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(block, values);
+  }
+};
+
+/// What a flight says through one reference.
+struct Part {
+  std::vector<Products> blocks{};
+  std::vector<double> defects{};  ///< products of the derivatives of delta-p by the wanted coefficients
+  std::size_t samples = 0;
+
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(blocks, defects, samples);
+  }
+};
+
+std::vector<double> packed(const Eigen::MatrixXd& matrix) {
+  return {matrix.data(), matrix.data() + matrix.size()};
+}
+
+Eigen::MatrixXd unpacked(const std::vector<double>& values, Eigen::Index size) {
+  return Eigen::Map<const Eigen::MatrixXd>(values.data(), size, size);
+}
+
+/// The noise of a flight, and how much wider its outliers are.
+struct FlightState {
+  std::optional<GpsNoise> noise{};
+  Eigen::VectorXd outliers{};
+};
+
+/// What the flights say of the wanted coefficients and the shared nuisances: normal equations of all blocks,
+/// without what each flight has of its own.
+struct Equations {
+  Eigen::MatrixXd matrix;
+  Eigen::VectorXd right;
+  std::vector<Eigen::MatrixXd> products{};  // of each block, with what a flight has of its own eliminated
+};
+
+class GpsSolver {
+ public:
+  GpsSolver(const std::vector<FitFlights*>& flights, const Eigen::VectorXd& start, const BeforeGps& before,
+            const std::vector<std::size_t>& wanted)
+      : flights_(flights),
+        task_(flights.front()->task()),
+        values_(start),
+        before_(before),
+        wanted_(wanted),
+        count_(as_index(wanted.size())),
+        states_(flights.size()) {
+    for (auto& each : states_) each.resize(task_.flights.size());
+    values_(wanted_) = before.values;
+    prior_deviation_.resize(count_);
+    for (Eigen::Index k = 0; k < count_; ++k)
+      prior_deviation_[k] = prior_in_typical_sizes * task_.parameters[wanted_[static_cast<std::size_t>(k)]].typical;
+  }
+
+  GpsFit solve() {
+    constexpr int rounds_with_noise = 2;
+    constexpr int rounds = 4;
+    for (int round = 0; round < rounds; ++round) {
+      read(round < rounds_with_noise, round == rounds - 2);
+      step();
+    }
+    read(false, false);
+    return result();
+  }
+
+ private:
+  Eigen::Index shared() const { return count_ + gps_shared_nuisances; }
+  Eigen::Index all() const { return count_ + gps_nuisance_count; }
+
+  GpsPrior flight_prior() const {
+    GpsPrior prior{Eigen::VectorXd::Zero(all()), Eigen::VectorXd(all())};
+    for (Eigen::Index k = 0; k < count_; ++k) {
+      prior.deviation[k] = prior_deviation_[k];
+      prior.mean[k] = before_.values[k] - values_[as_index(wanted_[static_cast<std::size_t>(k)])];
+    }
+    for (Eigen::Index n = 0; n < gps_nuisance_count; ++n)
+      prior.deviation[count_ + n] = gps_nuisances[static_cast<std::size_t>(n)].deviation;
+    return prior;
+  }
+
+  /// An effect of the user's own has no typical size: its prior is wide.
+  void widen(GpsPrior& prior, const Eigen::MatrixXd& white) const {
+    for (Eigen::Index k = 0; k < count_; ++k) {
+      if (prior.deviation[k] > 0.0) continue;
+      const double length = white.col(k).norm();
+      prior.deviation[k] = length > 0.0 ? 100.0 / length : 1.0;
+    }
+  }
+
+  Part part_of(GpsKind kind, FitFlight& fit, FlightState& state, bool with_noise, bool with_outliers) const {
+    const Eigen::VectorXd own = own_parameters(fit.residuals(), task_, values_);
+    const FlightSamples& samples = fit.residuals().samples();
+    Part part;
+    const GpsRows rows = gps_rows(kind, samples, task_.model, fit.kept(), own.data(), wanted_);
+    part.samples = static_cast<std::size_t>(rows.defect.rows());
+    part.defects = packed(rows.defect.transpose() * rows.defect);
+    if (part.samples == 0) return part;
+    if (state.outliers.size() != rows.rows.rows()) state.outliers = Eigen::VectorXd::Zero(rows.rows.rows());
+    GpsPrior prior = flight_prior();
+    if (!state.noise) state.noise.emplace(kind);
+    if ((prior.deviation.array() <= 0.0).any())
+      widen(prior, state.noise->white(rows, state.outliers).rows);
+    if (with_noise) state.noise->maximise(rows, state.outliers, prior);
+    WhiteRows white = state.noise->white(rows, state.outliers);
+    if (with_outliers && mark_outliers(white, prior, state)) white = state.noise->white(rows, state.outliers);
+    std::map<std::int64_t, Eigen::MatrixXd> blocks;
+    const std::size_t size = rows.time.size();
+    for (Eigen::Index first = 0; first < white.rows.rows(); first += as_index(size)) {
+      for (std::size_t i = 0; i < size;) {
+        const auto block = static_cast<std::int64_t>(std::floor(rows.time[i] / block_time));
+        std::size_t end = i;
+        while (end < size && std::floor(rows.time[end] / block_time) == static_cast<double>(block)) ++end;
+        const auto some = white.rows.middleRows(first + as_index(i), as_index(end - i));
+        Eigen::MatrixXd& sum = blocks.try_emplace(block, Eigen::MatrixXd::Zero(all() + 1, all() + 1)).first->second;
+        sum.noalias() += some.transpose() * some;
+        i = end;
+      }
+    }
+    for (const auto& [block, sum] : blocks) {
+      if (sum.cwiseAbs().maxCoeff() > 0.0) part.blocks.push_back({block, packed(sum)});
+    }
+    return part;
+  }
+
+  /// True where there are any: rows whose news no normal noise brings.
+  static bool mark_outliers(const WhiteRows& white, const GpsPrior& prior, FlightState& state) {
+    constexpr double limit = 4.5;
+    constexpr double wider = 100.0;
+    const Eigen::Index count = white.rows.cols() - 1;
+    const auto columns = white.rows.leftCols(count);
+    Eigen::MatrixXd matrix = columns.transpose() * columns;
+    matrix.diagonal() += prior.deviation.cwiseAbs2().cwiseInverse();
+    const Eigen::VectorXd best =
+        matrix.ldlt().solve(columns.transpose() * white.rows.col(count));
+    const Eigen::VectorXd news = white.rows.col(count) - columns * best;
+    bool any = false;
+    for (Eigen::Index i = 0; i < news.size(); ++i) {
+      if (!(std::abs(news[i]) > limit)) continue;
+      state.outliers[i] = wider * news[i] * news[i] * white.variance[i];
+      any = true;
+    }
+    return any;
+  }
+
+  void read(bool with_noise, bool with_outliers) {
+    const Eigen::Index size = all() + 1;
+    std::vector<std::map<std::int64_t, Eigen::MatrixXd>> blocks(task_.flights.size());
+    defects_ = Eigen::MatrixXd::Zero(count_, count_);
+    samples_ = 0;
+    for (std::size_t r = 0; r < flights_.size(); ++r) {
+      const GpsKind kind = *gps_kind(flights_[r]->task().reference);
+      const std::vector<Part> parts = flights_[r]->of_each(
+          [&](std::size_t number, FitFlight& fit) {
+            return part_of(kind, fit, states_[r][number], with_noise, with_outliers);
+          },
+          values_);
+      for (std::size_t f = 0; f < parts.size(); ++f) {
+        for (const Products& each : parts[f].blocks) {
+          Eigen::MatrixXd& sum =
+              blocks[f].try_emplace(each.block, Eigen::MatrixXd::Zero(size, size)).first->second;
+          sum += unpacked(each.values, size);
+        }
+        defects_ += unpacked(parts[f].defects, count_);
+        samples_ += parts[f].samples;
+      }
+    }
+    task_.tell();
+    eliminate_own(blocks);
+  }
+
+  void eliminate_own(const std::vector<std::map<std::int64_t, Eigen::MatrixXd>>& flights) {
+    const Eigen::Index own = gps_nuisance_count - gps_shared_nuisances;
+    const Eigen::Index size = shared();
+    equations_ = {Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size), {}};
+    for (const auto& blocks : flights) {
+      Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(all() + 1, all() + 1);
+      for (const auto& [block, products] : blocks) sum += products;
+      Eigen::MatrixXd of_own = sum.block(size, size, own, own);
+      for (Eigen::Index k = 0; k < own; ++k)
+        of_own(k, k) += std::pow(gps_nuisances[static_cast<std::size_t>(gps_shared_nuisances + k)].deviation, -2);
+      const Eigen::LDLT<Eigen::MatrixXd> solver(of_own);
+      // Rows without what is best explained by the flight's own: columns less own times these.
+      Eigen::MatrixXd without = Eigen::MatrixXd::Zero(all() + 1, size + 1);
+      without.topLeftCorner(size, size).setIdentity();
+      without(all(), size) = 1.0;
+      without.block(size, 0, own, size) = -solver.solve(sum.block(size, 0, own, size));
+      without.block(size, size, own, 1) = -solver.solve(sum.block(size, all(), own, 1));
+      for (const auto& [block, products] : blocks) {
+        equations_.products.emplace_back(without.transpose() * products * without);
+      }
+      const Eigen::MatrixXd cross = sum.block(size, 0, own, size);
+      equations_.matrix += sum.topLeftCorner(size, size) - cross.transpose() * solver.solve(cross);
+      equations_.right += sum.col(all()).head(size) -
+                          cross.transpose() * solver.solve(sum.block(size, all(), own, 1));
+    }
+    for (Eigen::Index k = 0; k < count_; ++k) {
+      if (prior_deviation_[k] > 0.0) continue;
+      const double information = equations_.matrix(k, k);
+      prior_deviation_[k] = information > 0.0 ? 100.0 / std::sqrt(information) : 1.0;
+    }
+  }
+
+  /// The covariance of the wanted coefficients and shared nuisances before the flights.
+  Eigen::MatrixXd prior_covariance() const {
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(shared(), shared());
+    if (before_.covariance.size() > 0) {
+      covariance.topLeftCorner(count_, count_) = before_.covariance;
+    } else {
+      covariance.topLeftCorner(count_, count_) = free_ * free_.transpose();
+    }
+    for (Eigen::Index n = 0; n < gps_shared_nuisances; ++n)
+      covariance(count_ + n, count_ + n) = std::pow(gps_nuisances[static_cast<std::size_t>(n)].deviation, 2);
+    return covariance;
+  }
+
+  /// Finds the directions of the coefficients that the flights determine.
+  void find_free() {
+    free_ = held_ = Eigen::MatrixXd(count_, 0);
+    if (before_.covariance.size() > 0) return;
+    Eigen::MatrixXd nuisances =
+        equations_.matrix.bottomRightCorner(gps_shared_nuisances, gps_shared_nuisances);
+    for (Eigen::Index n = 0; n < gps_shared_nuisances; ++n)
+      nuisances(n, n) += std::pow(gps_nuisances[static_cast<std::size_t>(n)].deviation, -2);
+    const Eigen::MatrixXd cross = equations_.matrix.bottomLeftCorner(gps_shared_nuisances, count_);
+    const Eigen::MatrixXd information =
+        prior_deviation_.asDiagonal() *
+        (equations_.matrix.topLeftCorner(count_, count_) - cross.transpose() * nuisances.ldlt().solve(cross)) *
+        prior_deviation_.asDiagonal();
+    const SymmetricEigen eigen = symmetric_eigen(information);
+    std::vector<Eigen::Index> known;
+    std::vector<Eigen::Index> unknown;
+    for (Eigen::Index k = 0; k < count_; ++k)
+      (eigen.eigenvalues()[k] > least_information ? known : unknown).push_back(k);
+    const Eigen::MatrixXd directions = prior_deviation_.asDiagonal() * eigen.eigenvectors();
+    free_ = directions(Eigen::all, known);
+    held_ = directions(Eigen::all, unknown);
+  }
+
+  /// A step of the coefficients to where the flights and the prior want them.
+  void step() {
+    find_free();
+    const Eigen::MatrixXd prior = prior_covariance();
+    const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(shared(), shared());
+    posterior_ = (identity + prior * equations_.matrix).partialPivLu().solve(prior);
+    Eigen::VectorXd from = Eigen::VectorXd::Zero(shared());
+    const Eigen::VectorXd now = values_(wanted_);
+    from.head(count_) = now - before_.values;
+    change_ = posterior_ * (equations_.right + equations_.matrix * from);
+    for (Eigen::Index k = 0; k < count_; ++k) {
+      const std::size_t p = wanted_[static_cast<std::size_t>(k)];
+      const Bounds& bounds = task_.parameters[p].bounds;
+      const double value = before_.values[k] + change_[k];
+      if (std::isfinite(value)) values_[as_index(p)] = std::clamp(value, bounds.lower, bounds.upper);
+    }
+  }
+
+  double error_of(const Eigen::MatrixXd& covariance) const {
+    if (samples_ == 0) return 0.0;
+    return std::sqrt(std::max(0.0, (defects_ * covariance).trace() / static_cast<double>(samples_)));
+  }
+
+  GpsFit result() {
+    step();
+    GpsFit fit;
+    fit.values = values_(wanted_);
+    // Scores of the blocks at the solution.
+    Eigen::VectorXd residual_weights(shared() + 1);
+    Eigen::VectorXd left = change_;
+    left.head(count_).setZero();
+    residual_weights << -left, 1.0;
+    Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(shared(), shared());
+    for (const Eigen::MatrixXd& products : equations_.products) {
+      const Eigen::VectorXd score = (products * residual_weights).head(shared());
+      scores += score * score.transpose();
+    }
+    fit.parts = equations_.products.size();
+    const Eigen::MatrixXd prior = prior_covariance();
+    // A^-1 (scores + prior information) A^-1, where the information of what is held is none.
+    const Eigen::MatrixXd gain = posterior_ * equations_.matrix;
+    const Eigen::MatrixXd drawn = Eigen::MatrixXd::Identity(shared(), shared()) - gain;
+    const Eigen::MatrixXd sandwich =
+        posterior_ * scores * posterior_.transpose() + drawn * prior * drawn.transpose();
+    fit.by_noise = posterior_.topLeftCorner(count_, count_);
+    const Eigen::MatrixXd by_scatter = sandwich.topLeftCorner(count_, count_);
+    fit.jackknife = by_scatter.diagonal().cwiseMax(0.0).cwiseSqrt();
+    fit.covariance = error_of(by_scatter) > error_of(fit.by_noise) ? by_scatter : fit.by_noise;
+    if (held_.cols() > 0) {
+      const Eigen::MatrixXd doubt = doubt_of_held();
+      fit.covariance += doubt;
+      fit.held = error_of(doubt);
+    }
+    fit.covariance = 0.5 * (fit.covariance + fit.covariance.transpose()).eval();
+    fit.stated = error_of(fit.covariance);
+    const Eigen::MatrixXd matrix = equations_.matrix.topLeftCorner(count_, count_);
+    const Eigen::VectorXd scale = matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const Eigen::VectorXd eigenvalues =
+        symmetric_eigen(scale.asDiagonal() * matrix * scale.asDiagonal()).eigenvalues();
+    fit.condition_number = std::sqrt(eigenvalues.maxCoeff() / std::max(eigenvalues.minCoeff(), 1e-20));
+    fit.thermometer = change_[count_];
+    fit.thermometer_error = std::sqrt(posterior_(count_, count_));
+    add_notes(fit);
+    return fit;
+  }
+
+  /// Of the directions that are held: the prior's, or what the file states of them.
+  Eigen::MatrixXd doubt_of_held() const {
+    const Eigen::MatrixXd stated = task_.doubt(wanted_, wanted_);
+    if (!(stated.diagonal().minCoeff() > 0.0)) return held_ * held_.transpose();
+    const Eigen::MatrixXd scaled =
+        prior_deviation_.cwiseInverse().asDiagonal() * held_;  // orthonormal columns
+    const Eigen::MatrixXd onto = held_ * scaled.transpose() * prior_deviation_.cwiseInverse().asDiagonal();
+    return onto * stated * onto.transpose();
+  }
+
+  bool has(GpsKind kind) const {
+    return std::any_of(flights_.begin(), flights_.end(), [kind](const FitFlights* each) {
+      return gps_kind(each->task().reference) == kind;
+    });
+  }
+
+  void add_notes(GpsFit& fit) const {
+    if (held_.cols() > 0) {
+      std::vector<std::string> names;
+      for (Eigen::Index h = 0; h < held_.cols(); ++h) {
+        const Eigen::VectorXd shares = held_.col(h).cwiseQuotient(prior_deviation_).cwiseAbs2();
+        std::vector<std::string> some;
+        constexpr double much = 0.1;
+        for (Eigen::Index k = 0; k < count_; ++k) {
+          if (shares[k] > much) some.push_back(task_.parameters[wanted_[static_cast<std::size_t>(k)]].name);
+        }
+        names.push_back(fmt::format("{}", fmt::join(some, " against ")));
+      }
+      fit.notes.push_back(
+          fmt::format("the flights do not determine {}: held at the start, with an error of delta-p of {:.2f} "
+                      "hPa; what would tell: {}",
+                      fmt::join(names, "; "), fit.held,
+                      has(GpsKind::wind)
+                          ? "four circles of one bank, or reverse headings, for the level; a speed run for "
+                            "the change with the airspeed; a pitch manoeuvre for the attack term"
+                          : "--reference wind with circles or reverse headings, for the level; a speed run "
+                            "or a pitch manoeuvre for the rest"));
+    }
+    if (std::abs(fit.thermometer) > 2.0 * fit.thermometer_error) {
+      fit.notes.push_back(fmt::format("the thermometer reads {} by {:.2f} +- {:.2f} K, by GPS",
+                                      fit.thermometer > 0.0 ? "low" : "high", std::abs(fit.thermometer),
+                                      fit.thermometer_error));
+    }
+  }
+
+  const std::vector<FitFlights*>& flights_;
+  const FitTask& task_;
+  Eigen::VectorXd values_;  // of all parameters
+  const BeforeGps& before_;
+  const std::vector<std::size_t>& wanted_;
+  Eigen::Index count_;
+  Eigen::VectorXd prior_deviation_{};
+  std::vector<std::vector<FlightState>> states_;  // of each reference and flight
+  Equations equations_{};
+  Eigen::MatrixXd defects_{};
+  std::size_t samples_ = 0;
+  Eigen::MatrixXd free_{};       // directions that the flights determine, one deviation of the prior long
+  Eigen::MatrixXd held_{};       // the others
+  Eigen::MatrixXd posterior_{};  // covariance of coefficients and shared nuisances
+  Eigen::VectorXd change_{};     // of the coefficients from before; of nuisances their values
+};
+
+}  // namespace
+
+bool is_by_gps(const Reference& reference) { return gps_kind(reference).has_value(); }
+
+GpsFit fit_gps(const std::vector<FitFlights*>& flights, const Eigen::VectorXd& start, const BeforeGps& before,
+               const std::vector<std::size_t>& wanted) {
+  return GpsSolver(flights, start, before, wanted).solve();
+}
+
+}  // namespace pcor::internal
