@@ -182,7 +182,8 @@ Fitted prepared_for_gps(const FitTask& task) {
 }
 
 /// Fits to GPS what was fitted to the others, if to any, and sets the covariance.
-std::optional<GpsFit> add_gps(Fitted& fitted, const FitTask& task, FitCovariance& covariance) {
+std::optional<GpsFit> add_gps(Fitted& fitted, const FitTask& task, FitCovariance& covariance,
+                              bool is_masked_again = false) {
   std::vector<FitFlights*> by_gps;
   const bool is_alone = is_by_gps(task.reference);
   if (is_alone) by_gps.push_back(fitted.flights.get());
@@ -196,6 +197,12 @@ std::optional<GpsFit> add_gps(Fitted& fitted, const FitTask& task, FitCovariance
   if (!is_alone) before.covariance = covariance.matrix.topLeftCorner(count, count);
   GpsFit gps = fit_gps(by_gps, solution.values, before, fitted.parameters);
   solution.values(fitted.parameters) = gps.values;
+  if (is_alone && !is_masked_again && fitted.flights->masks_change_at(solution.values)) {
+    // The masks are those of the solution, so that the start does not decide.
+    fitted.flights = std::make_unique<FitFlights>(task, FitSetup{solution.values, fitted.parameters});
+    solution.values = task.start;
+    return add_gps(fitted, task, covariance, true);
+  }
   if (is_alone) {
     covariance.matrix = gps.covariance;
     covariance.by_noise = gps.by_noise;
@@ -328,11 +335,11 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelFile& model, const R
   const bool by_gps_alone = is_by_gps(reference);
   Fitted fitted = by_gps_alone ? prepared_for_gps(task) : fit_in_stages(task);
   const Solution& solution = fitted.solution;
-  FitFlights& flights = *fitted.flights;
   RefitResult result;
   FitCovariance covariance;
   Misfit misfit;
   if (!by_gps_alone) {
+    FitFlights& flights = *fitted.flights;
     const MisfitColumns misfit_columns(flights);
     misfit = find_misfit(flights, misfit_columns, solution);
     // The weights are those of the noise without the misfit from now on.
@@ -351,6 +358,7 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelFile& model, const R
     result.condition_number = gps->condition_number;
     result.estimator = refit_estimator_of_gps;
   }
+  FitFlights& flights = *fitted.flights;  // with masks of the solution
   result.reference_text = reference_text(flights);
   result.masks = flights.masks();
   result.jackknife_parts = covariance.blocks;

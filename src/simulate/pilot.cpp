@@ -147,13 +147,23 @@ void Pilot::step(const Command& command, const Scenario::Leg& leg) {
                     "slower or lower",
                     leg.place, height_, speed_, steady_mach, aircraft_.greatest_mach, aircraft_.type));
   }
-  const double path = std::asin(std::clamp(vertical_speed_ / std::max(speed_, 10.0), -1.0, 1.0)) / radians;
+  const double climb = std::clamp(vertical_speed_ / std::max(speed_, 10.0), -1.0, 1.0);  // sine of the path
   const double per_speed = 1.0 / (radians * std::max(airspeed, 10.0));
-  const double heading = direction_ - command.sideslip;
+  // The axes of the aircraft about the direction in which it moves through the air: of its velocity, in units
+  // of the forward part, the part to the right and the part down after the roll.
+  const double slips = std::tan(radians * command.sideslip);
+  const double sinks = std::tan(radians * attack);
+  const double right = slips * std::cos(radians * roll_) - sinks * std::sin(radians * roll_);
+  const double down = slips * std::sin(radians * roll_) + sinks * std::cos(radians * roll_);
+  const double climbs = climb * std::sqrt(1.0 + right * right / (1.0 + down * down));
+  const double pitch = std::atan(down) + std::asin(std::clamp(climbs, -1.0, 1.0));
+  const double heading =
+      direction_ - std::atan2(right, std::cos(pitch) + down * std::sin(pitch)) / radians;
+  const double level_speed = speed_ * std::sqrt(1.0 - climb * climb);
   const double sine = std::sin(radians * direction_);
   const double cosine = std::cos(radians * direction_);
-  const double ground_east = speed_ * sine + wind_east - followed_across_ * cosine;
-  const double ground_north = speed_ * cosine + wind_north + followed_across_ * sine;
+  const double ground_east = level_speed * sine + wind_east - followed_across_ * cosine;
+  const double ground_north = level_speed * cosine + wind_north + followed_across_ * sine;
   const double track = std::atan2(ground_east, ground_north) / radians;
 
   truth_.pressure.push_back(air.pressure);
@@ -164,7 +174,7 @@ void Pilot::step(const Command& command, const Scenario::Leg& leg) {
   truth_.mach.push_back(mach);
   truth_.attack.push_back(attack + (up - followed_up_) * per_speed);
   truth_.sideslip.push_back(command.sideslip + (across - followed_across_) * per_speed);
-  truth_.pitch.push_back(attack * std::cos(radians * roll_) + path);
+  truth_.pitch.push_back(pitch / radians);
   truth_.roll.push_back(roll_);
   truth_.heading.push_back(heading);
   truth_.track.push_back(track + 360.0 * std::round((direction_ - track) / 360.0));
@@ -176,7 +186,6 @@ void Pilot::step(const Command& command, const Scenario::Leg& leg) {
                              east_ / (metres_per_degree * std::cos(radians * scenario_.latitude)));
   truth_.height.push_back(height_ - atmosphere.ground_height);
   truth_.normal_acceleration.push_back((load - 1.0) * g);
-  const double pitch = radians * truth_.pitch.back();
   truth_.forward_acceleration.push_back(command.acceleration * std::cos(pitch) +
                                         (command.vertical_acceleration + g) * std::sin(pitch));
   truth_.flaps.push_back(flaps_);
