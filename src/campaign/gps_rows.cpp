@@ -406,7 +406,7 @@ GpsRows height_rows(const FlightSamples& samples, const ModelFile& file,
   const Series& altitude = *samples.reference.find(Quantity::altitude);
   Series logarithm(size, nan);
   for (std::size_t i = 0; i < size; ++i) logarithm[i] = std::log(air.pressure[i]);
-  const Series calm_logarithm = low_passed(logarithm, 5.0 / samples.step);
+  const Series calm_logarithm = low_passed(logarithm, 15.0 / samples.step);
   const Series calm_altitude = low_passed(altitude, 5.0 / samples.step);
   const double latitude = mean_of(samples.latitude);
   const double longitude = mean_of(samples.longitude);
@@ -416,7 +416,7 @@ GpsRows height_rows(const FlightSamples& samples, const ModelFile& file,
   result.time = samples.time;
   result.warmth.resize(size, 0.0);
   result.is_break.resize(size, true);
-  add_rises(result, altitude);
+  result.rise.resize(size, 0.0);
   const Eigen::Index count = as_index(wanted.size());
   const Eigen::Index columns = count + gps_nuisance_count;
   result.rows = Eigen::MatrixXd::Constant(as_index(size), columns + 1, nan);
@@ -445,11 +445,12 @@ GpsRows height_rows(const FlightSamples& samples, const ModelFile& file,
       const double step = -fall * (logarithm[i] - logarithm[last]);
       const double calm_step = -fall * (calm_logarithm[i] - calm_logarithm[last]);
       const double mean = 0.5 * (air.temperature[last] + temperature);
-      height.head(count) += 0.5 * step * (by.temperature + before.temperature) -
+      height.head(count) += 0.5 * calm_step * (by.temperature + before.temperature) -
                             fall * mean * (by.log_pressure - before.log_pressure);
       height[count + thermometer] += calm_step;
       height[count + recovery] += 0.5 * calm_step * (by_recovery + recovery_before);
       height[columns] += mean * step;
+      result.rise[i] = mean * calm_step;
       result.is_break[i] = false;
     }
     before = by;
