@@ -315,6 +315,7 @@ class GpsSolver {
     const Eigen::MatrixXd sandwich =
         posterior_ * scores * posterior_.transpose() + drawn * prior * drawn.transpose();
     fit.by_noise = posterior_.topLeftCorner(count_, count_);
+    fit.kept = drawn.topLeftCorner(count_, count_);
     const Eigen::MatrixXd by_scatter = sandwich.topLeftCorner(count_, count_);
     fit.jackknife = by_scatter.diagonal().cwiseMax(0.0).cwiseSqrt();
     fit.covariance = error_of(by_scatter) > error_of(fit.by_noise) ? by_scatter : fit.by_noise;

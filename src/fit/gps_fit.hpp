@@ -19,6 +19,7 @@ struct GpsFit {
   Eigen::VectorXd values{};
   Eigen::MatrixXd covariance{};  ///< with what was held
   Eigen::MatrixXd by_noise{};    ///< by the model of the noise alone, without what was held
+  Eigen::MatrixXd kept{};        ///< derivatives of the values by those before
   Eigen::VectorXd jackknife{};   ///< standard errors by the scatter of parts of the flights
   std::size_t parts = 0;         ///< of five minutes
   double condition_number = 1.0;

@@ -221,6 +221,14 @@ std::optional<GpsFit> add_gps(Fitted& fitted, const FitTask& task, FitCovariance
     covariance.matrix.topLeftCorner(count, count) = gps.covariance;
     covariance.by_flights = gps.covariance;
     covariance.by_noise = gps.covariance;
+    if (covariance.by_doubt.size() > 0) {
+      const Eigen::MatrixXd by_others = covariance.by_doubt.topRows(count);
+      covariance.by_doubt.topRows(count) = gps.kept * by_others;
+    }
+    covariance.matrix.topRightCorner(count, covariance.matrix.cols() - count) =
+        gps.kept * covariance.matrix.topRightCorner(count, covariance.matrix.cols() - count).eval();
+    covariance.matrix.bottomLeftCorner(covariance.matrix.rows() - count, count) =
+        covariance.matrix.topRightCorner(count, covariance.matrix.cols() - count).transpose();
   }
   return gps;
 }
@@ -405,9 +413,20 @@ RefitResult refit(const FlightSet& flights, const ModelFile& model, const Refere
                   const RefitOptions& options) {
   require_sense(flights, references, options);
   References in_order = references;
-  std::stable_partition(in_order.begin(), in_order.end(),
-                        [](const auto& reference) { return !is_by_gps(*reference); });
-  RefitResult result = fit(flights, model, in_order, options);
+  const auto gps = std::stable_partition(in_order.begin(), in_order.end(),
+                                         [](const auto& reference) { return !is_by_gps(*reference); });
+  RefitResult result;
+  try {
+    result = fit(flights, model, in_order, options);
+  } catch (const Error& error) {
+    // The others are fitted before GPS, and have to determine all coefficients.
+    if (gps == in_order.begin() || gps == in_order.end() || error.code() == Error::Code::file) throw;
+    result = fit(flights, model, References(gps, in_order.end()), options);
+    result.notes.insert(result.notes.begin(),
+                        fmt::format("fitted to {} alone, since the other references do not determine the "
+                                    "coefficients: {}",
+                                    result.reference_text, error.what()));
+  }
   flights.with(options.holdout).require_unchanged();
   return result;
 }
