@@ -20,6 +20,7 @@ namespace pcor::internal {
 namespace {
 
 constexpr double prior_in_typical_sizes = 1.25;
+constexpr double greatest_error = 1.0;    // of delta-p in one direction of the coefficients, hPa
 constexpr double least_information = 3.0;  // of the prior's
 constexpr double block_time = 300.0;       // s
 
@@ -249,7 +250,7 @@ class GpsSolver {
 
   /// Finds the directions of the coefficients that the flights determine.
   void find_free() {
-    free_ = held_ = Eigen::MatrixXd(count_, 0);
+    free_ = held_ = weak_ = Eigen::MatrixXd(count_, 0);
     if (before_.covariance.size() > 0) return;
     Eigen::MatrixXd nuisances =
         equations_.matrix.bottomRightCorner(gps_shared_nuisances, gps_shared_nuisances);
@@ -263,11 +264,27 @@ class GpsSolver {
     const SymmetricEigen eigen = symmetric_eigen(information);
     std::vector<Eigen::Index> known;
     std::vector<Eigen::Index> unknown;
-    for (Eigen::Index k = 0; k < count_; ++k)
-      (eigen.eigenvalues()[k] > least_information ? known : unknown).push_back(k);
+    std::vector<Eigen::Index> weak;
     const Eigen::MatrixXd directions = prior_deviation_.asDiagonal() * eigen.eigenvectors();
+    for (Eigen::Index k = 0; k < count_; ++k) {
+      const double tells = eigen.eigenvalues()[k];
+      const double error = error_along(directions.col(k)) / std::sqrt(1.0 + std::max(0.0, tells));
+      (error < greatest_error ? known : unknown).push_back(k);
+      if (error < greatest_error && tells < least_information) weak.push_back(k);
+    }
     free_ = directions(Eigen::all, known);
     held_ = directions(Eigen::all, unknown);
+    weak_ = directions(Eigen::all, weak);
+  }
+
+  /// What the flights leave open is chosen so that delta-p changes least over the flights: its level stays that
+  /// of the start, also where coefficients that are known go with one that is not.
+  Eigen::MatrixXd level_held() const {
+    const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(count_, count_);
+    if (held_.cols() == 0) return identity;
+    Eigen::MatrixXd squares = held_.transpose() * defects_ * held_;
+    squares.diagonal().array() += 1e-9 * std::max(squares.trace(), 1e-300);
+    return identity - held_ * squares.ldlt().solve(held_.transpose() * defects_);
   }
 
   /// A step of the coefficients to where the flights and the prior want them.
@@ -280,6 +297,7 @@ class GpsSolver {
     const Eigen::VectorXd now = values_(wanted_);
     from.head(count_) = now - before_.values;
     change_ = posterior_ * (equations_.right + equations_.matrix * from);
+    change_.head(count_) = level_held() * change_.head(count_);
     for (Eigen::Index k = 0; k < count_; ++k) {
       const std::size_t p = wanted_[static_cast<std::size_t>(k)];
       const Bounds& bounds = task_.parameters[p].bounds;
@@ -288,6 +306,11 @@ class GpsSolver {
     }
   }
 
+  double error_along(const Eigen::VectorXd& direction) const {
+    return error_of(direction * direction.transpose());
+  }
+
+  /// Of delta-p, hPa, rms over the flights.
   double error_of(const Eigen::MatrixXd& covariance) const {
     if (samples_ == 0) return 0.0;
     return std::sqrt(std::max(0.0, (defects_ * covariance).trace() / static_cast<double>(samples_)));
@@ -314,9 +337,10 @@ class GpsSolver {
     const Eigen::MatrixXd drawn = Eigen::MatrixXd::Identity(shared(), shared()) - gain;
     const Eigen::MatrixXd sandwich =
         posterior_ * scores * posterior_.transpose() + drawn * prior * drawn.transpose();
-    fit.by_noise = posterior_.topLeftCorner(count_, count_);
+    const Eigen::MatrixXd level = level_held();
+    fit.by_noise = level * posterior_.topLeftCorner(count_, count_) * level.transpose();
     fit.kept = drawn.topLeftCorner(count_, count_);
-    const Eigen::MatrixXd by_scatter = sandwich.topLeftCorner(count_, count_);
+    const Eigen::MatrixXd by_scatter = level * sandwich.topLeftCorner(count_, count_) * level.transpose();
     fit.jackknife = by_scatter.diagonal().cwiseMax(0.0).cwiseSqrt();
     fit.covariance = error_of(by_scatter) > error_of(fit.by_noise) ? by_scatter : fit.by_noise;
     if (held_.cols() > 0) {
@@ -353,27 +377,38 @@ class GpsSolver {
     });
   }
 
-  void add_notes(GpsFit& fit) const {
-    if (held_.cols() > 0) {
-      std::vector<std::string> names;
-      for (Eigen::Index h = 0; h < held_.cols(); ++h) {
-        const Eigen::VectorXd shares = held_.col(h).cwiseQuotient(prior_deviation_).cwiseAbs2();
-        std::vector<std::string> some;
-        constexpr double much = 0.1;
-        for (Eigen::Index k = 0; k < count_; ++k) {
-          if (shares[k] > much) some.push_back(task_.parameters[wanted_[static_cast<std::size_t>(k)]].name);
-        }
-        names.push_back(fmt::format("{}", fmt::join(some, " against ")));
+  /// "static-constant.a0 against static-qp.a2"
+  std::string names_of(const Eigen::MatrixXd& directions) const {
+    constexpr double much = 0.1;
+    std::vector<std::string> names;
+    for (Eigen::Index h = 0; h < directions.cols(); ++h) {
+      const Eigen::VectorXd shares = directions.col(h).cwiseQuotient(prior_deviation_).cwiseAbs2();
+      std::vector<std::string> some;
+      for (Eigen::Index k = 0; k < count_; ++k) {
+        if (shares[k] > much) some.push_back(task_.parameters[wanted_[static_cast<std::size_t>(k)]].name);
       }
+      names.push_back(fmt::format("{}", fmt::join(some, " against ")));
+    }
+    return fmt::format("{}", fmt::join(names, "; "));
+  }
+
+  void add_notes(GpsFit& fit) const {
+    const std::string_view what_tells =
+        has(GpsKind::wind)
+            ? "four circles of one bank, or reverse headings, for the level; a speed run for the change with "
+              "the airspeed; a pitch manoeuvre for the attack term"
+            : "--reference wind with circles or reverse headings, for the level; a speed run or a pitch "
+              "manoeuvre for the rest";
+    if (held_.cols() > 0) {
       fit.notes.push_back(
-          fmt::format("the flights do not determine {}: held at the start, with an error of delta-p of {:.2f} "
-                      "hPa; what would tell: {}",
-                      fmt::join(names, "; "), fit.held,
-                      has(GpsKind::wind)
-                          ? "four circles of one bank, or reverse headings, for the level; a speed run for "
-                            "the change with the airspeed; a pitch manoeuvre for the attack term"
-                          : "--reference wind with circles or reverse headings, for the level; a speed run "
-                            "or a pitch manoeuvre for the rest"));
+          fmt::format("the flights do not determine {}: there delta-p is held as near to that of the start as "
+                      "the rest allows, with an error of {:.2f} hPa; what would tell: {}",
+                      names_of(held_), fit.held, what_tells));
+    }
+    if (weak_.cols() > 0) {
+      fit.notes.push_back(fmt::format(
+          "the flights hardly determine {}: held near the start; what would tell: {}", names_of(weak_),
+          what_tells));
     }
     if (std::abs(fit.thermometer) > 2.0 * fit.thermometer_error) {
       fit.notes.push_back(fmt::format("the thermometer reads {} by {:.2f} +- {:.2f} K, by GPS",
@@ -395,6 +430,7 @@ class GpsSolver {
   std::size_t samples_ = 0;
   Eigen::MatrixXd free_{};       // directions that the flights determine, one deviation of the prior long
   Eigen::MatrixXd held_{};       // the others
+  Eigen::MatrixXd weak_{};       // those of the first that hardly leave the start
   Eigen::MatrixXd posterior_{};  // covariance of coefficients and shared nuisances
   Eigen::VectorXd change_{};     // of the coefficients from before; of nuisances their values
 };

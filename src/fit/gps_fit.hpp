@@ -35,8 +35,9 @@ bool is_by_gps(const Reference& reference);
 
 /// Fits the wanted coefficients to GPS: maximum a posteriori, with the latent processes of `GpsNoise` and the
 /// nuisances of `gps_nuisances`. Without other references each coefficient has a prior about its start, some
-/// typical sizes of its effect wide; directions of which the flights tell less than three times as much as
-/// that prior are held at their start, and their error is that of the prior, or as the file states it.
+/// typical sizes of its effect wide. Directions in which the error of delta-p would be above 1 hPa are held:
+/// delta-p stays there as near to that of the start as the rest allows, and the error is that of the prior, or
+/// as the file states it.
 ///
 /// The stated covariance is that of the model, or that of the scatter of parts of five minutes (a sandwich),
 /// whichever has the larger error of delta-p.
