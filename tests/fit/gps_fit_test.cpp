@@ -1,0 +1,124 @@
+#include <gmock/gmock.h>
+#include <pcor/campaign/chosen_references.hpp>
+#include <pcor/fit/refit.hpp>
+#include <pcor/simulate/simulate.hpp>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "support/temporary_directory.hpp"
+
+using pcor::FittedParameter;
+using pcor::ModelFile;
+using pcor::RefitResult;
+using testing::Contains;
+using testing::HasSubstr;
+
+namespace {
+
+const std::filesystem::path scenarios = std::filesystem::path(PCOR_SOURCE_DIR) / "data" / "scenarios";
+
+std::string text_of(const std::string& scenario) {
+  std::ifstream file(scenarios / (scenario + ".toml"));
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// A simulated flight, kept for all tests.
+std::filesystem::path flight(const std::string& scenario, const std::string& more = "") {
+  static const pcor::test::TemporaryDirectory directory;
+  const std::filesystem::path path =
+      directory / (scenario + std::to_string(std::hash<std::string>()(more)) + ".nc");
+  if (!std::filesystem::exists(path))
+    pcor::simulate_flight(pcor::parse_scenario(text_of(scenario) + more, scenario), path);
+  return path;
+}
+
+const std::string warm_thermometer = "\n[noise]\nTTRR = { rms = 0.03, bias = 0.3 }\n";
+
+ModelFile law() { return pcor::read_model(scenarios / "models" / "c130-psfd-eq18.toml"); }
+
+ModelFile no_law() {
+  ModelFile model = law();
+  for (auto& effect : model.model.effects) effect.parameters[0] = 0.0;
+  return model;
+}
+
+RefitResult fit(const std::filesystem::path& path, const ModelFile& model,
+                const std::vector<std::string>& references) {
+  return pcor::refit({path}, model, pcor::read_references(references, model, {}).used);
+}
+
+constexpr double pressure = 700.0, dynamic = 60.0, ratio = -0.18;  // of usual flight
+
+/// By how much delta-p of the fit is off in usual flight, hPa.
+double error_of(const RefitResult& fit) {
+  const std::vector<ModelFile> models{fit.model, law()};
+  std::vector<double> defects;
+  for (const ModelFile& each : models) {
+    const auto& effects = each.model.effects;
+    defects.push_back(effects[0].parameters[0] * pressure + effects[1].parameters[0] * pressure * ratio +
+                      effects[2].parameters[0] * dynamic);
+  }
+  return defects[0] - defects[1];
+}
+
+/// Its standard error, as stated.
+double stated_by(const RefitResult& fit) {
+  const std::vector<double> by{pressure, pressure * ratio, dynamic};
+  double square = 0.0;
+  for (std::size_t i = 0; i < by.size(); ++i) {
+    for (std::size_t j = 0; j < by.size(); ++j) square += by[i] * fit.covariance[i][j] * by[j];
+  }
+  return std::sqrt(square);
+}
+
+}  // namespace
+
+TEST(GpsFit, FindsTheLawByTheWind) {
+  const RefitResult result = fit(flight("c130-eq18"), no_law(), {"wind"});
+  EXPECT_LT(std::abs(error_of(result)), 0.4);
+  EXPECT_LT(std::abs(error_of(result)), 3.0 * stated_by(result));
+  EXPECT_LT(stated_by(result), 0.25);
+}
+
+TEST(GpsFit, FindsTheLawAndTheThermometerByWindAndHeight) {
+  const RefitResult result =
+      fit(flight("c130-eq18", warm_thermometer), no_law(), {"wind", "height"});
+  EXPECT_LT(std::abs(error_of(result)), 0.3);
+  EXPECT_LT(std::abs(error_of(result)), 3.0 * stated_by(result));
+  EXPECT_THAT(result.notes, Contains(HasSubstr("the thermometer reads high by 0.")));
+}
+
+TEST(GpsFit, HoldsWhatOneHeadingLeavesOpen) {
+  const RefitResult result = fit(flight("c130-one-heading"), law(), {"wind"});
+  EXPECT_LT(std::abs(error_of(result)), 0.3) << "the law was right";
+  EXPECT_GT(stated_by(result), 1.0);
+  EXPECT_THAT(result.notes, Contains(HasSubstr("circles")));
+}
+
+TEST(GpsFit, HeightSaysNothingOfTheLevel) {
+  const RefitResult result = fit(flight("c130-eq18", warm_thermometer), law(), {"height"});
+  EXPECT_LT(std::abs(error_of(result)), 0.1) << "the law was right";
+  EXPECT_GT(stated_by(result), 1.0);
+  EXPECT_TRUE(result.worse.empty());
+}
+
+TEST(GpsFit, GoesWithALaser) {
+  const RefitResult laser = fit(flight("c130-circles"), no_law(), {"lams"});
+  const RefitResult all = fit(flight("c130-circles"), no_law(), {"wind", "lams"});
+  EXPECT_LT(std::abs(error_of(all)), 3.0 * stated_by(all));
+  EXPECT_LE(stated_by(all), stated_by(laser));
+  EXPECT_EQ(all.flights.front().reference, "lams") << "single figures are those of the laser";
+}
+
+TEST(GpsFit, RefusesStages) {
+  const ModelFile model = law();
+  pcor::RefitOptions options;
+  options.stages.push_back({{pcor::Regime::speed_run}, {"static-qp"}});
+  EXPECT_ANY_THROW(pcor::refit({flight("c130-circles")}, model,
+                               pcor::read_references({"wind"}, model, {}).used, options));
+}
