@@ -238,6 +238,7 @@ class Look {
       result_.intervals = samples->intervals;
       for (const std::string& note : samples->notes) result_.notes.push_back(note);
       result_.samples = samples;
+      result_.by_gps = gps_design(flight_, *result_.model);
     } catch (const Error& error) {
       if (error.code() == Error::Code::file) throw;
       result_.notes.emplace_back(error.what());

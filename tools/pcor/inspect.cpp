@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <string>
@@ -76,6 +77,10 @@ nlohmann::ordered_json as_json(const Inspection& flight) {
     result["regimes"].push_back({{"name", std::string(facts_of(interval.regime).name)},
                                  {"begin", utc_text(interval.begin, iso_time)},
                                  {"end", utc_text(interval.end, iso_time)}});
+  }
+  if (flight.by_gps) {
+    const GpsDesign& gps = *flight.by_gps;
+    result["determines"] = {{"level", gps.level}, {"slope", gps.slope}, {"attack", gps.attack}};
   }
   result["laws"] = nlohmann::ordered_json::array();
   for (const LawOfFlight& law : flight.laws) {
@@ -159,11 +164,27 @@ void print_flown(const Inspection& flight) {
   }
 }
 
+void print_by_gps(const GpsDesign& gps) {
+  constexpr double known = 1.0;  // hPa
+  const auto text = [](double error, const char* manoeuvre) {
+    if (std::isnan(error)) return std::string("-");
+    return error < known ? fmt::format("+-{:.2f} hPa", error) : fmt::format("open; {} would tell", manoeuvre);
+  };
+  say("\nby GPS ({}) its manoeuvres determine of delta-p\n",
+      gps.by_wind && gps.by_height ? "wind and height"
+      : gps.by_wind                ? "wind"
+                                   : "height");
+  say("  the level                     {}\n", text(gps.level, "circles or reverse headings"));
+  say("  its change with the airspeed  {}\n", text(gps.slope, "a speed run"));
+  say("  its change with the attack    {}\n", text(gps.attack, "a pitch manoeuvre"));
+}
+
 void print(const Inspection& flight) {
   print_head(flight);
   print_roles(flight);
   print_missing(flight);
   print_flown(flight);
+  if (flight.by_gps) print_by_gps(*flight.by_gps);
   if (!flight.laws.empty()) say("\nlaws for this aircraft\n");
   for (const LawOfFlight& law : flight.laws) {
     say("  {}: {}{}\n", law.path.stem().string(), law.model.model.name,

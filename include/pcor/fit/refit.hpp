@@ -151,8 +151,7 @@ struct RefitResult {
 ///
 /// Coefficients: least squares with Huber's loss of residuals in bins of four seconds, each bin weighted by
 /// the root of its samples, each reference by the robust deviation of its residuals. Slow misfit of the law
-/// is not taken for drift: the correction is the best one over all that was flown. References of many samples
-/// (wind, heights) are whitened by their noise, since their level is not seen otherwise. From the
+/// is not taken for drift: the correction is the best one over all that was flown. From the
 /// coefficients of the file the linear problem is solved in closed form; then Ceres does the full one, with
 /// bounds and loss. Every pass reduces each flight to a triangular factor, and the factors add up.
 ///
@@ -161,6 +160,11 @@ struct RefitResult {
 /// likelihood) and the covariance F of the misfit of the law (`RefitResult::left`), and what the coefficients
 /// would be if the reference and the thermometer were calibrated otherwise (`RefitOptions::trust_reference`);
 /// beside each stands that of a jackknife.
+///
+/// Wind and heights are fitted after the other references, by a likelihood with winds, D-value and errors of
+/// GPS as processes beside the law (docs/gps.md). What the others found, with its covariance, is the prior;
+/// without others the typical sizes of the effects are, about the start, and what the flights leave open by
+/// more than 1 hPa is held.
 ///
 /// @throws Error if a flight cannot be read, nothing is free, no sample is left (with the masks), samples are
 /// fewer than coefficients, bounds leave nothing, or coefficients cannot be told apart on these flights: the

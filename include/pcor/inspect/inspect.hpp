@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <pcor/flight/flight.hpp>
+#include <pcor/inspect/gps_design.hpp>
 #include <pcor/laws/model_file.hpp>
 #include <pcor/regimes/regimes.hpp>
 #include <pcor/residuals/samples.hpp>
@@ -59,6 +60,7 @@ struct Inspection {
       frozen{};  ///< sensors that stand still in flight, for longer than their noise allows
   std::vector<Interval> intervals{};  ///< what was flown; empty without pressures
   std::vector<LawOfFlight> laws{};    ///< for this aircraft, those that fit first
+  std::optional<GpsDesign> by_gps{};  ///< what its manoeuvres determine; none without pressures and GPS
   std::vector<std::string> notes{};
   std::optional<ModelFile>
       model{};  ///< ready to run: the roles, and terms that a refit finds; none without pressures

@@ -1,0 +1,93 @@
+#include <pcor/inspect/gps_design.hpp>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <vector>
+
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/residuals/residuals.hpp>
+#include <pcor/words/error.hpp>
+#include "campaign/gps_noise.hpp"
+#include "campaign/gps_rows.hpp"
+#include "numerics/missing.hpp"
+#include "numerics/triangular_factor.hpp"
+
+namespace pcor {
+
+using namespace internal;
+
+namespace {
+
+constexpr double prior_in_typical_sizes = 1.25;
+
+/// The error of delta-p by some of the coefficients about their mean effect, hPa, rms.
+double error_about_mean(const Eigen::MatrixXd& defects, const Eigen::MatrixXd& covariance,
+                        const std::vector<Eigen::Index>& some) {
+  if (some.empty()) return nan;
+  const Eigen::MatrixXd columns = defects(Eigen::all, some);
+  const Eigen::MatrixXd off = columns.rowwise() - columns.colwise().mean();
+  const Eigen::MatrixXd part = covariance(some, some);
+  return std::sqrt((off * part).cwiseProduct(off).sum() / static_cast<double>(off.rows()));
+}
+
+}  // namespace
+
+std::optional<GpsDesign> gps_design(const Flight& flight, const ModelFile& model) {
+  std::vector<Eigen::Index> with_attack;
+  std::vector<Eigen::Index> with_speed;
+  std::vector<double> deviations;
+  for (const ModelEffect& effect : model.model.effects) {
+    if (effect.is_formula()) return std::nullopt;
+    const EffectFacts& facts = effect_facts[effect_named(effect.id)];
+    for (std::size_t p = 0; p < effect.parameters.size(); ++p) {
+      const Eigen::Index place = as_index(deviations.size());
+      const bool by_attack = effect.id == "static-alpha" || effect.id == "static-attack";
+      if (by_attack)
+        with_attack.push_back(place);
+      else
+        with_speed.push_back(place);
+      deviations.push_back(prior_in_typical_sizes * std::abs(facts.parameters[p].typical));
+    }
+  }
+  const Eigen::Index count = as_index(deviations.size());
+  for (const GpsNuisance& nuisance : gps_nuisances) deviations.push_back(nuisance.deviation);
+  std::vector<std::size_t> wanted(static_cast<std::size_t>(count));
+  std::iota(wanted.begin(), wanted.end(), 0);
+  GpsDesign design;
+  Eigen::MatrixXd defects;
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(as_index(deviations.size()), as_index(deviations.size()));
+  for (std::size_t k = 0; k < deviations.size(); ++k)
+    information(as_index(k), as_index(k)) = 1.0 / (deviations[k] * deviations[k]);
+  for (const GpsKind kind : {GpsKind::wind, GpsKind::height}) {
+    try {
+      const auto reference = kind == GpsKind::wind ? wind_reference(model) : height_reference(model);
+      const auto samples = std::make_shared<FlightSamples>(read_samples(flight, model, *reference));
+      const Residuals residuals(samples, model, *reference);
+      std::vector<std::size_t> used;
+      for (std::size_t i = 0; i < residuals.size(); ++i) {
+        if (residuals.mask()[i] == Mask::none) used.push_back(i);
+      }
+      const GpsRows rows = gps_rows(kind, *samples, model, used, residuals.parameters().data(), wanted);
+      if (rows.defect.rows() == 0) continue;
+      const WhiteRows white = GpsNoise(kind).white(rows, Eigen::VectorXd::Zero(rows.rows.rows()));
+      const auto columns = white.rows.leftCols(information.cols());
+      information.noalias() += columns.transpose() * columns;
+      defects = rows.defect;
+      (kind == GpsKind::wind ? design.by_wind : design.by_height) = true;
+    } catch (const Error& error) {
+      if (error.code() == Error::Code::file) throw;
+    }
+  }
+  if (!design.by_wind && !design.by_height) return std::nullopt;
+  const Eigen::MatrixXd covariance =
+      information.ldlt().solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
+  const Eigen::RowVectorXd mean = defects.colwise().mean();
+  design.level = std::sqrt(mean * covariance.topLeftCorner(count, count) * mean.transpose());
+  design.slope = error_about_mean(defects, covariance, with_speed);
+  design.attack = error_about_mean(defects, covariance, with_attack);
+  return design;
+}
+
+}  // namespace pcor
