@@ -367,6 +367,7 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelFile& model, const R
     result.estimator = refit_estimator_of_gps;
   }
   FitFlights& flights = *fitted.flights;  // with masks of the solution
+  if (gps) result.defect_error = gps->stated;
   result.reference_text = reference_text(flights);
   result.masks = flights.masks();
   result.jackknife_parts = covariance.blocks;

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <pcor/compare/comparison_report.hpp>
+#include <pcor/fit/refit.hpp>
 #include <pcor/words/utc.hpp>
 #include "comparison.hpp"
 #include "flight_table.hpp"
@@ -234,6 +236,33 @@ void write_flight_table(const Comparison& comparison, const std::string& path) {
   table.write(path);
 }
 
+using Levels = std::vector<std::optional<LevelByGps>>;
+
+/// What delta-p of each model lacks in the mean by GPS, where that was asked for.
+Levels levels_by_gps(const FlightSet& flights, const std::vector<Contender>& contenders,
+                     const Options& options) {
+  Levels levels(contenders.size());
+  if (options.comparison.references.empty()) return levels;  // all that there are take part: GPS takes seconds
+  const MaskOptions mask = mask_options(options.comparison);
+  for (std::size_t i = 0; i < contenders.size(); ++i)
+    levels[i] = level_by_gps(flights, contenders[i].model, contenders[i].references, mask);
+  return levels;
+}
+
+void print(const Levels& levels, const std::vector<Contender>& contenders) {
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    if (!levels[i]) continue;
+    constexpr double known = 1.0;  // hPa
+    if (levels[i]->standard_error < known)
+      say("{}: by GPS delta-p lacks {:+.2f} +- {:.2f} hPa in the mean\n", contenders[i].name,
+          levels[i]->missing, levels[i]->standard_error);
+    else
+      say("{}: these flights do not tell by GPS what delta-p lacks in the mean; circles or reverse headings "
+          "with --reference wind would\n",
+          contenders[i].name);
+  }
+}
+
 std::string history_of(const Options& options) {
   std::string line = "pcor " PCOR_VERSION " compare " + command_line(options.comparison);
   for (const std::string& model : options.models) line += " -m " + shell_word(model);
@@ -276,6 +305,7 @@ void run(const Options& options) {
     compare_options.progress = [&bar](std::size_t done, std::size_t total) { bar.show(done, total); };
     comparison = compare(flights, contenders, compare_options);
   }
+  const Levels levels = levels_by_gps(flights, contenders, options);
   if (!is_speaker()) return;
   OutputsTogether together;
   if (!options.residuals.empty()) {
@@ -287,9 +317,17 @@ void run(const Options& options) {
     write_report_of_run(comparison_report(comparison), {options.models, options.comparison.flights, {}},
                         options.common);
   if (!options.table.empty()) write_flight_table(comparison, options.table);
-  json.write(as_json(comparison));
+  nlohmann::ordered_json result = as_json(comparison);
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    if (levels[i])
+      result["models"][i]["by_gps"] = {{"missing_hpa", levels[i]->missing},
+                                       {"stderr_hpa", levels[i]->standard_error}};
+  }
+  json.write(result);
   together.appear();
-  if (wants_text(options.common)) print(comparison, references, options);
+  if (!wants_text(options.common)) return;
+  print(levels, contenders);
+  print(comparison, references, options);
 }
 
 }  // namespace

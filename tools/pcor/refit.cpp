@@ -140,6 +140,7 @@ nlohmann::ordered_json as_json(const RefitResult& result) {
   json["noise_rms_hpa"] = result.noise_rms;
   json["drift_rms_hpa"] = result.drift_rms;
   add_fit_summary(json, result);
+  if (result.defect_error > 0.0) json["delta_p_stderr_hpa"] = result.defect_error;
   json["r2"] = result.r_squared;
   json["samples"] = result.samples;
   json["outliers"] = result.outliers;
@@ -202,6 +203,8 @@ void print_result(const RefitResult& result, const ChosenReferences& references)
         std::isnan(p.jackknife_error) ? "" : fmt::format("{:.3g}", p.jackknife_error);
     say("{:<36} {:>13.6g} {:>13.6g} {:>13} {:>13}  {}\n", p.name, p.start, p.value, error, jackknife, p.unit);
   }
+  if (result.defect_error > 0.0)
+    say("\nstandard error of delta-p over the flights: {:.2f} hPa\n", result.defect_error);
   say("\nrms {:.3f} hPa ({:.5f} of p), before {:.3f}; robust standard deviation {:.3f}; noise {:.3f} hPa; {} "
       "outliers\n",
       result.rms, result.rms_over_pressure, result.rms_before, result.bulk_rms, result.noise_rms,

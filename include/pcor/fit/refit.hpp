@@ -136,6 +136,9 @@ struct RefitResult {
   std::vector<FlightFit> further{};  ///< the same with each further reference, flight by flight
   Statistics
       flaps_out;  ///< of samples that are in no fit because flaps are out, with the fitted coefficients
+  /// Standard error of delta-p over the flights by all fitted coefficients, hPa, rms, where wind or height is
+  /// among the references; else zero.
+  double defect_error = 0.0;
   std::string reference_text{};
   std::string_view estimator = refit_estimator;
   /// Why the model should not be used: the fit is worse than the coefficients of the file, or a held-out part
@@ -171,6 +174,18 @@ struct RefitResult {
 /// message names them and says which to fix.
 RefitResult refit(const FlightSet& flights, const ModelFile& model, const References& references,
                   const RefitOptions& options = {});
+
+/// By how much delta-p of a model is off in the mean, hPa.
+struct LevelByGps {
+  double missing = 0.0;         ///< is to be added to delta-p
+  double standard_error = 0.0;  ///< above 1 hPa: the flights do not tell
+};
+
+/// The constant part of the pressure that delta-p of the model lacks by GPS, all else as the model has it: by
+/// the same likelihood as `refit`. Nothing where wind and height are not among the references.
+/// @throws Error as `refit`
+std::optional<LevelByGps> level_by_gps(const FlightSet& flights, const ModelFile& model,
+                                       const References& references, const MaskOptions& mask = {});
 
 /// The coefficients as each flight alone finds them, without held-out flights; none of a flight that cannot
 /// tell them.

@@ -1,0 +1,41 @@
+#include <pcor/fit/refit.hpp>
+
+#include <algorithm>
+#include <iterator>
+#include <string>
+
+#include <pcor/effects/catalogue.hpp>
+#include <pcor/roles/with_effects.hpp>
+#include "fit/gps_fit.hpp"
+
+namespace pcor {
+
+using namespace internal;
+
+std::optional<LevelByGps> level_by_gps(const FlightSet& flights, const ModelFile& model,
+                                       const References& references, const MaskOptions& mask) {
+  References gps;
+  std::copy_if(references.begin(), references.end(), std::back_inserter(gps),
+               [](const auto& reference) { return is_by_gps(*reference); });
+  if (gps.empty()) return std::nullopt;
+  const std::string constant = "static-constant";
+  const auto is_constant = [&constant](const ModelEffect& effect) { return effect.id == constant; };
+  const auto& effects = model.model.effects;
+  const bool has_it = std::any_of(effects.begin(), effects.end(), is_constant);
+  const ModelFile with = has_it ? model : with_effects(model, {neutral_effect(constant)});
+  RefitOptions options;
+  options.mask = mask;
+  for (const ModelEffect& effect : effects) {
+    if (!is_constant(effect)) options.fix.push_back(effect.id);
+  }
+  options.free.push_back(constant);
+  const RefitResult found = refit(flights, with, gps, options);
+  for (const FittedParameter& parameter : found.parameters) {
+    if (!parameter.fitted || !(parameter.standard_error > 0.0)) continue;
+    const double pressure = found.defect_error / parameter.standard_error;
+    return LevelByGps{pressure * (parameter.value - parameter.start), found.defect_error};
+  }
+  return std::nullopt;
+}
+
+}  // namespace pcor
