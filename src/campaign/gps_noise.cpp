@@ -66,7 +66,8 @@ WhiteRows white_wind(const Eigen::VectorXd& sizes, const GpsRows& rows, const Ei
     if (passed > 0.0) {
       for (int component = 0; component < 2; ++component) {
         const int first = component * of_each;
-        for (int g = 0; g < 3; ++g) stays[first + g] = stays_for(passed, gust_times[static_cast<std::size_t>(g)]);
+        for (int g = 0; g < 3; ++g)
+          stays[first + g] = stays_for(passed, gust_times[static_cast<std::size_t>(g)]);
         stays[first + 3] = stays_for(passed, sizes[drift_time]);
         stays[first + 4] = 1.0;
       }
@@ -80,8 +81,9 @@ WhiteRows white_wind(const Eigen::VectorXd& sizes, const GpsRows& rows, const Ei
       const int first = component * of_each;
       States by = States::Zero();
       for (int g = 0; g < 3; ++g) {
-        by[first + g] = sizes[gusts] * std::sqrt(rows.level[sample] *
-                                                 std::pow(gust_times[static_cast<std::size_t>(g)], 2.0 / 3.0));
+        by[first + g] =
+            sizes[gusts] *
+            std::sqrt(rows.level[sample] * std::pow(gust_times[static_cast<std::size_t>(g)], 2.0 / 3.0));
       }
       by[first + 3] = by[first + 4] = 1.0;
       const double across = component == 0 ? rows.north[sample] : -rows.east[sample];
@@ -118,9 +120,8 @@ WhiteRows white_height(const Eigen::VectorXd& sizes, const GpsRows& rows, const 
                           sizes[value_with_height] * sizes[value_with_height] * std::abs(rise) + walked;
       walked = 0.0;
       filter.couple(0, 2, rise * rows.warmth[sample]);
-      filter.pass({1.0, gps_stays, warmth_stays},
-                  {walk, variance[1] * (1.0 - gps_stays * gps_stays),
-                   variance[2] * (1.0 - warmth_stays * warmth_stays)});
+      filter.pass({1.0, gps_stays, warmth_stays}, {walk, variance[1] * (1.0 - gps_stays * gps_stays),
+                                                   variance[2] * (1.0 - warmth_stays * warmth_stays)});
     }
     if (std::isnan(rows.rows(i, last))) continue;
     filter.read(i, rows.rows.row(i), States(1.0, 1.0, 0.0), noise + more[i]);
@@ -163,8 +164,7 @@ class Likelihood final : public ceres::FirstOrderFunction {
 
 GpsNoise::GpsNoise(GpsKind kind)
     : kind_(kind), logarithms_(as_index(kind == GpsKind::wind ? wind_sizes.size() : height_sizes.size())) {
-  for (Eigen::Index k = 0; k < logarithms_.size(); ++k)
-    logarithms_[k] = std::log(size_of(kind, k).median);
+  for (Eigen::Index k = 0; k < logarithms_.size(); ++k) logarithms_[k] = std::log(size_of(kind, k).median);
 }
 
 WhiteRows GpsNoise::white_at(const Eigen::VectorXd& logarithms, const GpsRows& rows,
@@ -182,7 +182,7 @@ double GpsNoise::cost(const Eigen::VectorXd& logarithms, const GpsRows& rows, co
   const WhiteRows white = white_at(logarithms, rows, more);
   const Eigen::Index count = white.rows.cols() - 1;
   const Eigen::MatrixXd products = white.rows.transpose() * white.rows;
-  // In units of the prior the matrix is one of its own kind, whatever the units of the columns.
+  // In units of the prior the matrix does not depend on the units of the columns.
   const Eigen::VectorXd& unit = prior.deviation;
   Eigen::MatrixXd matrix = unit.asDiagonal() * products.topLeftCorner(count, count) * unit.asDiagonal();
   matrix.diagonal().array() += 1.0;
@@ -190,8 +190,7 @@ double GpsNoise::cost(const Eigen::VectorXd& logarithms, const GpsRows& rows, co
   const Eigen::VectorXd right = unit.cwiseProduct(products.col(count).head(count)) + mean;
   const Eigen::LLT<Eigen::MatrixXd> factor(matrix);
   double result = white.log_determinant + products(count, count) + mean.squaredNorm() -
-                  right.dot(factor.solve(right)) +
-                  2.0 * factor.matrixLLT().diagonal().array().log().sum();
+                  right.dot(factor.solve(right)) + 2.0 * factor.matrixLLT().diagonal().array().log().sum();
   for (Eigen::Index k = 0; k < logarithms.size(); ++k) {
     const Size& size = size_of(kind_, k);
     const double off = (logarithms[k] - std::log(size.median)) / size.deviation;

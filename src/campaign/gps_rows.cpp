@@ -155,8 +155,7 @@ class Differentiation {
     for (std::size_t first = 0; first < wanted_.size(); first += jet_width) {
       const std::size_t width = std::min<std::size_t>(jet_width, wanted_.size() - first);
       for (std::size_t p = 0; p < dual_.size(); ++p) dual_[p] = Jet(parameters_[p]);
-      for (std::size_t k = 0; k < width; ++k)
-        dual_[wanted_[first + k]].v[static_cast<Eigen::Index>(k)] = 1.0;
+      for (std::size_t k = 0; k < width; ++k) dual_[wanted_[first + k]].v[static_cast<Eigen::Index>(k)] = 1.0;
       State<Jet> state;
       law_.air(sample, dual_.data(), state);
       const Jet& pressure = state[Quantity::corrected_static_pressure];
@@ -313,8 +312,7 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelFile& file, const std
     north[i] = ground_north[i] - air.airspeed[i] * u.north;
     level_share[i] = std::hypot(u.east, u.north);
     double now = std::atan2(u.east, u.north);
-    if (!std::isnan(course_before))
-      now += 2.0 * M_PI * std::round((course_before - now) / (2.0 * M_PI));
+    if (!std::isnan(course_before)) now += 2.0 * M_PI * std::round((course_before - now) / (2.0 * M_PI));
     course[i] = now;
     if (!std::isnan(now)) course_before = now;
   }
@@ -361,15 +359,16 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelFile& file, const std
     const Angles angles = angles_at(samples.motion, heading, air.airspeed, i);
     const Direction2 raw = angles.direction();
     constexpr double small = 0.05;  // deg
-    const Direction2 by_attack =
-        angles.has_attack ? angles.direction(small) : raw;
+    const Direction2 by_attack = angles.has_attack ? angles.direction(small) : raw;
     const Direction2 by_sideslip = angles.direction(0.0, small);
     const double raw_length = std::hypot(raw.east, raw.north);
     const auto ahead = [&](const Direction2& moved) {
-      return ((moved.east - raw.east) * raw.east + (moved.north - raw.north) * raw.north) / raw_length / small;
+      return ((moved.east - raw.east) * raw.east + (moved.north - raw.north) * raw.north) / raw_length /
+             small;
     };
     const auto right = [&](const Direction2& moved) {
-      return ((moved.east - raw.east) * raw.north - (moved.north - raw.north) * raw.east) / raw_length / small;
+      return ((moved.east - raw.east) * raw.north - (moved.north - raw.north) * raw.east) / raw_length /
+             small;
     };
     const double acceleration_east = rate_at(calm_ground_east, samples.time, i);
     const double acceleration_north = rate_at(calm_ground_north, samples.time, i);
@@ -397,9 +396,8 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelFile& file, const std
   return result;
 }
 
-GpsRows height_rows(const FlightSamples& samples, const ModelFile& file,
-                    const std::vector<std::size_t>& used, const double* parameters,
-                    const std::vector<std::size_t>& wanted) {
+GpsRows height_rows(const FlightSamples& samples, const ModelFile& file, const std::vector<std::size_t>& used,
+                    const double* parameters, const std::vector<std::size_t>& wanted) {
   const ModelOnSamples law(file, samples.model);
   const Air air = air_of(samples, law, parameters);
   const std::size_t size = samples.time.size();

@@ -20,7 +20,7 @@ namespace pcor::internal {
 namespace {
 
 constexpr double prior_in_typical_sizes = 1.25;
-constexpr double greatest_error = 1.0;    // of delta-p in one direction of the coefficients, hPa
+constexpr double greatest_error = 1.0;     // of delta-p in one direction of the coefficients, hPa
 constexpr double least_information = 3.0;  // of the prior's
 constexpr double block_time = 300.0;       // s
 
@@ -84,7 +84,8 @@ class GpsSolver {
     values_(wanted_) = before.values;
     prior_deviation_.resize(count_);
     for (Eigen::Index k = 0; k < count_; ++k)
-      prior_deviation_[k] = prior_in_typical_sizes * task_.parameters[wanted_[static_cast<std::size_t>(k)]].typical;
+      prior_deviation_[k] =
+          prior_in_typical_sizes * task_.parameters[wanted_[static_cast<std::size_t>(k)]].typical;
   }
 
   GpsFit solve() {
@@ -133,8 +134,7 @@ class GpsSolver {
     if (state.outliers.size() != rows.rows.rows()) state.outliers = Eigen::VectorXd::Zero(rows.rows.rows());
     GpsPrior prior = flight_prior();
     if (!state.noise) state.noise.emplace(kind);
-    if ((prior.deviation.array() <= 0.0).any())
-      widen(prior, state.noise->white(rows, state.outliers).rows);
+    if ((prior.deviation.array() <= 0.0).any()) widen(prior, state.noise->white(rows, state.outliers).rows);
     if (with_noise) state.noise->maximise(rows, state.outliers, prior);
     WhiteRows white = state.noise->white(rows, state.outliers);
     if (with_outliers && mark_outliers(white, prior, state)) white = state.noise->white(rows, state.outliers);
@@ -146,7 +146,8 @@ class GpsSolver {
         std::size_t end = i;
         while (end < size && std::floor(rows.time[end] / block_time) == static_cast<double>(block)) ++end;
         const auto some = white.rows.middleRows(first + as_index(i), as_index(end - i));
-        Eigen::MatrixXd& sum = blocks.try_emplace(block, Eigen::MatrixXd::Zero(all() + 1, all() + 1)).first->second;
+        Eigen::MatrixXd& sum =
+            blocks.try_emplace(block, Eigen::MatrixXd::Zero(all() + 1, all() + 1)).first->second;
         sum.noalias() += some.transpose() * some;
         i = end;
       }
@@ -165,8 +166,7 @@ class GpsSolver {
     const auto columns = white.rows.leftCols(count);
     Eigen::MatrixXd matrix = columns.transpose() * columns;
     matrix.diagonal() += prior.deviation.cwiseAbs2().cwiseInverse();
-    const Eigen::VectorXd best =
-        matrix.ldlt().solve(columns.transpose() * white.rows.col(count));
+    const Eigen::VectorXd best = matrix.ldlt().solve(columns.transpose() * white.rows.col(count));
     const Eigen::VectorXd news = white.rows.col(count) - columns * best;
     bool any = false;
     for (Eigen::Index i = 0; i < news.size(); ++i) {
@@ -212,7 +212,8 @@ class GpsSolver {
       for (const auto& [block, products] : blocks) sum += products;
       Eigen::MatrixXd of_own = sum.block(size, size, own, own);
       for (Eigen::Index k = 0; k < own; ++k)
-        of_own(k, k) += std::pow(gps_nuisances[static_cast<std::size_t>(gps_shared_nuisances + k)].deviation, -2);
+        of_own(k, k) +=
+            std::pow(gps_nuisances[static_cast<std::size_t>(gps_shared_nuisances + k)].deviation, -2);
       const Eigen::LDLT<Eigen::MatrixXd> solver(of_own);
       // Rows without what is best explained by the flight's own: columns less own times these.
       Eigen::MatrixXd without = Eigen::MatrixXd::Zero(all() + 1, size + 1);
@@ -225,8 +226,8 @@ class GpsSolver {
       }
       const Eigen::MatrixXd cross = sum.block(size, 0, own, size);
       equations_.matrix += sum.topLeftCorner(size, size) - cross.transpose() * solver.solve(cross);
-      equations_.right += sum.col(all()).head(size) -
-                          cross.transpose() * solver.solve(sum.block(size, all(), own, 1));
+      equations_.right +=
+          sum.col(all()).head(size) - cross.transpose() * solver.solve(sum.block(size, all(), own, 1));
     }
     for (Eigen::Index k = 0; k < count_; ++k) {
       if (prior_deviation_[k] > 0.0) continue;
@@ -257,10 +258,10 @@ class GpsSolver {
     for (Eigen::Index n = 0; n < gps_shared_nuisances; ++n)
       nuisances(n, n) += std::pow(gps_nuisances[static_cast<std::size_t>(n)].deviation, -2);
     const Eigen::MatrixXd cross = equations_.matrix.bottomLeftCorner(gps_shared_nuisances, count_);
-    const Eigen::MatrixXd information =
-        prior_deviation_.asDiagonal() *
-        (equations_.matrix.topLeftCorner(count_, count_) - cross.transpose() * nuisances.ldlt().solve(cross)) *
-        prior_deviation_.asDiagonal();
+    const Eigen::MatrixXd information = prior_deviation_.asDiagonal() *
+                                        (equations_.matrix.topLeftCorner(count_, count_) -
+                                         cross.transpose() * nuisances.ldlt().solve(cross)) *
+                                        prior_deviation_.asDiagonal();
     const SymmetricEigen eigen = symmetric_eigen(information);
     std::vector<Eigen::Index> known;
     std::vector<Eigen::Index> unknown;
@@ -277,8 +278,8 @@ class GpsSolver {
     weak_ = directions(Eigen::all, weak);
   }
 
-  /// What the flights leave open is chosen so that delta-p changes least over the flights: its level stays that
-  /// of the start, also where coefficients that are known go with one that is not.
+  /// What the flights leave open is chosen so that delta-p changes least over the flights: its level stays
+  /// that of the start, also where coefficients that are known go with one that is not.
   Eigen::MatrixXd level_held() const {
     const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(count_, count_);
     if (held_.cols() == 0) return identity;
@@ -372,9 +373,8 @@ class GpsSolver {
   }
 
   bool has(GpsKind kind) const {
-    return std::any_of(flights_.begin(), flights_.end(), [kind](const FitFlights* each) {
-      return gps_kind(each->task().reference) == kind;
-    });
+    return std::any_of(flights_.begin(), flights_.end(),
+                       [kind](const FitFlights* each) { return gps_kind(each->task().reference) == kind; });
   }
 
   /// "static-constant.a0 against static-qp.a2"
@@ -400,15 +400,15 @@ class GpsSolver {
             : "--reference wind with circles or reverse headings, for the level; a speed run or a pitch "
               "manoeuvre for the rest";
     if (held_.cols() > 0) {
-      fit.notes.push_back(
-          fmt::format("the flights do not determine {}: there delta-p is held as near to that of the start as "
-                      "the rest allows, with an error of {:.2f} hPa; what would tell: {}",
-                      names_of(held_), fit.held, what_tells));
+      fit.notes.push_back(fmt::format(
+          "the flights do not determine {}: there delta-p is held as near to that of the start as "
+          "the rest allows, with an error of {:.2f} hPa; what would tell: {}",
+          names_of(held_), fit.held, what_tells));
     }
     if (weak_.cols() > 0) {
-      fit.notes.push_back(fmt::format(
-          "the flights hardly determine {}: held near the start; what would tell: {}", names_of(weak_),
-          what_tells));
+      fit.notes.push_back(
+          fmt::format("the flights hardly determine {}: held near the start; what would tell: {}",
+                      names_of(weak_), what_tells));
     }
     if (std::abs(fit.thermometer) > 2.0 * fit.thermometer_error) {
       fit.notes.push_back(fmt::format("the thermometer reads {} by {:.2f} +- {:.2f} K, by GPS",

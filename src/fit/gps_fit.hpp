@@ -23,9 +23,9 @@ struct GpsFit {
   Eigen::VectorXd jackknife{};   ///< standard errors by the scatter of parts of the flights
   std::size_t parts = 0;         ///< of five minutes
   double condition_number = 1.0;
-  double stated = 0.0;           ///< standard error of delta-p, hPa, rms over the flights
-  double held = 0.0;             ///< of it what stands in what was held
-  double thermometer = 0.0;      ///< by how much the thermometer is too low, K
+  double stated = 0.0;       ///< standard error of delta-p, hPa, rms over the flights
+  double held = 0.0;         ///< of it what stands in what was held
+  double thermometer = 0.0;  ///< by how much the thermometer is too low, K
   double thermometer_error = 0.0;
   std::vector<std::string> notes{};
 };
@@ -36,8 +36,8 @@ bool is_by_gps(const Reference& reference);
 /// Fits the wanted coefficients to GPS: maximum a posteriori, with the latent processes of `GpsNoise` and the
 /// nuisances of `gps_nuisances`. Without other references each coefficient has a prior about its start, some
 /// typical sizes of its effect wide. Directions in which the error of delta-p would be above 1 hPa are held:
-/// delta-p stays there as near to that of the start as the rest allows, and the error is that of the prior, or
-/// as the file states it.
+/// delta-p stays there as near to that of the start as the rest allows, and the error is that of the prior,
+/// or as the file states it.
 ///
 /// The stated covariance is that of the model, or that of the scatter of parts of five minutes (a sandwich),
 /// whichever has the larger error of delta-p.

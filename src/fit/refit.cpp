@@ -170,13 +170,15 @@ Fitted fit_in_stages(const FitTask& task) {
 /// The flights as the fit reads them, at the start, for references of GPS alone.
 Fitted prepared_for_gps(const FitTask& task) {
   if (!task.options.stages.empty())
-    throw Error("--stage: a fit to GPS alone has no stages; give a further reference, or leave the stages out");
+    throw Error(
+        "--stage: a fit to GPS alone has no stages; give a further reference, or leave the stages out");
   Fitted fitted = at_start(task, fit_stages(task.parameters, {}, task.model.model.name));
   fitted.flights = std::make_unique<FitFlights>(task, FitSetup{task.start, fitted.parameters});
   if (fitted.flights->samples() == 0) {
-    throw Error(fmt::format("no sample is left for the fit: {}; see the variables of the model and "
-                            "--min-airspeed, --max-flaps, --exclude",
-                            mask_text(fitted.flights->masks())));
+    throw Error(
+        fmt::format("no sample is left for the fit: {}; see the variables of the model and "
+                    "--min-airspeed, --max-flaps, --exclude",
+                    mask_text(fitted.flights->masks())));
   }
   return fitted;
 }
@@ -376,10 +378,11 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelFile& model, const R
   result.rms = sums.rms_of(sums.squares);
   result.rms_over_pressure = sums.rms_of(sums.relative_squares);
   result.bulk_rms = sums.rms_of(sums.bulk_squares);
-  if (covariance.information > 0.0) result.samples_per_independent =
-      std::max(static_cast<double>(sums.samples) /
-                   (sums.bulk_squares / static_cast<double>(sums.samples) * covariance.information),
-               1.0);
+  if (covariance.information > 0.0)
+    result.samples_per_independent =
+        std::max(static_cast<double>(sums.samples) /
+                     (sums.bulk_squares / static_cast<double>(sums.samples) * covariance.information),
+                 1.0);
   result.r_squared = sums.r_squared(sums.squares);
   result.outliers = sums.outliers;
   const FitSums before = sums_at(flights, task.start, solution.deviation);

@@ -57,7 +57,8 @@ std::optional<GpsDesign> gps_design(const Flight& flight, const ModelFile& model
   std::iota(wanted.begin(), wanted.end(), 0);
   GpsDesign design;
   Eigen::MatrixXd defects;
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(as_index(deviations.size()), as_index(deviations.size()));
+  Eigen::MatrixXd information =
+      Eigen::MatrixXd::Zero(as_index(deviations.size()), as_index(deviations.size()));
   for (std::size_t k = 0; k < deviations.size(); ++k)
     information(as_index(k), as_index(k)) = 1.0 / (deviations[k] * deviations[k]);
   for (const GpsKind kind : {GpsKind::wind, GpsKind::height}) {

@@ -157,8 +157,7 @@ void Pilot::step(const Command& command, const Scenario::Leg& leg) {
   const double down = slips * std::sin(radians * roll_) + sinks * std::cos(radians * roll_);
   const double climbs = climb * std::sqrt(1.0 + right * right / (1.0 + down * down));
   const double pitch = std::atan(down) + std::asin(std::clamp(climbs, -1.0, 1.0));
-  const double heading =
-      direction_ - std::atan2(right, std::cos(pitch) + down * std::sin(pitch)) / radians;
+  const double heading = direction_ - std::atan2(right, std::cos(pitch) + down * std::sin(pitch)) / radians;
   const double level_speed = speed_ * std::sqrt(1.0 - climb * climb);
   const double sine = std::sin(radians * direction_);
   const double cosine = std::cos(radians * direction_);

@@ -86,8 +86,7 @@ TEST(GpsFit, FindsTheLawByTheWind) {
 }
 
 TEST(GpsFit, FindsTheLawAndTheThermometerByWindAndHeight) {
-  const RefitResult result =
-      fit(flight("c130-eq18", warm_thermometer), no_law(), {"wind", "height"});
+  const RefitResult result = fit(flight("c130-eq18", warm_thermometer), no_law(), {"wind", "height"});
   EXPECT_LT(std::abs(error_of(result)), 0.3);
   EXPECT_LT(std::abs(error_of(result)), 3.0 * stated_by(result));
   EXPECT_THAT(result.notes, Contains(HasSubstr("the thermometer reads high by 0.")));
@@ -119,6 +118,6 @@ TEST(GpsFit, RefusesStages) {
   const ModelFile model = law();
   pcor::RefitOptions options;
   options.stages.push_back({{pcor::Regime::speed_run}, {"static-qp"}});
-  EXPECT_ANY_THROW(pcor::refit({flight("c130-circles")}, model,
-                               pcor::read_references({"wind"}, model, {}).used, options));
+  EXPECT_ANY_THROW(
+      pcor::refit({flight("c130-circles")}, model, pcor::read_references({"wind"}, model, {}).used, options));
 }

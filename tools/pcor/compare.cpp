@@ -242,7 +242,8 @@ using Levels = std::vector<std::optional<LevelByGps>>;
 Levels levels_by_gps(const FlightSet& flights, const std::vector<Contender>& contenders,
                      const Options& options) {
   Levels levels(contenders.size());
-  if (options.comparison.references.empty()) return levels;  // all that there are take part: GPS takes seconds
+  if (options.comparison.references.empty())
+    return levels;  // all that there are take part: GPS takes seconds
   const MaskOptions mask = mask_options(options.comparison);
   for (std::size_t i = 0; i < contenders.size(); ++i)
     levels[i] = level_by_gps(flights, contenders[i].model, contenders[i].references, mask);

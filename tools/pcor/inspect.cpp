@@ -170,10 +170,9 @@ void print_by_gps(const GpsDesign& gps) {
     if (std::isnan(error)) return std::string("-");
     return error < known ? fmt::format("+-{:.2f} hPa", error) : fmt::format("open; {} would tell", manoeuvre);
   };
-  say("\nby GPS ({}) its manoeuvres determine of delta-p\n",
-      gps.by_wind && gps.by_height ? "wind and height"
-      : gps.by_wind                ? "wind"
-                                   : "height");
+  say("\nby GPS ({}) its manoeuvres determine of delta-p\n", gps.by_wind && gps.by_height ? "wind and height"
+                                                             : gps.by_wind                ? "wind"
+                                                                                          : "height");
   say("  the level                     {}\n", text(gps.level, "circles or reverse headings"));
   say("  its change with the airspeed  {}\n", text(gps.slope, "a speed run"));
   say("  its change with the attack    {}\n", text(gps.attack, "a pitch manoeuvre"));

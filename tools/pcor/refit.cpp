@@ -211,7 +211,8 @@ void print_result(const RefitResult& result, const ChosenReferences& references)
       result.outliers);
   say("R2 {:.4f}; condition number {:.0f}\n", result.r_squared, result.condition_number);
   if (result.samples_per_independent > 1.0) {
-    say("with memory and drift of the noise, {} samples tell as much of a mean as {:.0f} independent ones, and "
+    say("with memory and drift of the noise, {} samples tell as much of a mean as {:.0f} independent ones, "
+        "and "
         "the standard errors allow for it\n",
         result.samples, static_cast<double>(result.samples) / result.samples_per_independent);
   }

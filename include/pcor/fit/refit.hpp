@@ -102,8 +102,9 @@ inline constexpr std::string_view refit_estimator =
     "with its "
     "drift and from the misfit of the law.";
 inline constexpr std::string_view refit_estimator_of_gps =
-    "Coefficients by the likelihood of GPS, with winds, D-value, and errors of GPS and instruments as "
-    "processes beside them; errors from these or from the scatter of parts of five minutes, the larger ones.";
+    "Coefficients by maximum likelihood, with winds, D-value and errors of GPS and instruments as random "
+    "processes; errors from that likelihood or from the scatter of blocks of five minutes, the larger of "
+    "both.";
 
 struct RefitResult {
   ModelFile model;                       ///< with coefficients, standard errors, covariance and provenance
@@ -136,8 +137,8 @@ struct RefitResult {
   std::vector<FlightFit> further{};  ///< the same with each further reference, flight by flight
   Statistics
       flaps_out;  ///< of samples that are in no fit because flaps are out, with the fitted coefficients
-  /// Standard error of delta-p over the flights by all fitted coefficients, hPa, rms, where wind or height is
-  /// among the references; else zero.
+  /// Standard error of delta-p by all fitted coefficients, hPa, rms over the flights; zero without the
+  /// references wind and height.
   double defect_error = 0.0;
   std::string reference_text{};
   std::string_view estimator = refit_estimator;
@@ -165,9 +166,9 @@ struct RefitResult {
 /// beside each stands that of a jackknife.
 ///
 /// Wind and heights are fitted after the other references, by a likelihood with winds, D-value and errors of
-/// GPS as processes beside the law (docs/gps.md). What the others found, with its covariance, is the prior;
-/// without others the typical sizes of the effects are, about the start, and what the flights leave open by
-/// more than 1 hPa is held.
+/// GPS as random processes (docs/gps.md). Coefficients of the other references and their covariance are the
+/// prior; without other references the prior has the typical sizes of the effects about the start, and
+/// directions in which delta-p would have an error above 1 hPa are held.
 ///
 /// @throws Error if a flight cannot be read, nothing is free, no sample is left (with the masks), samples are
 /// fewer than coefficients, bounds leave nothing, or coefficients cannot be told apart on these flights: the
@@ -175,14 +176,14 @@ struct RefitResult {
 RefitResult refit(const FlightSet& flights, const ModelFile& model, const References& references,
                   const RefitOptions& options = {});
 
-/// By how much delta-p of a model is off in the mean, hPa.
+/// Mean error of delta-p of a model, hPa.
 struct LevelByGps {
-  double missing = 0.0;         ///< is to be added to delta-p
-  double standard_error = 0.0;  ///< above 1 hPa: the flights do not tell
+  double missing = 0.0;         ///< correction of delta-p
+  double standard_error = 0.0;  ///< above 1 hPa the level is not determined
 };
 
-/// The constant part of the pressure that delta-p of the model lacks by GPS, all else as the model has it: by
-/// the same likelihood as `refit`. Nothing where wind and height are not among the references.
+/// The constant part of the pressure that delta-p of the model lacks by GPS, with all other coefficients of
+/// the model: by the same likelihood as `refit`. Empty without the references wind and height.
 /// @throws Error as `refit`
 std::optional<LevelByGps> level_by_gps(const FlightSet& flights, const ModelFile& model,
                                        const References& references, const MaskOptions& mask = {});

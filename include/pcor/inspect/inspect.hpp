@@ -60,7 +60,7 @@ struct Inspection {
       frozen{};  ///< sensors that stand still in flight, for longer than their noise allows
   std::vector<Interval> intervals{};  ///< what was flown; empty without pressures
   std::vector<LawOfFlight> laws{};    ///< for this aircraft, those that fit first
-  std::optional<GpsDesign> by_gps{};  ///< what its manoeuvres determine; none without pressures and GPS
+  std::optional<GpsDesign> by_gps{};  ///< empty without pressures or GPS
   std::vector<std::string> notes{};
   std::optional<ModelFile>
       model{};  ///< ready to run: the roles, and terms that a refit finds; none without pressures
