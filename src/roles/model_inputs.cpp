@@ -96,13 +96,19 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelFile& file
     inputs.push_back({name, extra_quantity(i), UnitConversion()});
   }
   std::vector<std::string> flagged;
+  std::vector<std::string> without_range;
   for (const ModelInput& input : inputs) {
     flight.require_values(input.variable);
+    if (!flight.variable(input.variable).ignored_range.empty()) without_range.push_back(input.variable);
     if (!flight.variable(input.variable).flags.empty()) flagged.push_back(input.variable);
   }
   if (!flagged.empty()) {
     notes.push_back(fmt::format("samples that flags of the file call bad or missing count as missing: of {}",
                                 fmt::join(flagged, ", ")));
+  }
+  if (!without_range.empty()) {
+    notes.push_back(fmt::format("the file states what is valid in words that are no numbers, which are ignored: of {}",
+                                fmt::join(without_range, ", ")));
   }
   return inputs;
 }
