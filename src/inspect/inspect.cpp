@@ -16,6 +16,7 @@
 #include "inspect/plausibility.hpp"
 #include "roles/recorded_series.hpp"
 #include "roles/role_evidence.hpp"
+#include "residuals/ground_velocity.hpp"
 #include "roles/usual_variables.hpp"
 
 namespace pcor {
@@ -181,6 +182,8 @@ class Look {
 
   /// The best of a role, if it is sure; null where none is.
   const RoleCandidate* sure_candidate(const std::string& series) const {
+    // A Mach number of the recording system is made of the pressures, and no independent one.
+    if (series == facts_of(Quantity::mach).name) return nullptr;
     const auto found = evidence_.find(series);
     return found != evidence_.end() && is_sure(found->second) ? &found->second.front() : nullptr;
   }
@@ -208,7 +211,7 @@ class Look {
       const bool is_known = !result_.alike.empty() && !family_.names_of(name).empty() &&
                             has_any(family_.names_of(name), std::string(facts_of(role).unit));
       const bool is_chosen =
-          has(role) || is_known || role == Quantity::mach ||
+          has(role) || is_known ||
           (has_temperature && (role == Quantity::recovery_temperature || role == Quantity::ambient_temperature)) ||
           (has_humidity && (role == Quantity::vapor_pressure || role == Quantity::dew_point)) ||
           (role == Quantity::dew_point && has(Quantity::vapor_pressure)) ||
@@ -217,6 +220,13 @@ class Look {
       model.variables[role] = candidate->variable;
     }
     model.model.moist = has(Quantity::vapor_pressure) || has(Quantity::dew_point) || has(Quantity::frost_point);
+  }
+
+  /// Of a pair that the flight's own processing made, by the aircraft's names.
+  bool is_processed(const std::string& variable) const {
+    return std::any_of(family_.processed.begin(), family_.processed.end(), [&](const PressurePair& pair) {
+      return variable == pair.static_pressure || variable == pair.dynamic_pressure;
+    });
   }
 
   bool has_any(const std::vector<std::string>& names, const std::string& unit) const {
@@ -263,16 +273,26 @@ class Look {
     const bool has_heights = has(Quantity::altitude) && has(Quantity::latitude) &&
                              (has(Quantity::recovery_temperature) || has(Quantity::ambient_temperature));
     const std::string& corrected = result_.corrected_pressure;
+    const bool has_wind = has_heights && has(Quantity::heading) &&
+                          !read_ground_velocity(flight_, model).speed.values.empty();
+    std::vector<std::string>& references = result_.references;
     if (has(Quantity::lams_airspeed)) {
-      result_.reference = "lams";
+      references = {"lams"};
     } else if (model.variables.at(Quantity::static_pressure) != avionics && has_values(flight_, avionics, "hPa")) {
-      result_.reference = fmt::format("pressure:{}", avionics);
+      references = {fmt::format("pressure:{}", avionics)};
     } else if (!corrected.empty() && family_.name != aircraft_families().front().name) {
-      result_.reference = "pressure:" + corrected;
+      references = {"pressure:" + corrected};
     } else if (has_heights) {
-      result_.reference = "height";
+      if (has_wind) references.emplace_back("wind");
+      references.emplace_back("height");
     } else if (!corrected.empty() && !result_.is_corrected) {
-      result_.reference = "pressure:" + corrected;
+      references = {"pressure:" + corrected};
+    }
+    for (const auto& [role, variable] : model.variables) {
+      const bool is_input = role == Quantity::static_pressure || role == Quantity::dynamic_pressure ||
+                            role == Quantity::ambient_temperature;
+      for (const char* const name : {"PSXC", "QCXC", "ATX"})
+        result_.has_results = result_.has_results || (is_input && variable == model.output_name(name));
     }
   }
 
@@ -316,7 +336,7 @@ class Look {
       }
       if (const RoleCandidate* const candidate = sure_candidate(series); found.empty() && candidate != nullptr) {
         add_role(series, {candidate->variable});
-        result_.roles.back().why = candidate->why;
+        if (!is_processed(candidate->variable)) result_.roles.back().why = candidate->why;
         for (const RoleCandidate& each : evidence_.at(series)) {
           if (each.variable != candidate->variable) result_.roles.back().others.push_back(each.variable);
         }

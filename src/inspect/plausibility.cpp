@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -15,6 +16,7 @@
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
 #include "roles/jumps.hpp"
+#include "roles/plausible_pressure.hpp"
 #include "roles/recorded_series.hpp"
 #include "roles/resolution.hpp"
 
@@ -40,6 +42,7 @@ class Plausibility {
       : flight_(flight), model_(model), time_(record_times(flight)) {}
 
   std::vector<Problem> run() {
+    pressure();
     temperature_against_height();
     dynamic_against_airspeed();
     angles();
@@ -64,6 +67,14 @@ class Plausibility {
     std::vector<double> values;
     for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) values.push_back(of(a[i], b[i]));
     return median(std::move(values));
+  }
+
+  void pressure() {
+    const std::optional<ImpossiblePressure> wrong = impossible_pressure(flight_, model_);
+    if (!wrong) return;
+    add(model_.variables.at(Q::static_pressure), "static pressure over that of " + wrong->against, wrong->ratio, "1",
+        fmt::format("refused; state its unit in the [units] of the model{}",
+                    wrong->unit.empty() ? "" : fmt::format(", static_pressure = \"{}\"", wrong->unit)));
   }
 
   void temperature_against_height() {

@@ -9,6 +9,7 @@
 #include <pcor/words/error.hpp>
 #include <pcor/words/suggest.hpp>
 #include <pcor/words/utc.hpp>
+#include "roles/plausible_pressure.hpp"
 #include "roles/recorded_series.hpp"
 #include "roles/usual_variables.hpp"
 #include "words/quoting.hpp"
@@ -54,6 +55,7 @@ Chain chain_of(const Model& model, const std::vector<Quantity>& roles) {
 
 std::vector<ModelInput> model_inputs(const Flight& flight, const ModelFile& file, const Chain& chain,
                                      const std::vector<Quantity>& roles, std::vector<std::string>& notes) {
+  require_possible_pressure(flight, file);
   const AircraftFamily& family = family_of(file, flight);
   const auto conversion_of = [&](Quantity role) {
     const QuantityFacts& facts = facts_of(role);

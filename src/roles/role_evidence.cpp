@@ -53,7 +53,7 @@ constexpr std::array<Signs, 32> signs{{
      "sideslip differential pressure;horizontal differential pressure;beta differential pressure", "", "", -100, 100},
     {"attack", "angle attack;attack;aoa", "differential pressure rate", "", -15, 25},
     {"sideslip", "sideslip angle;sideslip;angle sideslip", "differential pressure rate", "", -15, 15},
-    {"mach", "mach number;mach", "", "", 0.05, 2.5},
+    {"mach", "mach number;mach", "squared", "", 0.05, 2.5},
     {"true_airspeed", "true airspeed;tas", "indicated calibrated", "platform_speed_wrt_air", 20, 350},
     {"altitude", "gps altitude;altitude;gps height", "pressure radar density above ground radio naca",
      "altitude", -500, 25000},

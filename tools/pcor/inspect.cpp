@@ -31,7 +31,48 @@ double rate_of(const Inspection& flight) {
   return flight.rates.empty() ? 0.0 : flight.rates.rbegin()->first / flight.time.step;
 }
 
-nlohmann::ordered_json as_json(const Inspection& flight) {
+/// A command of this program on the flight.
+std::string command(const std::string& name, const Inspection& flight, const std::string& options) {
+  return fmt::format("{} {} {}{}", program(), name, shell_word(flight.path), options);
+}
+
+/// Up to three commands to paste, in order, that end with a corrected flight and a report.
+std::vector<std::string> next_commands(const Options& options, const Inspection& flight) {
+  const std::string stamp = options.time_stamp == "begin" ? "" : " --time-stamp " + options.time_stamp;
+  const std::string output = " -o corrected.nc --report corrected.html";
+  const std::string corrected = stamp + (flight.has_results ? " --suffix _NEW" : "") + output;
+  std::string reference;
+  for (const std::string& each : flight.references) reference += " --reference " + shell_word(each);
+  if (!flight.model) return {};
+  const auto fits =
+      std::find_if(flight.laws.begin(), flight.laws.end(), [](const LawOfFlight& law) { return law.fits(); });
+  if (options.model.empty() && fits != flight.laws.end()) {
+    const std::string law = " -m " + shell_word(fits->path.stem().string());
+    return {command("process", flight, law + stamp + output),
+            command("check", flight, law + stamp + " --report check.html")};
+  }
+  std::vector<std::string> commands;
+  const std::string model = " -m " + shell_word(options.model.empty() ? "model.toml" : options.model);
+  if (options.model.empty()) {
+    const std::string roles = options.roles.empty() ? "" : " --roles " + shell_word(options.roles);
+    commands.push_back(command("inspect", flight, roles + stamp + " --write-model model.toml"));
+  }
+  if (flight.is_corrected || reference.empty()) {
+    commands.push_back(command("process", flight, model + corrected));
+    commands.push_back(reference.empty()
+                           ? command("check", flight, model + stamp + " --report check.html")
+                           : command("compare", flight,
+                                     fmt::format("{}{} --reference {} --report compare.html", model, stamp,
+                                                 shell_word(flight.references.back()))));
+  } else {
+    commands.push_back(
+        command("refit", flight, model + stamp + reference + " -o fitted.toml --report refit.html"));
+    commands.push_back(command("process", flight, " -m fitted.toml" + corrected));
+  }
+  return commands;
+}
+
+nlohmann::ordered_json as_json(const Options& options, const Inspection& flight) {
   nlohmann::ordered_json result;
   result["path"] = flight.path;
   result["aircraft"] = flight.aircraft;
@@ -54,7 +95,8 @@ nlohmann::ordered_json as_json(const Inspection& flight) {
                         {"present", role.present},
                         {"trap", role.trap},
                         {"verified", role.is_verified},
-                        {"others", role.others}};
+                        {"others", role.others},
+                        {"why", role.why}};
   }
   result["roles"] = roles;
   result["missing"] = nlohmann::ordered_json::array();
@@ -85,6 +127,23 @@ nlohmann::ordered_json as_json(const Inspection& flight) {
                               {"is_in_time", law.is_in_time},
                               {"why_not", law.why_not}});
   }
+  nlohmann::ordered_json candidates = nlohmann::ordered_json::object();
+  for (const auto& [role, all] : flight.candidates) {
+    for (const InspectedCandidate& each : all)
+      candidates[role].push_back({{"variable", each.variable}, {"score", each.score}, {"why", each.why}});
+  }
+  result["candidates"] = candidates;
+  result["not_used"] = flight.not_used;
+  result["problems"] = nlohmann::ordered_json::array();
+  for (const Problem& problem : flight.problems) {
+    result["problems"].push_back({{"variable", problem.variable},
+                                  {"kind", problem.kind},
+                                  {"times", problem.times},
+                                  {"number", problem.number},
+                                  {"unit", problem.unit},
+                                  {"action", problem.action}});
+  }
+  result["next"] = next_commands(options, flight);
   result["notes"] = flight.notes;
   return result;
 }
@@ -131,6 +190,35 @@ void print_roles(const Inspection& flight) {
   }
 }
 
+/// Variables that may play a role that none plays, or that another plays.
+void print_candidates(const Inspection& flight) {
+  std::map<std::string, std::string> role_of;
+  for (const InspectedRole& role : flight.roles) role_of[role.role] = role.variable;
+  for (const InspectedRole& role : flight.roles) {
+    if (!role.why.empty()) say("{} is {}: {}{}\n", role.variable, role.role, role.why,
+                               role.others.empty() ? "" : fmt::format("; rivals: {}", fmt::join(role.others, ", ")));
+  }
+  bool any = false;
+  for (const auto& [role, candidates] : flight.candidates) {
+    for (const InspectedCandidate& each : candidates) {
+      if (role_of.count(role) != 0) continue;
+      if (!any) say("\n{:<33} {:<12} {:>5}  what speaks for it\n", "candidates, not taken", "variable", "score");
+      any = true;
+      say("{:<33} {:<12} {:>5.2f}  {}\n", role, each.variable, each.score, each.why);
+    }
+  }
+  if (any) say("write the right one into the [variables] of the model\n");
+  if (!flight.not_used.empty()) say("\nnot used: {}\n", fmt::join(flight.not_used, ", "));
+}
+
+void print_problems(const Inspection& flight) {
+  if (!flight.problems.empty()) say("\nproblems\n");
+  for (const Problem& problem : flight.problems) {
+    say("  {}: {}, {:.4g} {}, {} UTC; {}\n", problem.variable, problem.kind, problem.number, problem.unit,
+        problem.times, problem.action);
+  }
+}
+
 void print_missing(const Inspection& flight) {
   bool any = false;
   for (const MissingRole& role : flight.missing) {
@@ -162,7 +250,9 @@ void print_flown(const Inspection& flight) {
 void print(const Inspection& flight) {
   print_head(flight);
   print_roles(flight);
+  print_candidates(flight);
   print_missing(flight);
+  print_problems(flight);
   print_flown(flight);
   if (!flight.laws.empty()) say("\nlaws for this aircraft\n");
   for (const LawOfFlight& law : flight.laws) {
@@ -175,30 +265,15 @@ void print(const Inspection& flight) {
   for (const std::string& note : flight.notes) say("\nNote: {}.\n", note);
 }
 
-/// What to do next, as a command to paste.
-std::string next_step(const Options& options, const Inspection& flight) {
-  const std::string path = shell_word(flight.path);
-  if (!flight.model)
-    return "To go on: name the variables of its pressures in the [variables] of a model "
-           "(data/models/FORMAT.md)";
-  if (!options.model.empty()) {
-    std::string reference;
-    if (flight.model->variables.count(Quantity::lams_airspeed) == 0) {
-      if (flight.corrected_pressure.empty())
-        return fmt::format("To see what else can be said of its pressures: {} check {}", program(), path);
-      reference = " --reference " + shell_word("pressure:" + flight.corrected_pressure);
-    }
-    return fmt::format("To fit a law: {} refit {} -m {} -o fitted.toml{}", program(), path,
-                       shell_word(options.model), reference);
+void print_next(const Options& options, const Inspection& flight) {
+  const std::vector<std::string> commands = next_commands(options, flight);
+  if (commands.empty()) {
+    say("To go on: name the variables of its pressures in the [variables] of a model "
+        "(data/models/FORMAT.md)\n");
+    return;
   }
-  const auto fits =
-      std::find_if(flight.laws.begin(), flight.laws.end(), [](const LawOfFlight& law) { return law.fits(); });
-  if (fits != flight.laws.end())
-    return fmt::format("To correct it by one of these laws: {} process {} -m {} -o corrected.nc", program(),
-                       path, shell_word(fits->path.stem().string()));
-  const std::string roles = options.roles.empty() ? "" : " --roles " + shell_word(options.roles);
-  return fmt::format("To have a model to start from: {} inspect {}{} --write-model model.toml", program(),
-                     path, roles);
+  say("{}\n", commands.size() == 1 ? "Next:" : "Next, in this order:");
+  for (const std::string& each : commands) say("  {}\n", each);
 }
 
 /// Looks at the flights one after the other. Where there are several, one that cannot be read ends nothing.
@@ -216,7 +291,7 @@ std::vector<Inspection> look(const Options& options, bool text, nlohmann::ordere
       tell(error.what());
       continue;
     }
-    result.push_back(as_json(all.back()));
+    result.push_back(as_json(options, all.back()));
     if (text) print(all.back());
   }
   if (all.empty()) throw Error(fmt::format("none of the {} flights can be read", options.flights.size()));
@@ -252,7 +327,7 @@ void run(const Options& options) {
   if (!text) return;
   say("\n");
   say_written({options.model, options.common.report, options.common.figures, options.common.json});
-  say("{}\n", next_step(options, first));
+  print_next(options, first);
 }
 
 }  // namespace

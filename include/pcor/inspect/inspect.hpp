@@ -74,7 +74,9 @@ struct Inspection {
   std::map<std::string, std::vector<InspectedCandidate>> candidates{};  ///< of each role, the likeliest first
   std::vector<std::string> not_used{};  ///< variables that play no role and are candidates for none
   std::vector<Problem> problems{};
-  std::string reference{};  ///< what a law can be fitted to, as `--reference` takes it: "height"; empty: nothing
+  /// What a law can be fitted to, as `--reference` takes it: "wind" and "height"; empty: nothing.
+  std::vector<std::string> references{};
+  bool has_results = false;   ///< its inputs have names that `process` gives its results
   bool is_corrected = false;  ///< the pressures of the model are corrected already
   std::string
       corrected_pressure{};  ///< the static pressure that the flight's own processing corrected; may be empty
