@@ -182,6 +182,7 @@ class Look {
 
   /// The best of a role, if it is sure; null where none is.
   const RoleCandidate* sure_candidate(const std::string& series) const {
+    if (!roles_.empty()) return nullptr;  // whose names hold has been said
     // A Mach number of the recording system is made of the pressures, and no independent one.
     if (series == facts_of(Quantity::mach).name) return nullptr;
     const auto found = evidence_.find(series);

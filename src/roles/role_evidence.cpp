@@ -37,7 +37,7 @@ constexpr std::array<Signs, 32> signs{{
     {"dynamic_pressure", "dynamic pressure;impact pressure;pitot pressure;qc",
      "static cabin attack sideslip radome vertical horizontal", "", 1, 500},
     {"recovery_temperature",
-     "recovery temperature;recovery air temperature;total temperature;total air temperature;indicated temperature",
+     "recovery temperature;recovery air temperature;total temperature;total air temperature;indicated temperature;tat",
      no_temperature, "", 180, 340},
     {"ambient_temperature",
      "ambient temperature;static air temperature;outside air temperature;air temperature;static temperature",
@@ -79,14 +79,14 @@ constexpr std::array<Signs, 32> signs{{
 }};
 
 /// What a word is short for.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 24> written_out{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 23> written_out{{
     {"temp", "temperature"},   {"press", "pressure"},    {"pres", "pressure"},     {"alt", "altitude"},
     {"lat", "latitude"},       {"lon", "longitude"},     {"long", "longitude"},    {"hdg", "heading"},
     {"spd", "speed"},          {"vel", "velocity"},      {"vert", "vertical"},     {"dyn", "dynamic"},
     {"stat", "static"},        {"dewpoint", "dew point"}, {"slip", "sideslip"},
     {"side", "sideslip"},      {"vapour", "vapor"},      {"groundspeed", "ground speed"}, {"acc", "acceleration"},
     {"accel", "acceleration"}, {"oat", "outside air temperature"},
-    {"tat", "total air temperature"}, {"sat", "static air temperature"}, {"gs", "ground speed"},
+    {"sat", "static air temperature"}, {"gs", "ground speed"},
 }};
 
 std::vector<std::string> split(std::string_view text, char at) {
@@ -105,7 +105,7 @@ bool has(const std::vector<std::string>& words, const std::string& word) {
 
 /// How well words say a phrase: 0.45 where all of a short text is the likeliest phrase, 0 where none is in it.
 double likeness(const std::vector<std::string>& words, std::string_view phrases) {
-  constexpr double full = 0.45, later_phrase = 0.01, other_word = 0.02;
+  constexpr double full = 0.45, later_phrase = 0.03, other_word = 0.02;
   double best = 0.0;
   double rank = 0.0;
   for (const std::string& phrase : split(phrases, ';')) {
