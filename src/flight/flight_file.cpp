@@ -1,11 +1,15 @@
 #include "flight/flight_file.hpp"
 
+#include <fmt/format.h>
+
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 
 #include <pcor/words/error.hpp>
+#include <pcor/words/shell_word.hpp>
 #include "flight/file_in_hand.hpp"
+#include "flight/icartt_file.hpp"
 #include "flight/netcdf_file.hpp"
 
 namespace pcor::internal {
@@ -21,6 +25,10 @@ constexpr Format formats[] = {
     {is_netcdf,
      [](const std::filesystem::path& path) -> std::unique_ptr<FlightFile> {
        return std::make_unique<NetcdfFile>(path);
+     }},
+    {is_icartt,
+     [](const std::filesystem::path& path) -> std::unique_ptr<FlightFile> {
+       return std::make_unique<IcarttFile>(path);
      }},
 };
 
@@ -48,7 +56,14 @@ std::unique_ptr<FlightFile> open_flight_file(const std::filesystem::path& path) 
   for (const Format& format : formats) {
     if (format.is_of(path)) return format.open(path);
   }
-  throw Error(Error::Code::file, path.string() + " is not a netCDF file; name one that `ncdump -k` knows");
+  if (path.extension() == ".gz")
+    throw Error(Error::Code::file,
+                fmt::format("{} is compressed; unpack it with gunzip -k {}, and name {}", path.string(),
+                            shell_word(path.string()), (path.parent_path() / path.stem()).string()));
+  throw Error(Error::Code::file,
+              path.string() +
+                  " is not a netCDF file, nor one of ICARTT; name one that `ncdump -k` knows, or whose first line "
+                  "ends in 1001");
 }
 
 }  // namespace pcor::internal
