@@ -15,6 +15,7 @@
 #include <pcor/words/utc.hpp>
 #include "inspect/plausibility.hpp"
 #include "roles/recorded_series.hpp"
+#include "roles/resolution.hpp"
 #include "roles/role_evidence.hpp"
 #include "residuals/ground_velocity.hpp"
 #include "roles/usual_variables.hpp"
@@ -106,6 +107,7 @@ class Look {
     find_unused();
     look_at_samples();
     if (result_.model) result_.problems = find_problems(flight_, *result_.model);
+    state_rounding();
     result_.laws = laws_of_flight(flight_, laws, result_.notes);
     result_.corrected_pressure = processed_static_pressure(flight_, family_);
     find_reference();
@@ -191,12 +193,27 @@ class Look {
 
   /// The pair of a file that no aircraft's names fit. What is named is this flight's own.
   bool take_pressures_by_evidence(ModelFile& model) {
-    const RoleCandidate* const static_pressure = sure_candidate("static_pressure");
-    const RoleCandidate* const dynamic_pressure = sure_candidate("dynamic_pressure");
-    if (static_pressure == nullptr || dynamic_pressure == nullptr) return false;
+    if (!roles_.empty()) return false;
+    const auto best = [this](const std::string& series) {
+      const auto found = evidence_.find(series);
+      return found == evidence_.end() ? std::vector<RoleCandidate>() : found->second;
+    };
+    const std::vector<RoleCandidate> static_pressures = best("static_pressure");
+    const std::vector<RoleCandidate> dynamic_pressures = best("dynamic_pressure");
+    if (static_pressures.empty() || dynamic_pressures.empty() ||
+        static_pressures.front().variable == dynamic_pressures.front().variable)
+      return false;
     model.roles_from.clear();
-    model.variables[Quantity::static_pressure] = static_pressure->variable;
-    model.variables[Quantity::dynamic_pressure] = dynamic_pressure->variable;
+    model.variables[Quantity::static_pressure] = static_pressures.front().variable;
+    model.variables[Quantity::dynamic_pressure] = dynamic_pressures.front().variable;
+    for (const auto* candidates : {&static_pressures, &dynamic_pressures}) {
+      if (is_sure(*candidates)) continue;
+      result_.notes.push_back(fmt::format(
+          "{} as {} is a guess: {}{}", candidates->front().variable,
+          candidates == &static_pressures ? "static_pressure" : "dynamic_pressure", candidates->front().why,
+          candidates->size() > 1 ? fmt::format("; its rival is {}: {}", (*candidates)[1].variable, (*candidates)[1].why)
+                                 : ""));
+    }
     return true;
   }
 
@@ -261,6 +278,16 @@ class Look {
       result_.notes.push_back(fmt::format(
           "the file states what is valid in words that are no numbers, which are ignored: of {}",
           fmt::join(ignored, ", ")));
+    }
+  }
+
+  /// Of coarse pressures rounding is what is known of their noise.
+  void state_rounding() {
+    if (!result_.model) return;
+    for (const Quantity role : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
+      const double step = resolution_of(read_role(flight_, *result_.model, role).values);
+      if (step >= coarse_pressure)
+        result_.model->uncertainty.roles[role] = 0.001 * std::round(1000.0 * rounding_of(step));
     }
   }
 

@@ -164,7 +164,7 @@ class Plausibility {
       const double step = resolution_of(series.values);
       if (step >= 0.999 * coarse)
         add(series.variable, "recorded in steps", step, std::string(facts_of(role).unit),
-            fmt::format("taken as it is; rounding alone is {:.2g} {} rms", step / std::sqrt(12.0),
+            fmt::format("taken as it is; rounding alone is {:.2g} {} rms", rounding_of(step),
                         facts_of(role).unit));
     }
   }

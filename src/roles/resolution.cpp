@@ -6,6 +6,8 @@
 
 namespace pcor::internal {
 
+double rounding_of(double step) { return step / std::sqrt(12.0); }
+
 double resolution_of(const std::vector<double>& values) {
   constexpr std::size_t fewest_values = 10;
   std::vector<double> sorted;

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <fstream>
 #include <map>
 #include <memory>
 #include <string>
@@ -11,6 +12,7 @@
 
 #include <pcor/inspect/inspection_report.hpp>
 #include <pcor/words/error.hpp>
+#include <pcor/words/replacement_file.hpp>
 #include <pcor/words/utc.hpp>
 #include "command.hpp"
 #include "model_name.hpp"
@@ -298,6 +300,38 @@ std::vector<Inspection> look(const Options& options, bool text, nlohmann::ordere
   return all;
 }
 
+/// The model, and as comments the variables that may play a role that it leaves open.
+void deliver_with_candidates(const Inspection& flight, const std::string& output) {
+  std::string comments;
+  for (const auto& [role, candidates] : flight.candidates) {
+    const Quantity quantity = quantity_named(role);
+    const bool is_open = quantity != Quantity::count && is_role(quantity);
+    for (const InspectedCandidate& each : candidates) {
+      const auto& variables = flight.model->variables;
+      const bool is_used = std::any_of(variables.begin(), variables.end(), [&](const auto& variable) {
+        return variable.second == each.variable;
+      });
+      if (is_open && !is_used) comments += fmt::format("# {} = \"{}\"  # {:.2f}: {}\n", role, each.variable, each.score, each.why);
+    }
+  }
+  std::string text = write_model(*flight.model);
+  if (const std::size_t begin = text.find("[variables]\n"); begin != std::string::npos && !comments.empty()) {
+    std::size_t end = text.find("\n\n", begin);
+    end = end == std::string::npos ? text.size() : end + 1;
+    text.insert(end, "# others that may be meant, with what speaks for them:\n" + comments);
+  }
+  if (output == "-") {
+    fmt::print("{}", text);
+    return;
+  }
+  ReplacementFile file{std::filesystem::path(output)};
+  std::ofstream stream(file.path(), std::ios::binary);
+  stream << text;
+  stream.close();
+  if (!stream) throw Error(output + ": cannot be written; check the space and the permissions");
+  file.commit();
+}
+
 void run(const Options& options) {
   std::vector<std::filesystem::path> inputs(options.flights.begin(), options.flights.end());
   refuse_overwriting({options.model, options.common.json, options.common.report, options.common.figures},
@@ -317,7 +351,7 @@ void run(const Options& options) {
           fmt::format("{}: no model can be written, for the first flight cannot be read", options.model));
     if (!first.model)
       throw Error(fmt::format("{}: no model can be written: {}", first.path, first.notes.front()));
-    deliver(*first.model, options.model, inputs);
+    deliver_with_candidates(first, options.model);
   }
   if (wants_report(options.common)) {
     write_report_of_run(inspection_report(all), {{}, options.flights, {}}, options.common);
