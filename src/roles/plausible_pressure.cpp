@@ -41,17 +41,25 @@ std::vector<double> some_values(const Flight& flight, const AircraftFamily& fami
   return values;
 }
 
-/// The standard atmosphere's, hPa.
-double pressure_at(double height) { return standard_pressure(height); }
-
-/// The median of what is recorded over what is expected; NaN where too little tells.
+/// The median of what is recorded over what is expected; NaN where too little tells, or where it is not about
+/// the same all the time, so that a wrong unit is not the reason.
 double ratio_of(const std::vector<double>& pressure, const std::vector<double>& expected) {
+  constexpr double steady = 0.05;
   std::vector<double> ratios;
   for (std::size_t i = 0; i < std::min(pressure.size(), expected.size()); ++i) {
     const double ratio = pressure[i] / expected[i];
     if (std::isfinite(ratio)) ratios.push_back(ratio);
   }
-  return ratios.size() < fewest ? nan : median(std::move(ratios));
+  if (ratios.size() < fewest) return nan;
+  const double middle = median(ratios);
+  for (double& each : ratios) each = std::abs(each / middle - 1.0);
+  return median(std::move(ratios)) > steady ? nan : middle;
+}
+
+/// Whether the heights fit the pressures if they are feet.
+bool are_feet(const std::vector<double>& pressure, std::vector<double> heights) {
+  for (double& height : heights) height = standard_pressure(0.3048 * height);
+  return std::abs(ratio_of(pressure, heights) - 1.0) < 0.1;
 }
 
 /// The unit in which a pressure that is `ratio` of what it should be would be right.
@@ -91,9 +99,10 @@ std::optional<ImpossiblePressure> impossible_pressure(const Flight& flight, cons
     std::vector<double> expected = some_values(flight, family, height, Quantity::altitude);
     double most = 0.1;
     if (const double middle = median(expected); middle > 11000.0) most += 1e-5 * (middle - 11000.0);
-    std::transform(expected.begin(), expected.end(), expected.begin(), pressure_at);
+    const bool is_wrong_height = are_feet(pressure, expected);
+    std::transform(expected.begin(), expected.end(), expected.begin(), standard_pressure);
     const double ratio = ratio_of(pressure, expected);
-    if (std::abs(ratio - 1.0) > most) return finding(ratio, "the height " + height);
+    if (std::abs(ratio - 1.0) > most && !is_wrong_height) return finding(ratio, "the height " + height);
   }
   for (const auto* pairs : {&family.measured, &family.processed}) {
     for (const PressurePair& pair : *pairs) {

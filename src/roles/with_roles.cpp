@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include <pcor/words/error.hpp>
@@ -36,6 +37,8 @@ class Completion {
       const auto role = static_cast<Quantity>(i);
       if (!is_chosen_above(role) && !has(role)) take(role);
     }
+    for (auto unit = file_.units.begin(); unit != file_.units.end();)
+      unit = has(unit->first) ? std::next(unit) : file_.units.erase(unit);
     notes.push_back(fmt::format("roles by {}: {}", family_.name, fmt::join(taken_, ", ")));
     for (std::string& trap : traps_) notes.push_back(std::move(trap));
     return std::move(file_);
