@@ -9,10 +9,14 @@
 #include <pcor/words/error.hpp>
 #include <pcor/words/shell_word.hpp>
 #include "flight/file_in_hand.hpp"
-#include "flight/icartt_file.hpp"
 #include "flight/netcdf_file.hpp"
 
 namespace pcor::internal {
+
+// icartt_file.cpp: series over time in text files of the ICARTT conventions.
+bool is_icartt(const std::filesystem::path& path);
+std::unique_ptr<FlightFile> open_icartt(const std::filesystem::path& path);
+
 namespace {
 
 /// A format of flight files.
@@ -26,10 +30,7 @@ constexpr Format formats[] = {
      [](const std::filesystem::path& path) -> std::unique_ptr<FlightFile> {
        return std::make_unique<NetcdfFile>(path);
      }},
-    {is_icartt,
-     [](const std::filesystem::path& path) -> std::unique_ptr<FlightFile> {
-       return std::make_unique<IcarttFile>(path);
-     }},
+    {is_icartt, open_icartt},
 };
 
 void require_readable(const std::filesystem::path& path) {

@@ -1,5 +1,4 @@
-#include "flight/icartt_file.hpp"
-
+// Text files of the ICARTT conventions as flights.
 #include <gmock/gmock.h>
 
 #include <fstream>

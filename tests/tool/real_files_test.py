@@ -148,6 +148,13 @@ class Simulated(Case):
             self.assertIn("--fix static-x: the model has no such parameter or effect", result.stderr)
         self.assertIn("a0 = 0.0", (self.path / "r.toml").read_text())
 
+    def test_heights_alone_are_enough_to_diagnose(self):
+        flight = self.write(self.NCAR, {"institution": "NCAR"})
+        (self.path / "m.toml").write_text(BARE.format(""))
+        self.run_tool("diagnose", flight, "-m", "m.toml", "--reference", "height", "--quiet", "--json", "d.json")
+        self.assertIn(json.loads((self.path / "d.json").read_text())["verdict"],
+                      {"silent", "identified", "cannot be told apart", "partial", "unexplained"})
+
     def test_hectopascals_that_are_called_pascals(self):
         flight = self.write(self.NCAR, {"institution": "NCAR"}, {"PSFD": "Pa"})
         (self.path / "m.toml").write_text(BARE.format(""))
