@@ -51,14 +51,6 @@ std::optional<std::pair<int, int>> first_line_of(const std::string& line) {
                                                                : std::nullopt;
 }
 
-/// What UDUNITS knows of units that only people do.
-std::string unit_of(const std::string& text) {
-  for (const char* const none : {"N/A", "n/a", "NA", "none", "None", "unitless", "Unitless", "dimensionless"}) {
-    if (text == none) return "1";
-  }
-  return text;
-}
-
 /// A text file of the ICARTT conventions, file format index 1001: one independent variable, the time, and series
 /// over it. All of it is in memory.
 ///
@@ -192,7 +184,7 @@ class IcarttFile::Reader {
     for (int i = 0; i < variables; ++i) {
       const std::vector<std::string> fields = fields_of(next());
       Variable& variable = file_.variables_.emplace_back(Variable{fields[0]});
-      if (fields.size() > 1) variable.attributes.emplace_back("units", unit_of(fields[1]));
+      if (fields.size() > 1) variable.attributes.emplace_back("units", fields[1]);
       if (fields.size() > 2 && !fields[2].empty()) variable.attributes.emplace_back("icartt_name", fields[2]);
       if (fields.size() > 3 && !fields[3].empty()) variable.attributes.emplace_back("long_name", fields[3]);
       variable.scale = scales[static_cast<std::size_t>(i)];

@@ -143,6 +143,15 @@ std::optional<int> find_time_variable(const FlightFile& file) {
   for (const char* name : {"Time", "time", "TIME"})
     if (const auto variable = file.find_variable(name); variable && file.dimensions_of(*variable).size() == 1)
       return variable;
+  if (file.find_variable("time_offset")) return std::nullopt;
+  // Of another name: what has its dimension for itself, or is called a time, and counts since a date.
+  for (int variable = 0; variable < file.variable_count(); ++variable) {
+    const std::vector<int> dimensions = file.dimensions_of(variable);
+    if (dimensions.size() != 1 || !file.is_numeric(variable)) continue;
+    const bool is_time = file.text_attribute(variable, "standard_name") == "time" ||
+                         file.dimension_name(dimensions.front()) == file.variable_name(variable);
+    if (is_time && file.text_attribute(variable, "units").find(" since ") != std::string::npos) return variable;
+  }
   return std::nullopt;
 }
 

@@ -152,7 +152,7 @@ class Look {
     } catch (const Error& error) {
       if (error.code() == Error::Code::file) throw;
       if (!take_pressures_by_evidence(model)) {
-        result_.notes.emplace_back(error.what());
+        result_.notes.emplace_back(what_pressures_lack(error));
         return;
       }
     }
@@ -215,6 +215,19 @@ class Look {
                                  : ""));
     }
     return true;
+  }
+
+  /// Where one of the two pressures is there, the other is what is wanted.
+  std::string what_pressures_lack(const Error& error) const {
+    const bool has_static = evidence_.count("static_pressure") != 0;
+    const bool has_dynamic = evidence_.count("dynamic_pressure") != 0;
+    if (!roles_.empty() || has_static == has_dynamic) return error.what();
+    const auto& [there, wanted] =
+        has_static ? std::pair("static_pressure", "dynamic") : std::pair("dynamic_pressure", "static");
+    return fmt::format(
+        "{}: it has {} ({}), but no {} pressure of a known name, unit and size, without which nothing can be "
+        "corrected; ask for the file with the {} pressure, or name it in the [variables] of a model",
+        flight_.path().string(), evidence_.at(there).front().variable, evidence_.at(there).front().why, wanted, wanted);
   }
 
   /// Roles that the aircraft's names leave open. A Mach number of the recording system is made of the pressures.

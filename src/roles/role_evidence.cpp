@@ -43,7 +43,7 @@ constexpr std::array<Signs, 32> signs{{
      "ambient temperature;static air temperature;outside air temperature;air temperature;static temperature",
      "potential virtual equivalent cabin dew frost surface sea bay transducer total recovery indicated",
      "air_temperature", 170, 330},
-    {"vapor_pressure", "vapor pressure;water vapor pressure", "saturation", "water_vapor_pressure;"
+    {"vapor_pressure", "vapor pressure;partial pressure water vapor", "saturation", "water_vapor_pressure;"
      "water_vapor_partial_pressure_in_air", 0, 60},
     {"dew_point", "dew point temperature;dew point", "frost depression", "dew_point_temperature", 150, 310},
     {"radome_dynamic_pressure", "radome dynamic pressure;radome pressure", "differential attack sideslip", "", 1, 500},
@@ -54,7 +54,7 @@ constexpr std::array<Signs, 32> signs{{
     {"attack", "angle attack;attack;aoa", "differential pressure rate", "", -15, 25},
     {"sideslip", "sideslip angle;sideslip;angle sideslip", "differential pressure rate", "", -15, 15},
     {"mach", "mach number;mach", "squared", "", 0.05, 2.5},
-    {"true_airspeed", "true airspeed;tas", "indicated calibrated", "platform_speed_wrt_air", 20, 350},
+    {"true_airspeed", "true airspeed;true air speed;tas", "indicated calibrated", "platform_speed_wrt_air", 20, 350},
     {"altitude", "gps altitude;altitude;gps height", "pressure radar density above ground radio naca",
      "altitude", -500, 25000},
     {"other_altitude", "pressure altitude;inertial altitude", "density radar", "barometric_altitude", -1000, 25000},

@@ -725,6 +725,24 @@ TEST_F(FlightTest, CapitalsAndACommaInTheUnitOfTimeAreRead) {
   EXPECT_EQ(Flight(path()).time().first, 804988800);
 }
 
+TEST_F(FlightTest, ATimeOfAnotherNameIsKnownByItsDimensionOrItsStandardName) {
+  for (const bool by_standard_name : {false, true}) {
+    {
+      NetcdfMaker maker(path());
+      maker.time_dimension = maker.dimension(by_standard_name ? "record" : "UTC", NC_UNLIMITED);
+      const int time = maker.variable("UTC", NC_DOUBLE, {maker.time_dimension});
+      maker.text(time, "units", "seconds since 2015-07-29");
+      if (by_standard_name) maker.text(time, "standard_name", "time");
+      maker.values(time, {100, 101});
+      maker.series("PS", "hPa", {850, 851});
+    }
+    const Flight flight(path());
+    EXPECT_EQ(flight.time_variable(), "UTC");
+    EXPECT_EQ(flight.time().last - flight.time().first, 1);
+    EXPECT_THAT(read("PS"), ElementsAre(850, 851));
+  }
+}
+
 TEST_F(FlightTest, AdviceOnTheTimeNamesTheDayOfTheFlightOrNone) {
   const auto refusal_with = [this](const char* date) {
     {

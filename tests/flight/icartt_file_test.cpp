@@ -51,7 +51,7 @@ TEST_F(Icartt, IsAFlight) {
   EXPECT_EQ(flight.aircraft(), "N701BN");
   EXPECT_EQ(flight.project(), "MISSION");
   EXPECT_EQ(flight.attribute("institution"), "Their laboratory");
-  EXPECT_EQ(flight.variable("mach").units, "1");
+  EXPECT_EQ(flight.variable("mach").units, "N/A");
   EXPECT_EQ(flight.variable("dynamic_pressure").long_name, "dynamic pressure of the boom");
   EXPECT_THAT(values_of(flight, "static_pressure"), ElementsAre(850, IsNan(), 852.5));
   EXPECT_THAT(values_of(flight, "dynamic_pressure"), ElementsAre(DoubleEq(30), IsNan(), DoubleEq(31)));
