@@ -53,7 +53,7 @@ Systems systems_of(const Flight& flight, const PressurePair& of_model) {
   const bool corrected = std::any_of(processed.begin(), processed.end(), [&](const PressurePair& pair) {
     return pair.static_pressure == of_model.static_pressure;
   });
-  // Where the corrected pair stands alone with that of the avionics, these are the two systems.
+  // A corrected pair and the pair of the avionics are two systems if there is no further pair.
   const bool beside_avionics = pairs.size() == 1 && pairs.front().static_pressure == "PS_A";
   if (!corrected || beside_avionics) {
     systems.own = of_model;

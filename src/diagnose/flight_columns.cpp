@@ -74,7 +74,8 @@ References usable_references(const References& references, std::vector<std::stri
   result.insert(result.end(), of_windows.begin(), of_windows.end());
   if (result.empty())
     throw Error(
-        "nothing to diagnose with: give a reference that tells of each sample, such as --reference lams, or height");
+        "nothing to diagnose with: give a reference that tells of each sample, such as --reference lams, or "
+        "height");
   return result;
 }
 

@@ -40,7 +40,7 @@ std::vector<std::string> fields_of(std::string_view line) {
   return fields;
 }
 
-/// The length of the header and the file format index, of the first line; nothing where it is no such line.
+/// The length of the header and the file format index, of the first line; empty for another kind of line.
 std::optional<std::pair<int, int>> first_line_of(const std::string& line) {
   int length = 0;
   int index = 0;
@@ -51,12 +51,13 @@ std::optional<std::pair<int, int>> first_line_of(const std::string& line) {
                                                                : std::nullopt;
 }
 
-/// A text file of the ICARTT conventions, file format index 1001: one independent variable, the time, and series
-/// over it. All of it is in memory.
+/// A text file of the ICARTT conventions, file format index 1001: one independent variable, the time, and
+/// series over it. All of it is in memory.
 ///
-/// The independent variable is called Time; its unit has the date of the header, from whose midnight it counts.
-/// Missing values, and those below or above the limits of detection, are NaN; scale factors are applied. The
-/// header's lines and its "NAME: value" comments are attributes: institution, source, project, platform.
+/// The independent variable is called Time; its unit has the date of the header, from whose midnight it
+/// counts. Missing values, and those below or above the limits of detection, are NaN; scale factors are
+/// applied. The header's lines and its "NAME: value" comments are attributes: institution, source, project,
+/// platform.
 class IcarttFile final : public FlightFile {
  public:
   /// @throws Error "path:line: what is wrong; what to do"
@@ -85,7 +86,7 @@ class IcarttFile final : public FlightFile {
     std::string name;
     Attributes attributes{};
     double scale = 1.0;
-    std::vector<double> missing{};  ///< numbers of the file that are no values
+    std::vector<double> missing{};  ///< flags of missing values
     std::vector<double> values{};
   };
 
@@ -106,7 +107,7 @@ class IcarttFile::Reader {
 
   void run() {
     const auto first = first_line_of(next());
-    if (!first) fail("is no first line of an ICARTT file");
+    if (!first) fail("this is not the first line of an ICARTT file");
     if (first->second != series_over_time)
       fail(fmt::format("the file format index is {}, and pcor reads 1001, series over time; convert the file",
                        first->second));
@@ -124,14 +125,15 @@ class IcarttFile::Reader {
     read_names(count());
     read_comments();
     if (line_ != first->first)
-      fail(fmt::format("the header has {} lines here, and its first line says {}", line_, first->first));
+      fail(fmt::format("the header has {} lines, but {} according to its first line", line_, first->first));
     read_values();
   }
 
  private:
   [[noreturn]] void fail(const std::string& why) const {
-    throw Error(Error::Code::file, fmt::format("{}:{}: {}; correct it, or fetch the file again from its source",
-                                               file_.path_.string(), line_, why));
+    throw Error(Error::Code::file,
+                fmt::format("{}:{}: {}; correct it, or fetch the file again from its source",
+                            file_.path_.string(), line_, why));
   }
 
   /// The next line, or one further on.
@@ -147,7 +149,7 @@ class IcarttFile::Reader {
   double number(const std::string& text) const {
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
-    if (text.empty() || *end != '\0') fail(fmt::format("{} is no number", in_quotes(text)));
+    if (text.empty() || *end != '\0') fail(fmt::format("{} is not a number", in_quotes(text)));
     return value;
   }
 
@@ -198,7 +200,8 @@ class IcarttFile::Reader {
     for (int i = 0; i < normal; ++i) {
       const std::string line = next();
       const std::size_t colon = line.find(':');
-      if (colon == std::string::npos || line.substr(0, colon).find_first_of(" ,") != std::string::npos) continue;
+      if (colon == std::string::npos || line.substr(0, colon).find_first_of(" ,") != std::string::npos)
+        continue;
       const std::string name = line.substr(0, colon);
       const std::string value = trimmed(line.substr(colon + 1));
       put(name, value);
@@ -270,9 +273,7 @@ std::vector<double> IcarttFile::number_attribute(int variable, const std::string
 
 double IcarttFile::greatest_number(int /*variable*/) const { return std::numeric_limits<double>::max(); }
 
-std::array<double, 2> IcarttFile::valid_range(int /*variable*/) const {
-  return {-infinity, infinity};
-}
+std::array<double, 2> IcarttFile::valid_range(int /*variable*/) const { return {-infinity, infinity}; }
 
 void IcarttFile::read(int variable, RecordBlock records, double* out) const {
   const std::vector<double>& values = at(variable).values;

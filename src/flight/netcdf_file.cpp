@@ -70,7 +70,7 @@ constexpr RangeAttribute range_attributes[] = {
 
 bool is_text(const Attribute& attribute) { return attribute.type == NC_CHAR || attribute.type == NC_STRING; }
 
-/// Numbers as people and programs write a list of them: "1, 2", "c(1, 2)" of R, "[1 2]", "1 to 2". Empty
+/// Numbers as lists of them are written: "1, 2", "c(1, 2)" of R, "[1 2]", "1 to 2". Empty
 /// where the text is none.
 std::vector<double> numbers_of(std::string text) {
   const std::size_t open = text.find_first_of("([");

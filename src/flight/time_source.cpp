@@ -55,7 +55,7 @@ std::optional<double> flight_date(const FlightFile& file) {
   return midnight && is_plausible(*midnight) ? midnight : std::nullopt;
 }
 
-// "Seconds since 1970-01-01, 00:00:00 UTC" as UDUNITS spells it: small letters before the date, no comma.
+// "Seconds since 1970-01-01, 00:00:00 UTC" as UDUNITS spells it: lower case before the date, no comma.
 std::string usual_spelling(std::string units) {
   const std::size_t digit = std::min(units.find_first_of("0123456789"), units.size());
   std::transform(units.begin(), units.begin() + static_cast<std::ptrdiff_t>(digit), units.begin(),
@@ -144,13 +144,14 @@ std::optional<int> find_time_variable(const FlightFile& file) {
     if (const auto variable = file.find_variable(name); variable && file.dimensions_of(*variable).size() == 1)
       return variable;
   if (file.find_variable("time_offset")) return std::nullopt;
-  // Of another name: what has its dimension for itself, or is called a time, and counts since a date.
+  // A coordinate variable, or one with the standard name time, that counts since a date.
   for (int variable = 0; variable < file.variable_count(); ++variable) {
     const std::vector<int> dimensions = file.dimensions_of(variable);
     if (dimensions.size() != 1 || !file.is_numeric(variable)) continue;
     const bool is_time = file.text_attribute(variable, "standard_name") == "time" ||
                          file.dimension_name(dimensions.front()) == file.variable_name(variable);
-    if (is_time && file.text_attribute(variable, "units").find(" since ") != std::string::npos) return variable;
+    if (is_time && file.text_attribute(variable, "units").find(" since ") != std::string::npos)
+      return variable;
   }
   return std::nullopt;
 }

@@ -14,10 +14,10 @@
 #include <pcor/words/error.hpp>
 #include <pcor/words/utc.hpp>
 #include "inspect/plausibility.hpp"
+#include "residuals/ground_velocity.hpp"
 #include "roles/recorded_series.hpp"
 #include "roles/resolution.hpp"
 #include "roles/role_evidence.hpp"
-#include "residuals/ground_velocity.hpp"
 #include "roles/usual_variables.hpp"
 
 namespace pcor {
@@ -182,9 +182,9 @@ class Look {
     }
   }
 
-  /// The best of a role, if it is sure; null where none is.
+  /// The best candidate for a role; null if it is not sure.
   const RoleCandidate* sure_candidate(const std::string& series) const {
-    if (!roles_.empty()) return nullptr;  // whose names hold has been said
+    if (!roles_.empty()) return nullptr;  // the user has chosen the names
     // A Mach number of the recording system is made of the pressures, and no independent one.
     if (series == facts_of(Quantity::mach).name) return nullptr;
     const auto found = evidence_.find(series);
@@ -211,8 +211,9 @@ class Look {
       result_.notes.push_back(fmt::format(
           "{} as {} is a guess: {}{}", candidates->front().variable,
           candidates == &static_pressures ? "static_pressure" : "dynamic_pressure", candidates->front().why,
-          candidates->size() > 1 ? fmt::format("; its rival is {}: {}", (*candidates)[1].variable, (*candidates)[1].why)
-                                 : ""));
+          candidates->size() > 1
+              ? fmt::format("; its rival is {}: {}", (*candidates)[1].variable, (*candidates)[1].why)
+              : ""));
     }
     return true;
   }
@@ -227,10 +228,12 @@ class Look {
     return fmt::format(
         "{}: it has {} ({}), but no {} pressure of a known name, unit and size, without which nothing can be "
         "corrected; ask for the file with the {} pressure, or name it in the [variables] of a model",
-        flight_.path().string(), evidence_.at(there).front().variable, evidence_.at(there).front().why, wanted, wanted);
+        flight_.path().string(), evidence_.at(there).front().variable, evidence_.at(there).front().why,
+        wanted, wanted);
   }
 
-  /// Roles that the aircraft's names leave open. A Mach number of the recording system is made of the pressures.
+  /// Roles that the aircraft's names leave open. A Mach number of the recording system is made of the
+  /// pressures.
   void add_roles_by_evidence(ModelFile& model) {
     const auto has = [&model](Quantity role) { return model.variables.count(role) != 0; };
     const bool has_temperature = has(Quantity::recovery_temperature) || has(Quantity::ambient_temperature);
@@ -243,14 +246,16 @@ class Look {
                             has_any(family_.names_of(name), std::string(facts_of(role).unit));
       const bool is_chosen =
           has(role) || is_known ||
-          (has_temperature && (role == Quantity::recovery_temperature || role == Quantity::ambient_temperature)) ||
+          (has_temperature &&
+           (role == Quantity::recovery_temperature || role == Quantity::ambient_temperature)) ||
           (has_humidity && (role == Quantity::vapor_pressure || role == Quantity::dew_point)) ||
           (role == Quantity::dew_point && has(Quantity::vapor_pressure)) ||
           (role == Quantity::ambient_temperature && has(Quantity::recovery_temperature));
       if (candidate == nullptr || is_chosen || plays_a_role(model, candidate->variable)) continue;
       model.variables[role] = candidate->variable;
     }
-    model.model.moist = has(Quantity::vapor_pressure) || has(Quantity::dew_point) || has(Quantity::frost_point);
+    model.model.moist =
+        has(Quantity::vapor_pressure) || has(Quantity::dew_point) || has(Quantity::frost_point);
   }
 
   /// Of a pair that the flight's own processing made, by the aircraft's names.
@@ -288,9 +293,9 @@ class Look {
       if (!info.ignored_range.empty()) ignored.push_back(fmt::format("{} ({})", name, info.ignored_range));
     }
     if (!ignored.empty()) {
-      result_.notes.push_back(fmt::format(
-          "the file states what is valid in words that are no numbers, which are ignored: of {}",
-          fmt::join(ignored, ", ")));
+      result_.notes.push_back(
+          fmt::format("the file states what is valid in words that are no numbers, which are ignored: of {}",
+                      fmt::join(ignored, ", ")));
     }
   }
 
@@ -304,8 +309,8 @@ class Look {
     }
   }
 
-  /// What a fit can be held against: the laser, what the avionics say, what the operator made of other sensors,
-  /// heights. A pressure that was made of the model's own says nothing.
+  /// What a fit can be held against: the laser, what the avionics say, what the operator made of other
+  /// sensors, heights. A pressure that was made of the model's own says nothing.
   void find_reference() {
     if (!result_.model) return;
     const ModelFile& model = *result_.model;
@@ -314,12 +319,13 @@ class Look {
     const bool has_heights = has(Quantity::altitude) && has(Quantity::latitude) &&
                              (has(Quantity::recovery_temperature) || has(Quantity::ambient_temperature));
     const std::string& corrected = result_.corrected_pressure;
-    const bool has_wind = has_heights && has(Quantity::heading) &&
-                          !read_ground_velocity(flight_, model).speed.values.empty();
+    const bool has_wind =
+        has_heights && has(Quantity::heading) && !read_ground_velocity(flight_, model).speed.values.empty();
     std::vector<std::string>& references = result_.references;
     if (has(Quantity::lams_airspeed)) {
       references = {"lams"};
-    } else if (model.variables.at(Quantity::static_pressure) != avionics && has_values(flight_, avionics, "hPa")) {
+    } else if (model.variables.at(Quantity::static_pressure) != avionics &&
+               has_values(flight_, avionics, "hPa")) {
       references = {fmt::format("pressure:{}", avionics)};
     } else if (!corrected.empty() && family_.name != aircraft_families().front().name) {
       references = {"pressure:" + corrected};
@@ -375,7 +381,8 @@ class Look {
       for (const std::string& name : names) {
         if (has_values(flight_, name, std::string(facts.unit), family_.unit_of(name))) found.push_back(name);
       }
-      if (const RoleCandidate* const candidate = sure_candidate(series); found.empty() && candidate != nullptr) {
+      if (const RoleCandidate* const candidate = sure_candidate(series);
+          found.empty() && candidate != nullptr) {
         add_role(series, {candidate->variable});
         if (!is_processed(candidate->variable)) result_.roles.back().why = candidate->why;
         for (const RoleCandidate& each : evidence_.at(series)) {

@@ -59,11 +59,13 @@ class Plausibility {
     return fmt::format("{} to {}", utc_text(time_.front(), "%H:%M:%S"), utc_text(time_.back(), "%H:%M:%S"));
   }
 
-  void add(const std::string& variable, std::string kind, double number, std::string unit, std::string action) {
+  void add(const std::string& variable, std::string kind, double number, std::string unit,
+           std::string action) {
     problems_.push_back({variable, std::move(kind), all_times(), number, std::move(unit), std::move(action)});
   }
 
-  static double median_of(const std::vector<double>& a, const std::vector<double>& b, double (*of)(double, double)) {
+  static double median_of(const std::vector<double>& a, const std::vector<double>& b,
+                          double (*of)(double, double)) {
     std::vector<double> values;
     for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) values.push_back(of(a[i], b[i]));
     return median(std::move(values));
@@ -72,7 +74,8 @@ class Plausibility {
   void pressure() {
     const std::optional<ImpossiblePressure> wrong = impossible_pressure(flight_, model_);
     if (!wrong) return;
-    add(model_.variables.at(Q::static_pressure), "static pressure over that of " + wrong->against, wrong->ratio, "1",
+    add(model_.variables.at(Q::static_pressure), "static pressure over that of " + wrong->against,
+        wrong->ratio, "1",
         fmt::format("refused; state its unit in the [units] of the model{}",
                     wrong->unit.empty() ? "" : fmt::format(", static_pressure = \"{}\"", wrong->unit)));
   }
@@ -81,9 +84,8 @@ class Plausibility {
     const RecordedSeries temperature = read(Q::ambient_temperature);
     const RecordedSeries altitude = read(Q::altitude);
     constexpr double most = 40.0;  // K: no air is so far from the standard atmosphere
-    const double excess = median_of(temperature.values, altitude.values, [](double t, double h) {
-      return t - standard_temperature(h);
-    });
+    const double excess = median_of(temperature.values, altitude.values,
+                                    [](double t, double h) { return t - standard_temperature(h); });
     if (std::abs(excess) > most)
       add(temperature.variable, "temperature against height", excess, "K",
           "taken as it is; state its unit in the [units] of the model");
@@ -107,7 +109,8 @@ class Plausibility {
     constexpr double most = 0.1;
     if (std::abs(ratio - 1.0) > most)
       add(q.variable, "airspeed by the pressures over " + airspeed.variable, ratio, "1",
-          "taken as it is; name another dynamic pressure in the [variables] of the model, or its unit in [units]");
+          "taken as it is; name another dynamic pressure in the [variables] of the model, or its unit in "
+          "[units]");
   }
 
   void angles() {
@@ -115,7 +118,8 @@ class Plausibility {
       const RecordedSeries angle = read(role);
       if (angle.values.empty()) continue;
       double most = 0.0;
-      for (const double each : angle.values) most = std::isfinite(each) ? std::max(most, std::abs(each)) : most;
+      for (const double each : angle.values)
+        most = std::isfinite(each) ? std::max(most, std::abs(each)) : most;
       // A heading of radians goes to 6.28, and one of degrees to 360, unless the flight is one leg.
       const bool is_turn = role == Q::heading || role == Q::ground_track;
       const bool looks_like_radians = is_turn && most > 3.0 && most < 6.3;

@@ -166,8 +166,9 @@ void note_coarse(const ModelSamples& samples, std::vector<std::string>& notes) {
     if (step < coarse_pressure) continue;
     const auto variable = std::find_if(samples.variables.begin(), samples.variables.end(),
                                        [quantity](const auto& each) { return each.first == quantity; });
-    notes.push_back(fmt::format("{} is recorded in steps of {:.2g} hPa: rounding alone is {:.2g} hPa rms of its noise",
-                                variable->second, step, rounding_of(step)));
+    notes.push_back(
+        fmt::format("{} is recorded in steps of {:.2g} hPa: rounding alone is {:.2g} hPa rms of its noise",
+                    variable->second, step, rounding_of(step)));
   }
 }
 

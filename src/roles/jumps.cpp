@@ -20,7 +20,8 @@ constexpr std::size_t around = 7;  // samples on either side
 /// How much the rate at each sample, since the one before, departs from the median of those around.
 std::vector<double> departures(const std::vector<double>& values, const std::vector<double>& time) {
   std::vector<double> rates(values.size(), nan);
-  for (std::size_t i = 1; i < values.size(); ++i) rates[i] = (values[i] - values[i - 1]) / (time[i] - time[i - 1]);
+  for (std::size_t i = 1; i < values.size(); ++i)
+    rates[i] = (values[i] - values[i - 1]) / (time[i] - time[i - 1]);
   std::vector<double> departure(values.size(), nan);
   for (std::size_t i = 1; i < values.size(); ++i) {
     const auto from = rates.begin() + static_cast<std::ptrdiff_t>(i - std::min(i, around));

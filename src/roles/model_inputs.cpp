@@ -109,8 +109,9 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelFile& file
                                 fmt::join(flagged, ", ")));
   }
   if (!without_range.empty()) {
-    notes.push_back(fmt::format("the file states what is valid in words that are no numbers, which are ignored: of {}",
-                                fmt::join(without_range, ", ")));
+    notes.push_back(
+        fmt::format("the file states what is valid in words that are no numbers, which are ignored: of {}",
+                    fmt::join(without_range, ", ")));
   }
   return inputs;
 }

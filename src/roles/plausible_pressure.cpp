@@ -25,18 +25,20 @@ std::string stated_unit(const Flight& flight, const AircraftFamily& family, cons
   return stated.empty() ? flight.variable(variable).units : stated;
 }
 
-/// Some thousand values from the begin, the middle and the end, in the unit of the role; empty where it cannot be
-/// read.
-std::vector<double> some_values(const Flight& flight, const AircraftFamily& family, const std::string& variable,
-                                Quantity role) {
+/// Some thousand values from the begin, the middle and the end, in the unit of the role; empty where it
+/// cannot be read.
+std::vector<double> some_values(const Flight& flight, const AircraftFamily& family,
+                                const std::string& variable, Quantity role) {
   std::vector<double> values;
-  if (!has_values(flight, variable, std::string(facts_of(role).unit), family.unit_of(variable))) return values;
+  if (!has_values(flight, variable, std::string(facts_of(role).unit), family.unit_of(variable)))
+    return values;
   const UnitConversion conversion =
       flight.conversion(variable, std::string(facts_of(role).unit), "", family.unit_of(variable));
   const std::vector<RecordBlock> blocks = flight.blocks();
   for (const std::size_t k : std::set<std::size_t>{0, blocks.size() / 2, blocks.size() - 1}) {
     values.resize(values.size() + blocks[k].count);
-    flight.read_at_rate(1, variable, blocks[k], conversion, values.data() + (values.size() - blocks[k].count));
+    flight.read_at_rate(1, variable, blocks[k], conversion,
+                        values.data() + (values.size() - blocks[k].count));
   }
   return values;
 }
@@ -64,7 +66,9 @@ bool are_feet(const std::vector<double>& pressure, std::vector<double> heights) 
 
 /// The unit in which a pressure that is `ratio` of what it should be would be right.
 std::string unit_that_fits(const std::string& own, double ratio) {
-  const auto in_hpa = [](const std::string& unit) { return UnitConversion::between(unit, "hPa", {}).scale(); };
+  const auto in_hpa = [](const std::string& unit) {
+    return UnitConversion::between(unit, "hPa", {}).scale();
+  };
   for (const char* const unit : {"hPa", "Pa", "kPa"}) {
     if (std::abs(ratio * in_hpa(unit) / in_hpa(own) - 1.0) < 0.1) return unit;
   }
@@ -85,7 +89,8 @@ std::string height_of(const Flight& flight, const ModelFile& model, const Aircra
 
 std::optional<ImpossiblePressure> impossible_pressure(const Flight& flight, const ModelFile& model) {
   const auto named = model.variables.find(Quantity::static_pressure);
-  if (named == model.variables.end() || model.units.count(Quantity::static_pressure) != 0) return std::nullopt;
+  if (named == model.variables.end() || model.units.count(Quantity::static_pressure) != 0)
+    return std::nullopt;
   const std::string& variable = named->second;
   const AircraftFamily& family = family_of(model, flight);
   if (!family.unit_of(variable).empty()) return std::nullopt;
@@ -122,11 +127,12 @@ void require_possible_pressure(const Flight& flight, const ModelFile& model) {
   const std::string unit = flight.variable(variable).units;
   throw Error(
       Error::Code::unit,
-      fmt::format("{}: {} in {} is {:.3g} times what {} says{}; state the right unit in the [units] of the model, "
-                  "static_pressure = {}, or name another variable there; the unit that a model states is believed",
-                  flight.path().string(), variable, in_quotes(unit), wrong->ratio, wrong->against,
-                  wrong->unit.empty() ? "" : fmt::format(", as if it were in {}", wrong->unit),
-                  wrong->unit.empty() ? in_quotes(unit) : fmt::format("\"{}\"", wrong->unit)));
+      fmt::format(
+          "{}: {} in {} is {:.3g} times what {} says{}; state the right unit in the [units] of the model, "
+          "static_pressure = {}, or name another variable there; the unit that a model states is believed",
+          flight.path().string(), variable, in_quotes(unit), wrong->ratio, wrong->against,
+          wrong->unit.empty() ? "" : fmt::format(", as if it were in {}", wrong->unit),
+          wrong->unit.empty() ? in_quotes(unit) : fmt::format("\"{}\"", wrong->unit)));
 }
 
 }  // namespace pcor::internal

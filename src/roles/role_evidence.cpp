@@ -18,7 +18,8 @@
 namespace pcor::internal {
 namespace {
 
-/// What speaks for a series. Phrases are separated by semicolons, the likeliest first; any order of words does.
+/// What speaks for a series. Phrases are separated by semicolons, the likeliest first; any order of words
+/// does.
 struct Signs {
   std::string_view series;
   std::string_view phrases;
@@ -37,37 +38,47 @@ constexpr std::array<Signs, 32> signs{{
     {"dynamic_pressure", "dynamic pressure;impact pressure;pitot pressure;qc",
      "static cabin attack sideslip radome vertical horizontal", "", 1, 500},
     {"recovery_temperature",
-     "recovery temperature;recovery air temperature;total temperature;total air temperature;indicated temperature;tat",
+     "recovery temperature;recovery air temperature;total temperature;total air temperature;indicated "
+     "temperature;tat",
      no_temperature, "", 180, 340},
     {"ambient_temperature",
      "ambient temperature;static air temperature;outside air temperature;air temperature;static temperature",
      "potential virtual equivalent cabin dew frost surface sea bay transducer total recovery indicated",
      "air_temperature", 170, 330},
-    {"vapor_pressure", "vapor pressure;partial pressure water vapor", "saturation", "water_vapor_pressure;"
-     "water_vapor_partial_pressure_in_air", 0, 60},
+    {"vapor_pressure", "vapor pressure;partial pressure water vapor", "saturation",
+     "water_vapor_pressure;"
+     "water_vapor_partial_pressure_in_air",
+     0, 60},
     {"dew_point", "dew point temperature;dew point", "frost depression", "dew_point_temperature", 150, 310},
-    {"radome_dynamic_pressure", "radome dynamic pressure;radome pressure", "differential attack sideslip", "", 1, 500},
+    {"radome_dynamic_pressure", "radome dynamic pressure;radome pressure", "differential attack sideslip", "",
+     1, 500},
     {"attack_differential_pressure",
-     "attack differential pressure;vertical differential pressure;alpha differential pressure", "", "", -100, 100},
+     "attack differential pressure;vertical differential pressure;alpha differential pressure", "", "", -100,
+     100},
     {"sideslip_differential_pressure",
-     "sideslip differential pressure;horizontal differential pressure;beta differential pressure", "", "", -100, 100},
+     "sideslip differential pressure;horizontal differential pressure;beta differential pressure", "", "",
+     -100, 100},
     {"attack", "angle attack;attack;aoa", "differential pressure rate", "", -15, 25},
     {"sideslip", "sideslip angle;sideslip;angle sideslip", "differential pressure rate", "", -15, 15},
     {"mach", "mach number;mach", "squared", "", 0.05, 2.5},
-    {"true_airspeed", "true airspeed;true air speed;tas", "indicated calibrated", "platform_speed_wrt_air", 20, 350},
+    {"true_airspeed", "true airspeed;true air speed;tas", "indicated calibrated", "platform_speed_wrt_air",
+     20, 350},
     {"altitude", "gps altitude;altitude;gps height", "pressure radar density above ground radio naca",
      "altitude", -500, 25000},
-    {"other_altitude", "pressure altitude;inertial altitude", "density radar", "barometric_altitude", -1000, 25000},
+    {"other_altitude", "pressure altitude;inertial altitude", "density radar", "barometric_altitude", -1000,
+     25000},
     {"vertical_speed", "vertical speed;vertical velocity;climb rate", "wind gust air up upward", "", -20, 20},
     {"latitude", "latitude", "minimum maximum", "latitude", -90, 90},
     {"longitude", "longitude", "minimum maximum", "longitude", -360, 360},
     {"pitch", "pitch;pitch angle", "rate propeller", "platform_pitch_angle;platform_pitch", -15, 25},
     {"roll", "roll;roll angle;bank angle", "rate", "platform_roll_angle;platform_roll", -90, 90},
-    {"heading", "true heading;heading", "magnetic wind", "platform_orientation;platform_azimuth_angle", -360, 720},
-    {"ground_speed", "ground speed", "east north vector eastward northward component", "platform_speed_wrt_ground",
-     10, 450},
+    {"heading", "true heading;heading", "magnetic wind", "platform_orientation;platform_azimuth_angle", -360,
+     720},
+    {"ground_speed", "ground speed", "east north vector eastward northward component",
+     "platform_speed_wrt_ground", 10, 450},
     {"ground_speed_east", "ground speed east;ground velocity east;eastward velocity", "wind", "", -450, 450},
-    {"ground_speed_north", "ground speed north;ground velocity north;northward velocity", "wind", "", -450, 450},
+    {"ground_speed_north", "ground speed north;ground velocity north;northward velocity", "wind", "", -450,
+     450},
     {"ground_track", "ground track;track;track angle;course", "error cross", "platform_course", -360, 720},
     {"normal_acceleration", "normal acceleration", "", "", -20, 20},
     {"longitudinal_acceleration", "longitudinal acceleration", "", "", -20, 20},
@@ -80,13 +91,29 @@ constexpr std::array<Signs, 32> signs{{
 
 /// What a word is short for.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 23> written_out{{
-    {"temp", "temperature"},   {"press", "pressure"},    {"pres", "pressure"},     {"alt", "altitude"},
-    {"lat", "latitude"},       {"lon", "longitude"},     {"long", "longitude"},    {"hdg", "heading"},
-    {"spd", "speed"},          {"vel", "velocity"},      {"vert", "vertical"},     {"dyn", "dynamic"},
-    {"stat", "static"},        {"dewpoint", "dew point"}, {"slip", "sideslip"},
-    {"side", "sideslip"},      {"vapour", "vapor"},      {"groundspeed", "ground speed"}, {"acc", "acceleration"},
-    {"accel", "acceleration"}, {"oat", "outside air temperature"},
-    {"sat", "static air temperature"}, {"gs", "ground speed"},
+    {"temp", "temperature"},
+    {"press", "pressure"},
+    {"pres", "pressure"},
+    {"alt", "altitude"},
+    {"lat", "latitude"},
+    {"lon", "longitude"},
+    {"long", "longitude"},
+    {"hdg", "heading"},
+    {"spd", "speed"},
+    {"vel", "velocity"},
+    {"vert", "vertical"},
+    {"dyn", "dynamic"},
+    {"stat", "static"},
+    {"dewpoint", "dew point"},
+    {"slip", "sideslip"},
+    {"side", "sideslip"},
+    {"vapour", "vapor"},
+    {"groundspeed", "ground speed"},
+    {"acc", "acceleration"},
+    {"accel", "acceleration"},
+    {"oat", "outside air temperature"},
+    {"sat", "static air temperature"},
+    {"gs", "ground speed"},
 }};
 
 std::vector<std::string> split(std::string_view text, char at) {
@@ -103,14 +130,16 @@ bool has(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// How well words say a phrase: 0.45 where all of a short text is the likeliest phrase, 0 where none is in it.
+/// How well words say a phrase: 0.45 where all of a short text is the likeliest phrase, 0 where none is in
+/// it.
 double likeness(const std::vector<std::string>& words, std::string_view phrases) {
   constexpr double full = 0.45, later_phrase = 0.03, other_word = 0.02;
   double best = 0.0;
   double rank = 0.0;
   for (const std::string& phrase : split(phrases, ';')) {
     const std::vector<std::string> wanted = split(phrase, ' ');
-    if (std::all_of(wanted.begin(), wanted.end(), [&](const std::string& word) { return has(words, word); })) {
+    if (std::all_of(wanted.begin(), wanted.end(),
+                    [&](const std::string& word) { return has(words, word); })) {
       const double others = std::min(5.0, static_cast<double>(words.size() - wanted.size()));
       best = std::max(best, full - later_phrase * rank - other_word * others);
     }
@@ -120,13 +149,15 @@ double likeness(const std::vector<std::string>& words, std::string_view phrases)
 }
 
 /// The values of some thousand records from the begin, the middle and the end.
-std::vector<double> some_values(const Flight& flight, const std::string& variable, const UnitConversion& conversion) {
+std::vector<double> some_values(const Flight& flight, const std::string& variable,
+                                const UnitConversion& conversion) {
   std::vector<double> values;
   const std::vector<RecordBlock> blocks = flight.blocks();
   for (const std::size_t k : {std::size_t{0}, blocks.size() / 2, blocks.size() - 1}) {
     std::vector<double> part(blocks[k].count);
     flight.read_at_rate(1, variable, blocks[k], conversion, part.data());
-    std::copy_if(part.begin(), part.end(), std::back_inserter(values), [](double x) { return std::isfinite(x); });
+    std::copy_if(part.begin(), part.end(), std::back_inserter(values),
+                 [](double x) { return std::isfinite(x); });
   }
   return values;
 }
@@ -146,7 +177,8 @@ std::string attribute_of(const VariableInfo& info, std::string_view name) {
   return {};
 }
 
-std::optional<RoleCandidate> candidate_of(const Flight& flight, const Described& variable, const Signs& sign) {
+std::optional<RoleCandidate> candidate_of(const Flight& flight, const Described& variable,
+                                          const Signs& sign) {
   const QuantityFacts& facts = *series_named(sign.series);
   std::vector<std::string> all = variable.name;
   all.insert(all.end(), variable.long_name.begin(), variable.long_name.end());
@@ -173,7 +205,7 @@ std::optional<RoleCandidate> candidate_of(const Flight& flight, const Described&
     const std::string range = fmt::format("{:.5g} to {:.5g} {}", *least, *most, unit);
     const double middle = median(std::move(values));
     if (!(middle >= sign.least && middle <= sign.most)) return std::nullopt;
-    const std::string who = by_standard_name   ? fmt::format("its standard_name is {}", variable.standard_name)
+    const std::string who = by_standard_name ? fmt::format("its standard_name is {}", variable.standard_name)
                             : by_long_name > 0 ? fmt::format("it is called '{}'", variable.info.long_name)
                                                : fmt::format("its name is {}", fmt::join(variable.name, " "));
     return RoleCandidate{variable.info.name, score + (states_unit ? 0.25 : 0.1) + 0.25,
@@ -190,7 +222,8 @@ std::vector<std::string> plain_words(std::string_view text) {
   std::string spaced;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto letter = static_cast<unsigned char>(text[i]);
-    const bool hump = i > 0 && std::isupper(letter) != 0 && std::islower(static_cast<unsigned char>(text[i - 1])) != 0;
+    const bool hump =
+        i > 0 && std::isupper(letter) != 0 && std::islower(static_cast<unsigned char>(text[i - 1])) != 0;
     if (hump) spaced += ' ';
     spaced += std::isalpha(letter) != 0 ? static_cast<char>(std::tolower(letter)) : ' ';
   }

@@ -21,9 +21,10 @@ inline constexpr double sure_score = 0.85;
 /// How much the second has to stay behind, so that the first is no guess between two.
 inline constexpr double clear_lead = 0.015;
 
-/// For each role, and each series that no model reads, the variables of a flight that may play it, the likeliest
-/// first: by CF's standard_name, by words of the name and of the long_name, by a unit that fits, and by values
-/// that are those of such a series. What has a unit that does not fit, or values out of range, is none.
+/// For each role, and each series that no model reads, the variables of a flight that may play it, the
+/// likeliest first: by CF's standard_name, by words of the name and of the long_name, by a unit that fits,
+/// and by values that are those of such a series. What has a unit that does not fit, or values out of range,
+/// is none.
 std::map<std::string, std::vector<RoleCandidate>> role_candidates(const Flight& flight);
 
 /// Whether the first of these is sure, and clear of the second.

@@ -77,7 +77,7 @@ TEST_F(Icartt, WhatIsWrongIsToldWithItsLine) {
   EXPECT_THAT(refusal(head + "47076, 850, x, 0.3\n"), HasSubstr("flight.ict:25: 4 numbers"));
   EXPECT_THAT(refusal("25, 2110\n"), HasSubstr("flight.ict:1: the file format index is 2110"));
   EXPECT_THAT(refusal("25, 1001\nDoe\n"), HasSubstr("the header ends too early"));
-  EXPECT_THAT(refusal("23" + head.substr(2) + values), HasSubstr("its first line says 23"));
+  EXPECT_THAT(refusal("23" + head.substr(2) + values), HasSubstr("but 23 according to its first line"));
   EXPECT_THAT(refusal(head), HasSubstr("has no records"));
   EXPECT_THAT(refusal("70 people"), HasSubstr("is not a netCDF file, nor one of ICARTT"));
 }
@@ -85,7 +85,8 @@ TEST_F(Icartt, WhatIsWrongIsToldWithItsLine) {
 TEST_F(Icartt, ACompressedFileIsToUnpack) {
   path_ = folder_.path() / "flight.ict.gz";
   write("\x1f\x8b");
-  EXPECT_THAT(test::message_of<Error>([this] { Flight flight(path_); }), HasSubstr("unpack it with gunzip -k"));
+  EXPECT_THAT(test::message_of<Error>([this] { Flight flight(path_); }),
+              HasSubstr("unpack it with gunzip -k"));
 }
 
 }  // namespace

@@ -40,7 +40,8 @@ class PlausiblePressure : public testing::Test {
 TEST_F(PlausiblePressure, HectopascalsThatAreCalledPascalsAreRefusedWithTheirUnit) {
   const Flight wrong = flight("Pa", 700.0, "GGALT", 3000.0);
   EXPECT_THAT(test::message_of<Error>([&] { require_possible_pressure(wrong, model()); }),
-              AllOf(HasSubstr("PSFD in 'Pa'"), HasSubstr("the height GGALT"), HasSubstr("static_pressure = \"hPa\"")));
+              AllOf(HasSubstr("PSFD in 'Pa'"), HasSubstr("the height GGALT"),
+                    HasSubstr("static_pressure = \"hPa\"")));
   ModelFile stated = model();
   stated.units[Quantity::static_pressure] = "Pa";
   EXPECT_FALSE(impossible_pressure(wrong, stated)) << "what a model states is believed";

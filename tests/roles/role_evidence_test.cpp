@@ -58,9 +58,8 @@ TEST_F(RoleEvidence, FindsRolesByNamesAndLongNames) {
 }
 
 TEST_F(RoleEvidence, NeedsAUnitAndValuesThatFit) {
-  auto found = candidates({{"static_pressure", "m/s", "", 850},
-                           {"dynamic_pressure", "hPa", "", -300},
-                           {"roll", "", "", 3}});
+  auto found = candidates(
+      {{"static_pressure", "m/s", "", 850}, {"dynamic_pressure", "hPa", "", -300}, {"roll", "", "", 3}});
   EXPECT_TRUE(found["static_pressure"].empty()) << "another dimension";
   EXPECT_TRUE(found["dynamic_pressure"].empty()) << "no such values in flight";
   ASSERT_EQ(found["roll"].size(), 1U);
@@ -68,7 +67,8 @@ TEST_F(RoleEvidence, NeedsAUnitAndValuesThatFit) {
 }
 
 TEST_F(RoleEvidence, TwoThatAreAlikeLeaveDoubt) {
-  auto found = candidates({{"heading_1", "degree", "true heading", 100}, {"heading_2", "degree", "true heading", 101}});
+  auto found = candidates(
+      {{"heading_1", "degree", "true heading", 100}, {"heading_2", "degree", "true heading", 101}});
   ASSERT_EQ(found["heading"].size(), 2U);
   EXPECT_FALSE(is_sure(found["heading"]));
 }

@@ -190,7 +190,8 @@ void run(const Options& options) {
   require_figures(options.common);
   JsonResult json(options.common);
   const FlightSet flights = CommandFlights(options.comparison).flights;
-  const ModelFile model = with_fit_options(read_model_for(options.model, flights, options.common), options.held);
+  const ModelFile model =
+      with_fit_options(read_model_for(options.model, flights, options.common), options.held);
   const ChosenReferences references = references_to_fit(options.comparison, model, flights);
   DiagnoseOptions diagnose_with;
   diagnose_with.mask = mask_options(options.comparison);

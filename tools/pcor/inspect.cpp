@@ -197,14 +197,16 @@ void print_candidates(const Inspection& flight) {
   std::map<std::string, std::string> role_of;
   for (const InspectedRole& role : flight.roles) role_of[role.role] = role.variable;
   for (const InspectedRole& role : flight.roles) {
-    if (!role.why.empty()) say("{} is {}: {}{}\n", role.variable, role.role, role.why,
-                               role.others.empty() ? "" : fmt::format("; rivals: {}", fmt::join(role.others, ", ")));
+    if (!role.why.empty())
+      say("{} is {}: {}{}\n", role.variable, role.role, role.why,
+          role.others.empty() ? "" : fmt::format("; rivals: {}", fmt::join(role.others, ", ")));
   }
   bool any = false;
   for (const auto& [role, candidates] : flight.candidates) {
     for (const InspectedCandidate& each : candidates) {
       if (role_of.count(role) != 0) continue;
-      if (!any) say("\n{:<33} {:<12} {:>5}  what speaks for it\n", "candidates, not taken", "variable", "score");
+      if (!any)
+        say("\n{:<33} {:<12} {:>5}  what speaks for it\n", "candidates, not taken", "variable", "score");
       any = true;
       say("{:<33} {:<12} {:>5.2f}  {}\n", role, each.variable, each.score, each.why);
     }
@@ -311,7 +313,8 @@ void deliver_with_candidates(const Inspection& flight, const std::string& output
       const bool is_used = std::any_of(variables.begin(), variables.end(), [&](const auto& variable) {
         return variable.second == each.variable;
       });
-      if (is_open && !is_used) comments += fmt::format("# {} = \"{}\"  # {:.2f}: {}\n", role, each.variable, each.score, each.why);
+      if (is_open && !is_used)
+        comments += fmt::format("# {} = \"{}\"  # {:.2f}: {}\n", role, each.variable, each.score, each.why);
     }
   }
   std::string text = write_model(*flight.model);

@@ -41,7 +41,7 @@ struct VariableInfo {
   std::vector<std::string> dimensions;
   std::vector<std::pair<std::string, std::string>> attributes;  ///< all of them as text, without trailing NUL
   std::vector<std::string> flags;  ///< variables of flags that call samples unusable, which are missing then
-  std::string ignored_range;  ///< what the file states as valid values in words that are no numbers
+  std::string ignored_range;       ///< what the file states as valid values in words that are no numbers
   std::optional<std::array<double, 2>> modulus_range;  ///< of an angle: where it starts again
 };
 

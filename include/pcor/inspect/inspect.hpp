@@ -27,14 +27,14 @@ struct InspectedRole {
   std::string trap{};       ///< what a user of it should know; may be empty
   bool is_verified = true;  ///< the name is in a public document of the aircraft
   std::vector<std::string> others{};  ///< further variables that could play it
-  std::string why{};                  ///< the evidence where its name is not one of the aircraft's; else empty
+  std::string why{};  ///< the evidence where its name is not one of the aircraft's; else empty
 };
 
 /// What is wrong, or coarse, with a variable.
 struct Problem {
   std::string variable;
-  std::string kind;    ///< "jump", "recorded in steps"
-  std::string times;   ///< UTC
+  std::string kind;   ///< "jump", "recorded in steps"
+  std::string times;  ///< UTC
   double number = 0.0;
   std::string unit;
   std::string action;  ///< what is done about it, and how to have it otherwise

@@ -118,7 +118,8 @@ class HeightReference final : public Reference {
                       "reference height needs; name them in the table [variables] of the model");
     }
     const std::vector<Jump> jumps = find_jumps(height.values, time);
-    for (const Jump& jump : jumps) notes.push_back(told_of(height.variable, jump, time) + ", which are left out");
+    for (const Jump& jump : jumps)
+      notes.push_back(told_of(height.variable, jump, time) + ", which are left out");
     mask(jumps, height.values);
     for (std::size_t i = 0; i < height.values.size(); ++i)
       height.values[i] = geopotential_height(latitude.values[i], height.values[i]);
