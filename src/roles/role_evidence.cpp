@@ -242,7 +242,9 @@ std::map<std::string, std::vector<RoleCandidate>> role_candidates(const Flight& 
   std::map<std::string, std::vector<RoleCandidate>> all;
   for (const std::string& name : flight.variables()) {
     const VariableInfo& info = flight.variable(name);
-    if (!info.is_series || name == flight.time_variable()) continue;
+    // The truth of a simulated flight was not recorded.
+    if (!info.is_series || name == flight.time_variable() || attribute_of(info, "Category") == truth_category)
+      continue;
     const Described described{info, plain_words(info.name), plain_words(info.long_name),
                               attribute_of(info, "standard_name")};
     for (const Signs& sign : signs) {

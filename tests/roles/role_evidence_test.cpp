@@ -66,6 +66,17 @@ TEST_F(RoleEvidence, NeedsAUnitAndValuesThatFit) {
   EXPECT_FALSE(is_sure(found["roll"])) << "no unit";
 }
 
+TEST_F(RoleEvidence, TheTruthOfASimulationIsNoCandidate) {
+  const auto path = folder_.path() / "flight.nc";
+  {
+    test::NetcdfMaker maker(path);
+    maker.time(test::sequence(0, 30));
+    maker.text(maker.series("ambient_temperature", "degC", std::vector<double>(30, 5.0)), "Category",
+               "Truth");
+  }
+  EXPECT_TRUE(role_candidates(Flight(path)).empty());
+}
+
 TEST_F(RoleEvidence, TwoThatAreAlikeLeaveDoubt) {
   auto found = candidates(
       {{"heading_1", "degree", "true heading", 100}, {"heading_2", "degree", "true heading", 101}});

@@ -50,8 +50,13 @@ std::vector<std::string> next_commands(const Options& options, const Inspection&
       std::find_if(flight.laws.begin(), flight.laws.end(), [](const LawOfFlight& law) { return law.fits(); });
   if (options.model.empty() && fits != flight.laws.end()) {
     const std::string law = " -m " + shell_word(fits->path.stem().string());
-    return {command("process", flight, law + stamp + output),
-            command("check", flight, law + stamp + " --report check.html")};
+    std::vector<std::string> commands{command("process", flight, law + stamp + output),
+                                      command("check", flight, law + stamp + " --report check.html")};
+    if (!flight.references.empty())
+      commands.push_back(command("compare", flight,
+                                 fmt::format("{}{} --reference {} --report compare.html", law, stamp,
+                                             shell_word(flight.references.back()))));
+    return commands;
   }
   std::vector<std::string> commands;
   const std::string model = " -m " + shell_word(options.model.empty() ? "model.toml" : options.model);
