@@ -53,7 +53,9 @@ Systems systems_of(const Flight& flight, const PressurePair& of_model) {
   const bool corrected = std::any_of(processed.begin(), processed.end(), [&](const PressurePair& pair) {
     return pair.static_pressure == of_model.static_pressure;
   });
-  if (!corrected) {
+  // A corrected pair and the pair of the avionics are two systems if there is no further pair.
+  const bool beside_avionics = pairs.size() == 1 && pairs.front().static_pressure == "PS_A";
+  if (!corrected || beside_avionics) {
     systems.own = of_model;
   } else if (!pairs.empty()) {
     systems.own = pairs.front();

@@ -11,6 +11,7 @@
 #include "checks/leg_pair.hpp"
 #include "numerics/missing.hpp"
 #include "numerics/windowed_transform.hpp"
+#include "roles/resolution.hpp"
 
 namespace pcor::internal {
 namespace {
@@ -168,6 +169,14 @@ double pressure_per_speed(const CheckedFlights& flights) {
   return mean_value(sensitivities);
 }
 
+/// The coarsest step in which a static pressure was recorded, hPa.
+double coarsest_step(const CheckedFlights& flights) {
+  double step = 0.0;
+  for (const CheckedFlight& flight : flights)
+    step = std::max(step, resolution_of(flight.air.measured_static));
+  return step;
+}
+
 }  // namespace
 
 CheckResult check_spectrum(const CheckedFlights& flights) {
@@ -197,6 +206,15 @@ CheckResult check_spectrum(const CheckedFlights& flights) {
   result.name = name;
   result.ran = true;
   decide({judged(floor, size_that_matters, "hPa", "of white noise")}, result);
+  const double step = coarsest_step(flights);
+  if (step >= coarse_pressure) {
+    withhold(
+        fmt::format(
+            "the static pressure is recorded in steps of {:.2g} hPa, which alone make {:.2g} hPa of noise: "
+            "what its sensor adds cannot be seen",
+            step, rounding_of(step)),
+        result);
+  }
   result.finding =
       fmt::format("At the highest frequencies {} has the power of white noise of {:.3f} +- {:.3f} hPa",
                   source->name, floor.value, floor.error);

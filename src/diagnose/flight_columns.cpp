@@ -71,11 +71,11 @@ References usable_references(const References& references, std::vector<std::stri
           reference->name()));
     }
   }
-  const bool tells_of_samples = !result.empty();
   result.insert(result.end(), of_windows.begin(), of_windows.end());
-  if (!tells_of_samples)
+  if (result.empty())
     throw Error(
-        "nothing to diagnose with: give a reference that tells of each sample, such as --reference lams");
+        "nothing to diagnose with: give a reference that tells of each sample, such as --reference lams, or "
+        "height");
   return result;
 }
 

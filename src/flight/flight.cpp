@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <strings.h>
 #include <pcor/flight/flight.hpp>
 #include <pcor/words/error.hpp>
 #include <pcor/words/suggest.hpp>
@@ -11,6 +12,7 @@
 #include <cstdlib>
 #include <iterator>
 #include <limits>
+#include <regex>
 #include <set>
 #include <unordered_map>
 
@@ -73,6 +75,7 @@ double packing_number(const FlightFile& file, int variable, const char* attribut
 void describe_numbers(const FlightFile& file, Variable& variable) {
   variable.missing_values = file.missing_values(variable.id);
   variable.valid_range = file.valid_range(variable.id);
+  variable.info.ignored_range = file.ignored_range(variable.id);
   variable.unpacking = {packing_number(file, variable.id, "scale_factor", 1),
                         packing_number(file, variable.id, "add_offset", 0)};
   variable.flags = StatusFlags::of(file, variable.id);
@@ -111,6 +114,14 @@ Variable describe(const FlightFile& file, int id, int time_dimension) {
     variable.refusal = error;
   }
   return variable;
+}
+
+/// The first word of a text that is a registration of civil aircraft: "N677F", "G-LUXE", "D-ADLR". Empty if
+/// none is.
+std::string registration_in(const std::string& text) {
+  static const std::regex registration(R"(\b(N[1-9][0-9]{1,4}[A-Z]{0,2}|[A-Z]{1,2}-[A-Z]{3,4})\b)");
+  std::smatch found;
+  return std::regex_search(text, found, registration) ? found.str() : std::string();
 }
 
 // Of an even number of values the lower of the middle two. Changes the order of the values.
@@ -389,20 +400,31 @@ const std::string& Flight::time_variable() const {
 }
 
 std::string Flight::attribute(const std::string& name) const {
-  return implementation_->file->text_attribute(FlightFile::whole_file, name);
+  std::string text = file().text_attribute(FlightFile::whole_file, name);
+  if (!text.empty()) return text;
+  for (const std::string& other : file().attribute_names(FlightFile::whole_file)) {
+    if (strcasecmp(other.c_str(), name.c_str()) != 0) continue;
+    text = file().text_attribute(FlightFile::whole_file, other);
+    if (!text.empty()) break;
+  }
+  return text;
+}
+
+std::string Flight::first_attribute(std::initializer_list<const char*> names) const {
+  for (const char* const name : names) {
+    if (std::string text = attribute(name); !text.empty()) return text;
+  }
+  return {};
 }
 
 std::string Flight::aircraft() const {
-  const std::string platform = attribute("platform");
-  return platform.empty() ? attribute("Aircraft") : platform;
+  std::string stated = first_attribute({"platform", "aircraft", "tail_number", "platform_name"});
+  return stated.empty() ? registration_in(first_attribute({"source", "title"})) : stated;
 }
 
-std::string Flight::project() const {
-  const std::string project = attribute("project");
-  return project.empty() ? attribute("ProjectName") : project;
-}
+std::string Flight::project() const { return first_attribute({"project", "ProjectName", "campaign"}); }
 
-std::string Flight::flight_number() const { return attribute("FlightNumber"); }
+std::string Flight::flight_number() const { return first_attribute({"FlightNumber", "flight_number"}); }
 
 const std::vector<std::string>& Flight::variables() const { return implementation_->names; }
 

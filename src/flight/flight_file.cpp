@@ -1,14 +1,22 @@
 #include "flight/flight_file.hpp"
 
+#include <fmt/format.h>
+
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 
 #include <pcor/words/error.hpp>
+#include <pcor/words/shell_word.hpp>
 #include "flight/file_in_hand.hpp"
 #include "flight/netcdf_file.hpp"
 
 namespace pcor::internal {
+
+// icartt_file.cpp: series over time in text files of the ICARTT conventions.
+bool is_icartt(const std::filesystem::path& path);
+std::unique_ptr<FlightFile> open_icartt(const std::filesystem::path& path);
+
 namespace {
 
 /// A format of flight files.
@@ -22,6 +30,7 @@ constexpr Format formats[] = {
      [](const std::filesystem::path& path) -> std::unique_ptr<FlightFile> {
        return std::make_unique<NetcdfFile>(path);
      }},
+    {is_icartt, open_icartt},
 };
 
 void require_readable(const std::filesystem::path& path) {
@@ -48,7 +57,15 @@ std::unique_ptr<FlightFile> open_flight_file(const std::filesystem::path& path) 
   for (const Format& format : formats) {
     if (format.is_of(path)) return format.open(path);
   }
-  throw Error(Error::Code::file, path.string() + " is not a netCDF file; name one that `ncdump -k` knows");
+  if (path.extension() == ".gz")
+    throw Error(Error::Code::file,
+                fmt::format("{} is compressed; unpack it with gunzip -k {}, and name {}", path.string(),
+                            shell_word(path.string()), (path.parent_path() / path.stem()).string()));
+  throw Error(
+      Error::Code::file,
+      path.string() +
+          " is not a netCDF file, nor one of ICARTT; name one that `ncdump -k` knows, or whose first line "
+          "ends in 1001");
 }
 
 }  // namespace pcor::internal

@@ -57,6 +57,10 @@ class FlightFile {
   /// where the file states none. @throws Error if what it states is no range.
   virtual std::array<double, 2> valid_range(int variable) const = 0;
 
+  /// What the file states as a range of valid values in words that are none, which `valid_range` ignores:
+  /// "valid_range = \"all\"". Empty where there is nothing of the kind.
+  virtual std::string ignored_range(int /*variable*/) const { return {}; }
+
   /// How many records should be read, one variable after the other, before the next are.
   virtual std::size_t records_at_once() const { return records_per_block; }
 

@@ -59,6 +59,40 @@ NumberType number_type(int type) {
   return {};
 }
 
+/// An attribute that states a range, or one end of it.
+struct RangeAttribute {
+  const char* name;
+  std::size_t first, count;
+};
+
+constexpr RangeAttribute range_attributes[] = {
+    {"valid_range", 0, 2}, {"valid_min", 0, 1}, {"valid_max", 1, 1}};
+
+bool is_text(const Attribute& attribute) { return attribute.type == NC_CHAR || attribute.type == NC_STRING; }
+
+/// Numbers as lists of them are written: "1, 2", "c(1, 2)" of R, "[1 2]", "1 to 2". Empty
+/// where the text is none.
+std::vector<double> numbers_of(std::string text) {
+  const std::size_t open = text.find_first_of("([");
+  if (open != std::string::npos && (open == 0 || text.substr(0, open) == "c")) text.erase(0, open + 1);
+  const std::size_t close = text.find_last_not_of(" )]");
+  text.resize(close == std::string::npos ? 0 : close + 1);
+  if (const std::size_t to = text.find(" to "); to != std::string::npos) text.replace(to, 4, " ");
+  std::vector<double> numbers;
+  for (const char* at = text.c_str(); *at != '\0';) {
+    if (std::strchr(", \t", *at) != nullptr) {
+      ++at;
+      continue;
+    }
+    char* end = nullptr;
+    const double number = std::strtod(at, &end);
+    if (end == at) return {};
+    numbers.push_back(number);
+    at = *end == 'f' ? end + 1 : end;
+  }
+  return numbers;
+}
+
 bool is_float(int type) { return type == NC_FLOAT || type == NC_DOUBLE; }
 
 bool begins_with(const std::filesystem::path& path, std::string_view bytes) {
@@ -258,19 +292,7 @@ std::vector<double> NetcdfFile::number_attribute(int variable, const std::string
     attempt("cannot read the attribute " + name, [&] { attribute->getValues(numbers.data()); });
     return numbers;
   }
-  const std::string text = text_attribute(variable, name);
-  for (const char* at = text.c_str(); *at != '\0';) {
-    if (std::strchr(", \t", *at) != nullptr) {
-      ++at;
-      continue;
-    }
-    char* end = nullptr;
-    const double number = std::strtod(at, &end);
-    if (end == at) return {};
-    numbers.push_back(number);
-    at = *end == 'f' ? end + 1 : end;
-  }
-  return numbers;
+  return numbers_of(text_attribute(variable, name));
 }
 
 bool NetcdfFile::is_numeric(int variable) const { return number_type(type_of(variable)).type != NC_NAT; }
@@ -328,21 +350,27 @@ void NetcdfFile::refuse_attribute(int variable, const std::string& name, const s
                   shell_word(fmt::format("{},{},d,,", name, of)), shell_word(path_.string())));
 }
 
+std::string NetcdfFile::ignored_range(int variable) const {
+  for (const RangeAttribute& each : range_attributes) {
+    const auto attribute = find_attribute(variable, each.name);
+    if (attribute && is_text(*attribute) && stored_numbers(variable, each.name).size() != each.count)
+      return fmt::format("{} = {}", each.name, in_quotes(text_attribute(variable, each.name)));
+  }
+  return {};
+}
+
 std::array<double, 2> NetcdfFile::valid_range(int variable) const {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  constexpr struct {
-    const char* name;
-    std::size_t first, count;
-  } attributes[] = {{"valid_range", 0, 2}, {"valid_min", 0, 1}, {"valid_max", 1, 1}};
   const int type = type_of(variable);
   const bool is_packed =
       !is_float(type) &&
       !(text_attribute(variable, "scale_factor") + text_attribute(variable, "add_offset")).empty();
   std::array<double, 2> range{-infinity, infinity};
-  for (const auto& each : attributes) {
+  for (const RangeAttribute& each : range_attributes) {
     const auto attribute = find_attribute(variable, each.name);
     if (!attribute) continue;
     const std::vector<double> numbers = stored_numbers(variable, each.name);
+    if (numbers.size() != each.count && is_text(*attribute)) continue;  // see `ignored_range`
     if (numbers.size() != each.count)
       refuse_attribute(variable, each.name, each.count == 1 ? "is not one number" : "is not two numbers");
     if (is_packed && is_float(attribute->type))

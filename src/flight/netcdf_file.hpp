@@ -80,6 +80,7 @@ class NetcdfFile : public FlightFile {
   double greatest_number(int variable) const override;
   std::vector<double> missing_values(int variable) const override;
   std::array<double, 2> valid_range(int variable) const override;
+  std::string ignored_range(int variable) const override;
   void read(int variable, RecordBlock records, double* out) const override;
 
  protected:

@@ -6,6 +6,8 @@
 #include <pcor/words/error.hpp>
 #include <pcor/words/utc.hpp>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -42,6 +44,26 @@ std::optional<double> first_value(const FlightFile& file, std::optional<int> var
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
+// FlightDate as the midnight it begins with.
+std::optional<double> flight_date(const FlightFile& file) {
+  const std::string text = file.text_attribute(FlightFile::whole_file, "FlightDate");
+  int year = 0, month = 0, day_of_month = 0;
+  if (std::sscanf(text.c_str(), "%5d/%5d/%5d", &month, &day_of_month, &year) != 3 &&
+      std::sscanf(text.c_str(), "%4d-%2d-%2d", &year, &month, &day_of_month) != 3)
+    return std::nullopt;
+  const auto midnight = midnight_of(year, month, day_of_month);
+  return midnight && is_plausible(*midnight) ? midnight : std::nullopt;
+}
+
+// "Seconds since 1970-01-01, 00:00:00 UTC" as UDUNITS spells it: lower case before the date, no comma.
+std::string usual_spelling(std::string units) {
+  const std::size_t digit = std::min(units.find_first_of("0123456789"), units.size());
+  std::transform(units.begin(), units.begin() + static_cast<std::ptrdiff_t>(digit), units.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  std::replace(units.begin(), units.end(), ',', ' ');
+  return units;
+}
+
 // What the units of a time say.
 struct Counting {
   std::string of;  // for messages: the file and the variable
@@ -52,10 +74,13 @@ struct Counting {
 
 Counting counting_of(const FlightFile& file, int variable) {
   const std::string name = file.variable_name(variable), path = file.path().string();
+  const std::optional<double> date = flight_date(file);
+  const std::string day_of_flight = date ? utc_text(*date, "%Y-%m-%d") : "DAY";
   return {path + ": " + name,
-          "state the unit it is in with ncatted -a units," + name +
-              ",o,c,\"seconds since 2004-02-18 00:00:00 +0000\" " + path,
-          file.text_attribute(variable, "units"), file.text_attribute(variable, "calendar")};
+          "state the unit it is in with ncatted -a units," + name + ",o,c,\"seconds since " + day_of_flight +
+              " 00:00:00 +0000\" " + path +
+              (date ? "" : ", where DAY is the one that it counts from, as year-month-day"),
+          usual_spelling(file.text_attribute(variable, "units")), file.text_attribute(variable, "calendar")};
 }
 
 // "seconds since 2004-02-18 00:00:00 +0000" as a conversion to seconds since 1970; nothing if there is no
@@ -93,17 +118,6 @@ std::optional<double> base_time(const FlightFile& file) {
   return base && is_plausible(*base) ? base : std::nullopt;
 }
 
-// FlightDate as the midnight it begins with.
-std::optional<double> flight_date(const FlightFile& file) {
-  const std::string text = file.text_attribute(FlightFile::whole_file, "FlightDate");
-  int year = 0, month = 0, day_of_month = 0;
-  if (std::sscanf(text.c_str(), "%5d/%5d/%5d", &month, &day_of_month, &year) != 3 &&
-      std::sscanf(text.c_str(), "%4d-%2d-%2d", &year, &month, &day_of_month) != 3)
-    return std::nullopt;
-  const auto midnight = midnight_of(year, month, day_of_month);
-  return midnight && is_plausible(*midnight) ? midnight : std::nullopt;
-}
-
 // The start in TimeInterval ("14:22:00-15:13:00"), seconds since midnight.
 std::optional<double> interval_start(const FlightFile& file) {
   const std::string text = file.text_attribute(FlightFile::whole_file, "TimeInterval");
@@ -129,6 +143,16 @@ std::optional<int> find_time_variable(const FlightFile& file) {
   for (const char* name : {"Time", "time", "TIME"})
     if (const auto variable = file.find_variable(name); variable && file.dimensions_of(*variable).size() == 1)
       return variable;
+  if (file.find_variable("time_offset")) return std::nullopt;
+  // A coordinate variable, or one with the standard name time, that counts since a date.
+  for (int variable = 0; variable < file.variable_count(); ++variable) {
+    const std::vector<int> dimensions = file.dimensions_of(variable);
+    if (dimensions.size() != 1 || !file.is_numeric(variable)) continue;
+    const bool is_time = file.text_attribute(variable, "standard_name") == "time" ||
+                         file.dimension_name(dimensions.front()) == file.variable_name(variable);
+    if (is_time && file.text_attribute(variable, "units").find(" since ") != std::string::npos)
+      return variable;
+  }
   return std::nullopt;
 }
 

@@ -6,13 +6,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include <pcor/effects/catalogue.hpp>
 #include <pcor/residuals/reference.hpp>
 #include <pcor/roles/with_roles.hpp>
 #include <pcor/words/error.hpp>
 #include <pcor/words/utc.hpp>
+#include "inspect/plausibility.hpp"
+#include "residuals/ground_velocity.hpp"
 #include "roles/recorded_series.hpp"
+#include "roles/resolution.hpp"
+#include "roles/role_evidence.hpp"
 #include "roles/usual_variables.hpp"
 
 namespace pcor {
@@ -96,11 +101,16 @@ class Look {
 
   Inspection run(const std::vector<std::filesystem::path>& laws) {
     identify();
+    find_candidates();
     find_model();
     find_roles();
+    find_unused();
     look_at_samples();
+    if (result_.model) result_.problems = find_problems(flight_, *result_.model);
+    state_rounding();
     result_.laws = laws_of_flight(flight_, laws, result_.notes);
     result_.corrected_pressure = processed_static_pressure(flight_, family_);
+    find_reference();
     return std::move(result_);
   }
 
@@ -136,14 +146,23 @@ class Look {
     model.model.aircraft = result_.aircraft;
     model.model.name =
         fmt::format("{} as recorded", result_.aircraft.empty() ? family_.title : result_.aircraft);
+    std::vector<std::string> notes;
     try {
-      std::vector<std::string> notes;
       model = with_roles(model, flight_, notes);
     } catch (const Error& error) {
       if (error.code() == Error::Code::file) throw;
-      result_.notes.emplace_back(error.what());
-      return;
+      if (!take_pressures_by_evidence(model)) {
+        result_.notes.emplace_back(what_pressures_lack(error));
+        return;
+      }
     }
+    for (const std::string& note : notes) {
+      if (note.find("corrected already by the archive") != std::string::npos) {
+        result_.is_corrected = true;
+        result_.notes.push_back(note);
+      }
+    }
+    add_roles_by_evidence(model);
     const auto has = [&model](Quantity role) { return model.variables.count(role) != 0; };
     model.model.effects = {neutral_effect("static-constant"), neutral_effect("static-qp")};
     if (has(Quantity::radome_dynamic_pressure) && has(Quantity::attack_differential_pressure)) {
@@ -153,6 +172,175 @@ class Look {
     }
     model.law.source = "no law yet: all terms are zero until a refit finds them";
     result_.model = std::move(model);
+  }
+
+  void find_candidates() {
+    evidence_ = role_candidates(flight_);
+    for (const auto& [series, candidates] : evidence_) {
+      for (const RoleCandidate& each : candidates)
+        result_.candidates[series].push_back({each.variable, each.score, each.why});
+    }
+  }
+
+  /// The best candidate for a role; null if it is not sure.
+  const RoleCandidate* sure_candidate(const std::string& series) const {
+    if (!roles_.empty()) return nullptr;  // the user has chosen the names
+    // A Mach number of the recording system is made of the pressures, and no independent one.
+    if (series == facts_of(Quantity::mach).name) return nullptr;
+    const auto found = evidence_.find(series);
+    return found != evidence_.end() && is_sure(found->second) ? &found->second.front() : nullptr;
+  }
+
+  /// The pair of a file that no aircraft's names fit. What is named is this flight's own.
+  bool take_pressures_by_evidence(ModelFile& model) {
+    if (!roles_.empty()) return false;
+    const auto best = [this](const std::string& series) {
+      const auto found = evidence_.find(series);
+      return found == evidence_.end() ? std::vector<RoleCandidate>() : found->second;
+    };
+    const std::vector<RoleCandidate> static_pressures = best("static_pressure");
+    const std::vector<RoleCandidate> dynamic_pressures = best("dynamic_pressure");
+    if (static_pressures.empty() || dynamic_pressures.empty() ||
+        static_pressures.front().variable == dynamic_pressures.front().variable)
+      return false;
+    model.roles_from.clear();
+    model.variables[Quantity::static_pressure] = static_pressures.front().variable;
+    model.variables[Quantity::dynamic_pressure] = dynamic_pressures.front().variable;
+    for (const auto* candidates : {&static_pressures, &dynamic_pressures}) {
+      if (is_sure(*candidates)) continue;
+      result_.notes.push_back(fmt::format(
+          "{} as {} is a guess: {}{}", candidates->front().variable,
+          candidates == &static_pressures ? "static_pressure" : "dynamic_pressure", candidates->front().why,
+          candidates->size() > 1
+              ? fmt::format("; its rival is {}: {}", (*candidates)[1].variable, (*candidates)[1].why)
+              : ""));
+    }
+    return true;
+  }
+
+  /// Where one of the two pressures is there, the other is what is wanted.
+  std::string what_pressures_lack(const Error& error) const {
+    const bool has_static = evidence_.count("static_pressure") != 0;
+    const bool has_dynamic = evidence_.count("dynamic_pressure") != 0;
+    if (!roles_.empty() || has_static == has_dynamic) return error.what();
+    const auto& [there, wanted] =
+        has_static ? std::pair("static_pressure", "dynamic") : std::pair("dynamic_pressure", "static");
+    return fmt::format(
+        "{}: it has {} ({}), but no {} pressure of a known name, unit and size, without which nothing can be "
+        "corrected; ask for the file with the {} pressure, or name it in the [variables] of a model",
+        flight_.path().string(), evidence_.at(there).front().variable, evidence_.at(there).front().why,
+        wanted, wanted);
+  }
+
+  /// Roles that the aircraft's names leave open. A Mach number of the recording system is made of the
+  /// pressures.
+  void add_roles_by_evidence(ModelFile& model) {
+    const auto has = [&model](Quantity role) { return model.variables.count(role) != 0; };
+    const bool has_temperature = has(Quantity::recovery_temperature) || has(Quantity::ambient_temperature);
+    const bool has_humidity = has(Quantity::vapor_pressure) || has(Quantity::dew_point);
+    for (std::size_t i = 0; i < role_count; ++i) {
+      const auto role = static_cast<Quantity>(i);
+      const std::string name(facts_of(role).name);
+      const RoleCandidate* const candidate = sure_candidate(name);
+      const bool is_known = !result_.alike.empty() && !family_.names_of(name).empty() &&
+                            has_any(family_.names_of(name), std::string(facts_of(role).unit));
+      const bool is_chosen =
+          has(role) || is_known ||
+          (has_temperature &&
+           (role == Quantity::recovery_temperature || role == Quantity::ambient_temperature)) ||
+          (has_humidity && (role == Quantity::vapor_pressure || role == Quantity::dew_point)) ||
+          (role == Quantity::dew_point && has(Quantity::vapor_pressure)) ||
+          (role == Quantity::ambient_temperature && has(Quantity::recovery_temperature));
+      if (candidate == nullptr || is_chosen || plays_a_role(model, candidate->variable)) continue;
+      model.variables[role] = candidate->variable;
+    }
+    model.model.moist =
+        has(Quantity::vapor_pressure) || has(Quantity::dew_point) || has(Quantity::frost_point);
+  }
+
+  /// Of a pair that the flight's own processing made, by the aircraft's names.
+  bool is_processed(const std::string& variable) const {
+    return std::any_of(family_.processed.begin(), family_.processed.end(), [&](const PressurePair& pair) {
+      return variable == pair.static_pressure || variable == pair.dynamic_pressure;
+    });
+  }
+
+  bool has_any(const std::vector<std::string>& names, const std::string& unit) const {
+    return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+      return has_values(flight_, name, unit, family_.unit_of(name));
+    });
+  }
+
+  static bool plays_a_role(const ModelFile& model, const std::string& variable) {
+    return std::any_of(model.variables.begin(), model.variables.end(),
+                       [&](const auto& each) { return each.second == variable; });
+  }
+
+  /// Nothing vanishes: what has no role and is a candidate for none is listed too.
+  void find_unused() {
+    std::set<std::string> used{flight_.time_variable()};
+    for (const InspectedRole& role : result_.roles) {
+      used.insert(role.variable);
+      used.insert(role.others.begin(), role.others.end());
+    }
+    for (const auto& [series, candidates] : result_.candidates) {
+      for (const InspectedCandidate& each : candidates) used.insert(each.variable);
+    }
+    std::vector<std::string> ignored;
+    for (const std::string& name : flight_.variables()) {
+      if (used.count(name) == 0) result_.not_used.push_back(name);
+      const VariableInfo& info = flight_.variable(name);
+      if (!info.ignored_range.empty()) ignored.push_back(fmt::format("{} ({})", name, info.ignored_range));
+    }
+    if (!ignored.empty()) {
+      result_.notes.push_back(
+          fmt::format("the file states what is valid in words that are no numbers, which are ignored: of {}",
+                      fmt::join(ignored, ", ")));
+    }
+  }
+
+  /// Of coarse pressures rounding is what is known of their noise.
+  void state_rounding() {
+    if (!result_.model) return;
+    for (const Quantity role : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
+      const double step = resolution_of(read_role(flight_, *result_.model, role).values);
+      if (step >= coarse_pressure)
+        result_.model->uncertainty.roles[role] = 0.001 * std::round(1000.0 * rounding_of(step));
+    }
+  }
+
+  /// What a fit can be held against: the laser, what the avionics say, what the operator made of other
+  /// sensors, heights. A pressure that was made of the model's own says nothing.
+  void find_reference() {
+    if (!result_.model) return;
+    const ModelFile& model = *result_.model;
+    const auto has = [&](Quantity role) { return model.variables.count(role) != 0; };
+    constexpr const char* avionics = "PS_A";
+    const bool has_heights = has(Quantity::altitude) && has(Quantity::latitude) &&
+                             (has(Quantity::recovery_temperature) || has(Quantity::ambient_temperature));
+    const std::string& corrected = result_.corrected_pressure;
+    const bool has_wind =
+        has_heights && has(Quantity::heading) && !read_ground_velocity(flight_, model).speed.values.empty();
+    std::vector<std::string>& references = result_.references;
+    if (has(Quantity::lams_airspeed)) {
+      references = {"lams"};
+    } else if (model.variables.at(Quantity::static_pressure) != avionics &&
+               has_values(flight_, avionics, "hPa")) {
+      references = {fmt::format("pressure:{}", avionics)};
+    } else if (!corrected.empty() && family_.name != aircraft_families().front().name) {
+      references = {"pressure:" + corrected};
+    } else if (has_heights) {
+      if (has_wind) references.emplace_back("wind");
+      references.emplace_back("height");
+    } else if (!corrected.empty() && !result_.is_corrected) {
+      references = {"pressure:" + corrected};
+    }
+    for (const auto& [role, variable] : model.variables) {
+      const bool is_input = role == Quantity::static_pressure || role == Quantity::dynamic_pressure ||
+                            role == Quantity::ambient_temperature;
+      for (const char* const name : {"PSXC", "QCXC", "ATX"})
+        result_.has_results = result_.has_results || (is_input && variable == model.output_name(name));
+    }
   }
 
   /// The part of a series that has values.
@@ -193,7 +381,14 @@ class Look {
       for (const std::string& name : names) {
         if (has_values(flight_, name, std::string(facts.unit), family_.unit_of(name))) found.push_back(name);
       }
-      if (found.empty()) {
+      if (const RoleCandidate* const candidate = sure_candidate(series);
+          found.empty() && candidate != nullptr) {
+        add_role(series, {candidate->variable});
+        if (!is_processed(candidate->variable)) result_.roles.back().why = candidate->why;
+        for (const RoleCandidate& each : evidence_.at(series)) {
+          if (each.variable != candidate->variable) result_.roles.back().others.push_back(each.variable);
+        }
+      } else if (found.empty()) {
         add_missing(facts, names);
       } else {
         add_role(series, found);
@@ -248,6 +443,7 @@ class Look {
   Flight flight_;
   std::string roles_;
   const AircraftFamily& family_;
+  std::map<std::string, std::vector<RoleCandidate>> evidence_;
   Inspection result_;
 };
 

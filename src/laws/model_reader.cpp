@@ -213,7 +213,8 @@ class Reader final : TomlReader {
     const Quantity quantity = role(entry);
     const std::string unit = text(entry, "a unit in quotes");
     const std::string wanted(facts_of(quantity).unit);
-    if (file_.variables.count(quantity) == 0) {
+    // Without pressures the variables are those of the flight's aircraft.
+    if (file_.variables.count(quantity) == 0 && file_.variables.count(Quantity::static_pressure) != 0) {
       fail(entry.place, fmt::format("the role {} has a unit but no variable; name its variable in "
                                     "[variables], or remove it from [units]",
                                     in_quotes(entry.key)));

@@ -23,6 +23,7 @@
 #include "roles/fast_series.hpp"
 #include "roles/model_inputs.hpp"
 #include "roles/recorded_series.hpp"
+#include "roles/resolution.hpp"
 
 namespace pcor {
 
@@ -157,6 +158,20 @@ ModelSamples read_inputs(const Flight& flight, const std::vector<ModelInput>& in
   return samples;
 }
 
+/// Pressures in steps that are no small part of their noise.
+void note_coarse(const ModelSamples& samples, std::vector<std::string>& notes) {
+  for (const Quantity quantity : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
+    const std::vector<double>* const values = samples.find(quantity);
+    const double step = values == nullptr ? 0.0 : resolution_of(*values);
+    if (step < coarse_pressure) continue;
+    const auto variable = std::find_if(samples.variables.begin(), samples.variables.end(),
+                                       [quantity](const auto& each) { return each.first == quantity; });
+    notes.push_back(
+        fmt::format("{} is recorded in steps of {:.2g} hPa: rounding alone is {:.2g} hPa rms of its noise",
+                    variable->second, step, rounding_of(step)));
+  }
+}
+
 /// The airspeed along the beam, at the highest rate at which a pressure is recorded. What else a model adds
 /// up from the records, rates of change and the time, is that of the whole record.
 FastSeries read_along_beam(const Flight& flight, const ModelFile& model,
@@ -193,6 +208,7 @@ ModelSamples internal::read_model_columns(const Flight& flight, const ModelFile&
   const Chain chain = chain_of(model.model, roles);
   const std::vector<ModelInput> inputs = model_inputs(flight, model, chain, roles, notes);
   ModelSamples samples = read_inputs(flight, inputs, 1, notes);
+  note_coarse(samples, notes);
   const auto add = [&samples](Quantity quantity, std::vector<double> values) {
     samples.columns.emplace_back(quantity, std::move(values));
     samples.roles.push_back(quantity);

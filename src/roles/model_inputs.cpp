@@ -9,6 +9,7 @@
 #include <pcor/words/error.hpp>
 #include <pcor/words/suggest.hpp>
 #include <pcor/words/utc.hpp>
+#include "roles/plausible_pressure.hpp"
 #include "roles/recorded_series.hpp"
 #include "roles/usual_variables.hpp"
 #include "words/quoting.hpp"
@@ -54,6 +55,7 @@ Chain chain_of(const Model& model, const std::vector<Quantity>& roles) {
 
 std::vector<ModelInput> model_inputs(const Flight& flight, const ModelFile& file, const Chain& chain,
                                      const std::vector<Quantity>& roles, std::vector<std::string>& notes) {
+  require_possible_pressure(flight, file);
   const AircraftFamily& family = family_of(file, flight);
   const auto conversion_of = [&](Quantity role) {
     const QuantityFacts& facts = facts_of(role);
@@ -96,13 +98,20 @@ std::vector<ModelInput> model_inputs(const Flight& flight, const ModelFile& file
     inputs.push_back({name, extra_quantity(i), UnitConversion()});
   }
   std::vector<std::string> flagged;
+  std::vector<std::string> without_range;
   for (const ModelInput& input : inputs) {
     flight.require_values(input.variable);
+    if (!flight.variable(input.variable).ignored_range.empty()) without_range.push_back(input.variable);
     if (!flight.variable(input.variable).flags.empty()) flagged.push_back(input.variable);
   }
   if (!flagged.empty()) {
     notes.push_back(fmt::format("samples that flags of the file call bad or missing count as missing: of {}",
                                 fmt::join(flagged, ", ")));
+  }
+  if (!without_range.empty()) {
+    notes.push_back(
+        fmt::format("the file states what is valid in words that are no numbers, which are ignored: of {}",
+                    fmt::join(without_range, ", ")));
   }
   return inputs;
 }

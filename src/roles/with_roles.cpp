@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include <pcor/words/error.hpp>
@@ -36,6 +37,8 @@ class Completion {
       const auto role = static_cast<Quantity>(i);
       if (!is_chosen_above(role) && !has(role)) take(role);
     }
+    for (auto unit = file_.units.begin(); unit != file_.units.end();)
+      unit = has(unit->first) ? std::next(unit) : file_.units.erase(unit);
     notes.push_back(fmt::format("roles by {}: {}", family_.name, fmt::join(taken_, ", ")));
     for (std::string& trap : traps_) notes.push_back(std::move(trap));
     return std::move(file_);
@@ -75,17 +78,29 @@ class Completion {
     return false;
   }
 
-  void take_pressures() {
-    std::vector<std::string> looked_for;
-    for (const PressurePair& pair : family_.measured) {
-      looked_for.push_back(pair.name());
+  bool take_pair(const std::vector<PressurePair>& pairs) {
+    for (const PressurePair& pair : pairs) {
       if (!is_there(Quantity::static_pressure, pair.static_pressure) ||
           !is_there(Quantity::dynamic_pressure, pair.dynamic_pressure))
         continue;
       set(Quantity::static_pressure, pair.static_pressure);
       set(Quantity::dynamic_pressure, pair.dynamic_pressure);
+      return true;
+    }
+    return false;
+  }
+
+  void take_pressures() {
+    if (has(Quantity::static_pressure) && has(Quantity::dynamic_pressure)) return;
+    if (take_pair(family_.measured)) return;
+    if (take_pair(family_.processed)) {
+      traps_.push_back(fmt::format("{} and {} are corrected already by the archive: a fit finds what is left",
+                                   file_.variables.at(Quantity::static_pressure),
+                                   file_.variables.at(Quantity::dynamic_pressure)));
       return;
     }
+    std::vector<std::string> looked_for;
+    for (const PressurePair& pair : family_.measured) looked_for.push_back(pair.name());
     throw Error(fmt::format(
         "{}: it has no pair of static and dynamic pressure of the names that {} has ({}); name them as "
         "static_pressure and dynamic_pressure in the [variables] of the model, or another aircraft by roles "
@@ -128,9 +143,14 @@ ModelFile with_units(ModelFile model, const AircraftFamily& family) {
 
 }  // namespace
 
+bool names_pressures_alone(const ModelFile& model) {
+  return model.variables.size() == 2 && model.variables.count(Quantity::static_pressure) != 0 &&
+         model.variables.count(Quantity::dynamic_pressure) != 0;
+}
+
 ModelFile with_roles(const ModelFile& model, const Flight& flight, std::vector<std::string>& notes) {
-  if (model.variables.count(Quantity::static_pressure) != 0 ||
-      model.variables.count(Quantity::dynamic_pressure) != 0) {
+  if (!names_pressures_alone(model) && (model.variables.count(Quantity::static_pressure) != 0 ||
+                                        model.variables.count(Quantity::dynamic_pressure) != 0)) {
     return model.roles_from.empty() ? model : with_units(model, family_named(model.roles_from));
   }
   if (model.roles_from.empty()) {

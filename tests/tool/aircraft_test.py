@@ -57,7 +57,7 @@ FAMILIES = {
          "ALTref": Copy("GGALT", "m"), "PITCHref": Copy("PITCH", "deg"), "ROLLref": Copy("ROLL", "deg"),
          "THDGref": Copy("THDG", "deg"), "AA.d": Copy("ATTACK", "deg"), "SA.d": Copy("SSLIP", "deg"),
          "TAS.d": Copy("TASX", "m/s")},
-        "pressure:PSMX.d", {"PSMX.d": Copy("TRUE_PS", "mb")}),
+        "pressure:PS.c", {"PS.c": Copy("TRUE_PS", "mb")}),
     "halo-bahamas": (
         {"institution": "DLR", "title": "HALO BAHAMAS basic data", "platform": "HALO D-ADLR"}, "tid", "TIME",
         {"PS": Copy("PSFD", "Pa", 100.0), "QC": Copy("QCF", "Pa", 100.0), "TAT": Copy("TTRR", "K", 1.0, KELVIN),

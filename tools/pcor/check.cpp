@@ -29,14 +29,22 @@ struct Options {
 
 /// What the reference of a check begins with; the model of the second system follows.
 const std::string second_system = "static:";
+/// The total pressure of a pair of variables is of no model: "total:PS_A+QC_A".
+const std::string second_pair = "total:";
+
+bool is_pair(const std::string& reference) {
+  return reference.rfind(second_pair, 0) == 0 && reference.find('+') != std::string::npos;
+}
 
 /// A check of an option: the form that names a second static system.
 CLI::Validator is_second_system() {
   const auto check = [](const std::string& reference) -> std::string {
-    if (reference.rfind(second_system, 0) == 0) return "";
+    for (const std::string& form : {second_system, second_pair}) {
+      if (reference.rfind(form, 0) == 0) return "";
+    }
     return fmt::format(
         "'{}' is nothing that check takes, for it needs no reference but a second static system: "
-        "static:OTHER.toml",
+        "static:OTHER.toml, total:OTHER.toml or total:STATIC+DYNAMIC",
         reference);
   };
   return {check, ""};
@@ -44,7 +52,13 @@ CLI::Validator is_second_system() {
 
 /// The file of the second system's model; empty where none is named.
 std::string second_model(const Options& options) {
-  return options.reference.empty() ? "" : options.reference.substr(second_system.size());
+  if (options.reference.empty() || is_pair(options.reference)) return "";
+  return options.reference.substr(options.reference.find(':') + 1);
+}
+
+ModelFile read_second(const Options& options) {
+  const std::string& text = options.reference;
+  return is_pair(text) ? *read_reference(text, {})->model() : read_model(second_model(options));
 }
 
 nlohmann::ordered_json as_json(const ReportTable& table) {
@@ -237,7 +251,7 @@ void run(const Options& options) {
   if (!options.model.empty()) model = read_model_for(options.model, flights, options.common);
   CheckOptions check_options;
   check_options.mask = mask_options(options.flights);
-  if (!options.reference.empty()) check_options.second = read_model(second_model(options));
+  if (!options.reference.empty()) check_options.second = read_second(options);
   Checks checks;
   {
     Progress bar("checking", !options.common.quiet);

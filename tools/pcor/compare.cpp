@@ -130,8 +130,10 @@ void print_model(const ModelComparison& model, bool with_name) {
     say("  {} to {}  bias {:+.3f}, rms {:.3f} hPa  {}\n", utc_text(worst.begin),
         utc_text(worst.end, "%H:%M:%S"), worst.statistics.bias, worst.statistics.rms, worst.regimes);
   }
-  say("R2 {:.4f}; the residuals are correlated in time: {:.1f} samples count as one independent one\n",
-      model.r_squared, model.samples_per_independent);
+  // Of differences over time there is no R2.
+  if (std::isfinite(model.r_squared)) say("R2 {:.4f}; ", model.r_squared);
+  say("the residuals are correlated in time: {:.1f} samples count as one independent one\n",
+      model.samples_per_independent);
   if (model.reference_error > 0.0)
     say("The calibration of the reference may shift the bias by {:.2f} hPa (one standard uncertainty).\n",
         model.reference_error);

@@ -12,6 +12,7 @@
 #include <pcor/words/utc.hpp>
 #include "comparison.hpp"
 #include "diagnosis.hpp"
+#include "fit_options.hpp"
 #include "model_of_flight.hpp"
 #include "progress.hpp"
 #include "report_origin.hpp"
@@ -25,6 +26,7 @@ struct Options {
   CommonOptions common;
   ComparisonOptions comparison;
   CandidateOptions candidates;
+  FitOptions held;
   std::string model;
   std::vector<std::string> not_variables;
   bool no_file_variables = false;
@@ -188,7 +190,8 @@ void run(const Options& options) {
   require_figures(options.common);
   JsonResult json(options.common);
   const FlightSet flights = CommandFlights(options.comparison).flights;
-  const ModelFile model = read_model_for(options.model, flights, options.common);
+  const ModelFile model =
+      with_fit_options(read_model_for(options.model, flights, options.common), options.held);
   const ChosenReferences references = references_to_fit(options.comparison, model, flights);
   DiagnoseOptions diagnose_with;
   diagnose_with.mask = mask_options(options.comparison);
@@ -235,6 +238,7 @@ std::function<void()> add_diagnose(CLI::App& program) {
       ->required()
       ->type_name("MODEL.toml");
   add_candidate_options(*command, options->candidates);
+  add_fit_options(*command, options->held);
   add_list_option(*command, "--not-variable", options->not_variables,
                   "a variable of the flights that is not searched for structure that no effect explains")
       ->type_name("NAME");

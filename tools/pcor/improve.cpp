@@ -12,6 +12,7 @@
 #include <pcor/improve/improvement_report.hpp>
 #include "comparison.hpp"
 #include "diagnosis.hpp"
+#include "fit_options.hpp"
 #include "fit_summary.hpp"
 #include "model_of_flight.hpp"
 #include "progress.hpp"
@@ -26,6 +27,7 @@ struct Options {
   CommonOptions common;
   ComparisonOptions comparison;
   CandidateOptions candidates;
+  FitOptions held;
   std::string model;
   std::string output;
   std::string loss = "huber";
@@ -148,7 +150,8 @@ void run(const Options& options) {
   require_figures(options.common);
   JsonResult json(options.common);
   const CommandFlights of(options.comparison, options.holdout);
-  const ModelFile model = read_model_for(options.model, of.flights, options.common);
+  const ModelFile model =
+      with_fit_options(read_model_for(options.model, of.flights, options.common), options.held);
   const ChosenReferences references = references_to_fit(options.comparison, model, of.all());
   ImproveOptions improve_with = improve_options(options, model, of);
   Improvement improvement;
@@ -164,6 +167,7 @@ void run(const Options& options) {
       for (const std::string& flight : options.holdout) fit += " --holdout " + shell_word(flight);
       if (options.training_share < 1.0) fit += fmt::format(" --training-share {}", options.training_share);
       if (options.loss != "huber") fit += " --loss " + options.loss;
+      fit += command_line(options.held);
       add_commands(tried, options.model, options.comparison.flights.front(), fit);
     }
   }
@@ -195,6 +199,7 @@ std::function<void()> add_improve(CLI::App& program) {
                    "the best model, whole or not at all; - for standard output")
       ->required()
       ->type_name("BEST.toml");
+  add_fit_options(*command, options->held);
   add_list_option(*command, "--holdout", options->holdout,
                   "a flight that is not fitted, but tests every step")
       ->type_name("T.nc");

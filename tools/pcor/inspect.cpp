@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <map>
 #include <memory>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include <pcor/inspect/inspection_report.hpp>
 #include <pcor/words/error.hpp>
+#include <pcor/words/replacement_file.hpp>
 #include <pcor/words/utc.hpp>
 #include "command.hpp"
 #include "model_name.hpp"
@@ -32,7 +34,53 @@ double rate_of(const Inspection& flight) {
   return flight.rates.empty() ? 0.0 : flight.rates.rbegin()->first / flight.time.step;
 }
 
-nlohmann::ordered_json as_json(const Inspection& flight) {
+/// A command of this program on the flight.
+std::string command(const std::string& name, const Inspection& flight, const std::string& options) {
+  return fmt::format("{} {} {}{}", program(), name, shell_word(flight.path), options);
+}
+
+/// Up to three commands to paste, in order, that end with a corrected flight and a report.
+std::vector<std::string> next_commands(const Options& options, const Inspection& flight) {
+  const std::string stamp = options.time_stamp == "begin" ? "" : " --time-stamp " + options.time_stamp;
+  const std::string output = " -o corrected.nc --report corrected.html";
+  const std::string corrected = stamp + (flight.has_results ? " --suffix _NEW" : "") + output;
+  std::string reference;
+  for (const std::string& each : flight.references) reference += " --reference " + shell_word(each);
+  if (!flight.model) return {};
+  const auto fits =
+      std::find_if(flight.laws.begin(), flight.laws.end(), [](const LawOfFlight& law) { return law.fits(); });
+  if (options.model.empty() && fits != flight.laws.end()) {
+    const std::string law = " -m " + shell_word(fits->path.stem().string());
+    std::vector<std::string> commands{command("process", flight, law + stamp + output),
+                                      command("check", flight, law + stamp + " --report check.html")};
+    if (!flight.references.empty())
+      commands.push_back(command("compare", flight,
+                                 fmt::format("{}{} --reference {} --report compare.html", law, stamp,
+                                             shell_word(flight.references.back()))));
+    return commands;
+  }
+  std::vector<std::string> commands;
+  const std::string model = " -m " + shell_word(options.model.empty() ? "model.toml" : options.model);
+  if (options.model.empty()) {
+    const std::string roles = options.roles.empty() ? "" : " --roles " + shell_word(options.roles);
+    commands.push_back(command("inspect", flight, roles + stamp + " --write-model model.toml"));
+  }
+  if (flight.is_corrected || reference.empty()) {
+    commands.push_back(command("process", flight, model + corrected));
+    commands.push_back(reference.empty()
+                           ? command("check", flight, model + stamp + " --report check.html")
+                           : command("compare", flight,
+                                     fmt::format("{}{} --reference {} --report compare.html", model, stamp,
+                                                 shell_word(flight.references.back()))));
+  } else {
+    commands.push_back(
+        command("refit", flight, model + stamp + reference + " -o fitted.toml --report refit.html"));
+    commands.push_back(command("process", flight, " -m fitted.toml" + corrected));
+  }
+  return commands;
+}
+
+nlohmann::ordered_json as_json(const Options& options, const Inspection& flight) {
   nlohmann::ordered_json result;
   result["path"] = flight.path;
   result["aircraft"] = flight.aircraft;
@@ -55,7 +103,8 @@ nlohmann::ordered_json as_json(const Inspection& flight) {
                         {"present", role.present},
                         {"trap", role.trap},
                         {"verified", role.is_verified},
-                        {"others", role.others}};
+                        {"others", role.others},
+                        {"why", role.why}};
   }
   result["roles"] = roles;
   result["missing"] = nlohmann::ordered_json::array();
@@ -90,6 +139,23 @@ nlohmann::ordered_json as_json(const Inspection& flight) {
                               {"is_in_time", law.is_in_time},
                               {"why_not", law.why_not}});
   }
+  nlohmann::ordered_json candidates = nlohmann::ordered_json::object();
+  for (const auto& [role, all] : flight.candidates) {
+    for (const InspectedCandidate& each : all)
+      candidates[role].push_back({{"variable", each.variable}, {"score", each.score}, {"why", each.why}});
+  }
+  result["candidates"] = candidates;
+  result["not_used"] = flight.not_used;
+  result["problems"] = nlohmann::ordered_json::array();
+  for (const Problem& problem : flight.problems) {
+    result["problems"].push_back({{"variable", problem.variable},
+                                  {"kind", problem.kind},
+                                  {"times", problem.times},
+                                  {"number", problem.number},
+                                  {"unit", problem.unit},
+                                  {"action", problem.action}});
+  }
+  result["next"] = next_commands(options, flight);
   result["notes"] = flight.notes;
   return result;
 }
@@ -133,6 +199,37 @@ void print_roles(const Inspection& flight) {
     say("?: no public document of this aircraft was found that has the name; make sure of what it is\n");
   for (const InspectedRole& role : flight.roles) {
     if (!role.trap.empty()) say("{}: {}\n", role.variable, role.trap);
+  }
+}
+
+/// Variables that may play a role that none plays, or that another plays.
+void print_candidates(const Inspection& flight) {
+  std::map<std::string, std::string> role_of;
+  for (const InspectedRole& role : flight.roles) role_of[role.role] = role.variable;
+  for (const InspectedRole& role : flight.roles) {
+    if (!role.why.empty())
+      say("{} is {}: {}{}\n", role.variable, role.role, role.why,
+          role.others.empty() ? "" : fmt::format("; rivals: {}", fmt::join(role.others, ", ")));
+  }
+  bool any = false;
+  for (const auto& [role, candidates] : flight.candidates) {
+    for (const InspectedCandidate& each : candidates) {
+      if (role_of.count(role) != 0) continue;
+      if (!any)
+        say("\n{:<33} {:<12} {:>5}  what speaks for it\n", "candidates, not taken", "variable", "score");
+      any = true;
+      say("{:<33} {:<12} {:>5.2f}  {}\n", role, each.variable, each.score, each.why);
+    }
+  }
+  if (any) say("write the right one into the [variables] of the model\n");
+  if (!flight.not_used.empty()) say("\nnot used: {}\n", fmt::join(flight.not_used, ", "));
+}
+
+void print_problems(const Inspection& flight) {
+  if (!flight.problems.empty()) say("\nproblems\n");
+  for (const Problem& problem : flight.problems) {
+    say("  {}: {}, {:.4g} {}, {} UTC; {}\n", problem.variable, problem.kind, problem.number, problem.unit,
+        problem.times, problem.action);
   }
 }
 
@@ -181,7 +278,9 @@ void print_by_gps(const GpsDesign& gps) {
 void print(const Inspection& flight) {
   print_head(flight);
   print_roles(flight);
+  print_candidates(flight);
   print_missing(flight);
+  print_problems(flight);
   print_flown(flight);
   if (flight.by_gps) print_by_gps(*flight.by_gps);
   if (!flight.laws.empty()) say("\nlaws for this aircraft\n");
@@ -195,30 +294,15 @@ void print(const Inspection& flight) {
   for (const std::string& note : flight.notes) say("\nNote: {}.\n", note);
 }
 
-/// What to do next, as a command to paste.
-std::string next_step(const Options& options, const Inspection& flight) {
-  const std::string path = shell_word(flight.path);
-  if (!flight.model)
-    return "To go on: name the variables of its pressures in the [variables] of a model "
-           "(data/models/FORMAT.md)";
-  if (!options.model.empty()) {
-    std::string reference;
-    if (flight.model->variables.count(Quantity::lams_airspeed) == 0) {
-      if (flight.corrected_pressure.empty())
-        return fmt::format("To see what else can be said of its pressures: {} check {}", program(), path);
-      reference = " --reference " + shell_word("pressure:" + flight.corrected_pressure);
-    }
-    return fmt::format("To fit a law: {} refit {} -m {} -o fitted.toml{}", program(), path,
-                       shell_word(options.model), reference);
+void print_next(const Options& options, const Inspection& flight) {
+  const std::vector<std::string> commands = next_commands(options, flight);
+  if (commands.empty()) {
+    say("To go on: name the variables of its pressures in the [variables] of a model "
+        "(data/models/FORMAT.md)\n");
+    return;
   }
-  const auto fits =
-      std::find_if(flight.laws.begin(), flight.laws.end(), [](const LawOfFlight& law) { return law.fits(); });
-  if (fits != flight.laws.end())
-    return fmt::format("To correct it by one of these laws: {} process {} -m {} -o corrected.nc", program(),
-                       path, shell_word(fits->path.stem().string()));
-  const std::string roles = options.roles.empty() ? "" : " --roles " + shell_word(options.roles);
-  return fmt::format("To have a model to start from: {} inspect {}{} --write-model model.toml", program(),
-                     path, roles);
+  say("{}\n", commands.size() == 1 ? "Next:" : "Next, in this order:");
+  for (const std::string& each : commands) say("  {}\n", each);
 }
 
 /// Looks at the flights one after the other. Where there are several, one that cannot be read ends nothing.
@@ -236,11 +320,44 @@ std::vector<Inspection> look(const Options& options, bool text, nlohmann::ordere
       tell(error.what());
       continue;
     }
-    result.push_back(as_json(all.back()));
+    result.push_back(as_json(options, all.back()));
     if (text) print(all.back());
   }
   if (all.empty()) throw Error(fmt::format("none of the {} flights can be read", options.flights.size()));
   return all;
+}
+
+/// The model, and as comments the variables that may play a role that it leaves open.
+void deliver_with_candidates(const Inspection& flight, const std::string& output) {
+  std::string comments;
+  for (const auto& [role, candidates] : flight.candidates) {
+    const Quantity quantity = quantity_named(role);
+    const bool is_open = quantity != Quantity::count && is_role(quantity);
+    for (const InspectedCandidate& each : candidates) {
+      const auto& variables = flight.model->variables;
+      const bool is_used = std::any_of(variables.begin(), variables.end(), [&](const auto& variable) {
+        return variable.second == each.variable;
+      });
+      if (is_open && !is_used)
+        comments += fmt::format("# {} = \"{}\"  # {:.2f}: {}\n", role, each.variable, each.score, each.why);
+    }
+  }
+  std::string text = write_model(*flight.model);
+  if (const std::size_t begin = text.find("[variables]\n"); begin != std::string::npos && !comments.empty()) {
+    std::size_t end = text.find("\n\n", begin);
+    end = end == std::string::npos ? text.size() : end + 1;
+    text.insert(end, "# others that may be meant, with what speaks for them:\n" + comments);
+  }
+  if (output == "-") {
+    fmt::print("{}", text);
+    return;
+  }
+  ReplacementFile file{std::filesystem::path(output)};
+  std::ofstream stream(file.path(), std::ios::binary);
+  stream << text;
+  stream.close();
+  if (!stream) throw Error(output + ": cannot be written; check the space and the permissions");
+  file.commit();
 }
 
 void run(const Options& options) {
@@ -262,7 +379,7 @@ void run(const Options& options) {
           fmt::format("{}: no model can be written, for the first flight cannot be read", options.model));
     if (!first.model)
       throw Error(fmt::format("{}: no model can be written: {}", first.path, first.notes.front()));
-    deliver(*first.model, options.model, inputs);
+    deliver_with_candidates(first, options.model);
   }
   if (wants_report(options.common)) {
     write_report_of_run(inspection_report(all), {{}, options.flights, {}}, options.common);
@@ -272,7 +389,7 @@ void run(const Options& options) {
   if (!text) return;
   say("\n");
   say_written({options.model, options.common.report, options.common.figures, options.common.json});
-  say("{}\n", next_step(options, first));
+  print_next(options, first);
 }
 
 }  // namespace

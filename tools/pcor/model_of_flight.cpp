@@ -16,8 +16,9 @@ namespace pcor::tool {
 ModelFile read_model_for(const std::filesystem::path& model, const FlightSet& flights,
                          const CommonOptions& options) {
   const ModelFile file = read_model(model);
-  if (flights.empty() || (file.roles_from.empty() && file.variables.count(Quantity::static_pressure) != 0))
-    return file;
+  const bool is_complete = file.roles_from.empty() && file.variables.count(Quantity::static_pressure) != 0 &&
+                           !names_pressures_alone(file);
+  if (flights.empty() || is_complete) return file;
   std::vector<std::string> notes;
   ModelFile whole = model_for_flights(file, flights, notes);
   tell_choices(notes, options.quiet);

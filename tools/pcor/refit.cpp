@@ -14,6 +14,7 @@
 #include <pcor/fit/refit_report.hpp>
 #include <pcor/words/error.hpp>
 #include "comparison.hpp"
+#include "fit_options.hpp"
 #include "fit_summary.hpp"
 #include "flight_table.hpp"
 #include "model_of_flight.hpp"
@@ -33,8 +34,7 @@ struct Options {
   std::string reference_output;
   std::string table;
   std::string loss = "huber";
-  std::vector<std::string> fix;
-  std::vector<std::string> free;
+  FitOptions held;
   std::vector<std::string> stages;
   std::vector<std::string> holdout;
   double training_share = 1.0;
@@ -79,8 +79,8 @@ RefitOptions refit_options(const Options& options, const FlightSet& holdout) {
   RefitOptions refit;
   refit.mask = mask_options(options.comparison);
   refit.loss = *loss_named(options.loss);
-  refit.fix = options.fix;
-  refit.free = options.free;
+  refit.fix = options.held.fix;
+  refit.free = options.held.free;
   for (const std::string& stage : options.stages) refit.stages.push_back(parse_stage(stage));
   refit.fit_reference = !options.reference_output.empty();
   refit.use_prior = options.prior;
@@ -414,11 +414,7 @@ std::function<void()> add_refit(CLI::App& program) {
                    "loss function, which limits the weight of outliers; none: least squares")
       ->check(CLI::IsMember({"tukey", "huber", "soft-l1", "cauchy", "none"}))
       ->capture_default_str();
-  add_list_option(*command, "--fix", options->fix,
-                  "hold a coefficient, or all of an effect, at its value, e.g. static-qp.a2")
-      ->type_name("NAME");
-  add_list_option(*command, "--free", options->free, "fit a coefficient that the model file holds fixed")
-      ->type_name("NAME");
+  add_fit_options(*command, options->held);
   add_list_option(
       *command, "--stage", options->stages,
       "fit these coefficients to these regimes alone, each interval with an offset of its own, the "

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,6 +41,7 @@ struct VariableInfo {
   std::vector<std::string> dimensions;
   std::vector<std::pair<std::string, std::string>> attributes;  ///< all of them as text, without trailing NUL
   std::vector<std::string> flags;  ///< variables of flags that call samples unusable, which are missing then
+  std::string ignored_range;       ///< what the file states as valid values in words that are no numbers
   std::optional<std::array<double, 2>> modulus_range;  ///< of an angle: where it starts again
 };
 
@@ -126,11 +128,14 @@ class Flight {
   /// The variable that holds the time: "Time", "time" or "time_offset".
   const std::string& time_variable() const;
 
-  /// A global attribute as text; empty if absent.
+  /// A global attribute as text; empty if absent. Its name is looked for without regard to case where none is
+  /// spelt so.
   std::string attribute(const std::string& name) const;
-  std::string aircraft() const;       ///< `platform`, or in old files `Aircraft`
-  std::string project() const;        ///< `project`, or in old files `ProjectName`
-  std::string flight_number() const;  ///< `FlightNumber`
+
+  /// `platform`, `Aircraft`, `tail_number` or `platform_name`, else a registration in `source` or `title`.
+  std::string aircraft() const;
+  std::string project() const;        ///< `project`, in old files `ProjectName`, or `campaign`
+  std::string flight_number() const;  ///< `FlightNumber` or `flight_number`
 
   /// The names of all variables, in the file's order.
   const std::vector<std::string>& variables() const;
@@ -178,6 +183,8 @@ class Flight {
   void read_sample_times(RecordBlock block, int rate, double* out) const;
 
  private:
+  std::string first_attribute(std::initializer_list<const char*> names) const;
+
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };

@@ -28,6 +28,24 @@ struct InspectedRole {
   std::string trap{};       ///< what a user of it should know; may be empty
   bool is_verified = true;  ///< the name is in a public document of the aircraft
   std::vector<std::string> others{};  ///< further variables that could play it
+  std::string why{};  ///< the evidence where its name is not one of the aircraft's; else empty
+};
+
+/// What is wrong, or coarse, with a variable.
+struct Problem {
+  std::string variable;
+  std::string kind;   ///< "jump", "recorded in steps"
+  std::string times;  ///< UTC
+  double number = 0.0;
+  std::string unit;
+  std::string action;  ///< what is done about it, and how to have it otherwise
+};
+
+/// A variable that may play a role, by name, long name, unit and values.
+struct InspectedCandidate {
+  std::string variable;
+  double score = 0.0;  ///< 0 to 1
+  std::string why;
 };
 
 /// A role that no variable plays, and what cannot be done without it.
@@ -54,6 +72,13 @@ struct Inspection {
   std::map<int, std::size_t> rates{};  ///< how many variables have so many samples in a record
   std::vector<InspectedRole> roles{};
   std::vector<MissingRole> missing{};
+  std::map<std::string, std::vector<InspectedCandidate>> candidates{};  ///< of each role, the likeliest first
+  std::vector<std::string> not_used{};  ///< variables that play no role and are candidates for none
+  std::vector<Problem> problems{};
+  /// What a law can be fitted to, as `--reference` takes it: "wind" and "height"; empty: nothing.
+  std::vector<std::string> references{};
+  bool has_results = false;   ///< its inputs have names that `process` gives its results
+  bool is_corrected = false;  ///< the pressures of the model are corrected already
   std::string
       corrected_pressure{};  ///< the static pressure that the flight's own processing corrected; may be empty
   std::vector<FrozenSpan>

@@ -15,6 +15,7 @@
 #include <pcor/words/error.hpp>
 #include "residuals/references/neighbours.hpp"
 #include "residuals/samples_key.hpp"
+#include "roles/jumps.hpp"
 #include "roles/recorded_series.hpp"
 
 namespace pcor::internal {
@@ -106,8 +107,8 @@ class HeightReference final : public Reference {
 
   std::string inputs() const override { return name() + inputs_of(model_, false); }
 
-  ModelSamples read(const Flight& flight, const std::vector<double>&,
-                    std::vector<std::string>&) const override {
+  ModelSamples read(const Flight& flight, const std::vector<double>& time,
+                    std::vector<std::string>& notes) const override {
     RecordedSeries height = read_role(flight, model_, Quantity::altitude);
     const RecordedSeries latitude = read_role(flight, model_, Quantity::latitude);
     if (height.values.empty() || latitude.values.empty()) {
@@ -116,6 +117,10 @@ class HeightReference final : public Reference {
                       ": no height of GPS and latitude with units (GGALT, GGLAT and the like), which the "
                       "reference height needs; name them in the table [variables] of the model");
     }
+    const std::vector<Jump> jumps = find_jumps(height.values, time);
+    for (const Jump& jump : jumps)
+      notes.push_back(told_of(height.variable, jump, time) + ", which are left out");
+    mask(jumps, height.values);
     for (std::size_t i = 0; i < height.values.size(); ++i)
       height.values[i] = geopotential_height(latitude.values[i], height.values[i]);
     ModelSamples samples;

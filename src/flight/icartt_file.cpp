@@ -1,0 +1,295 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <pcor/words/error.hpp>
+#include "flight/flight_file.hpp"
+#include "numerics/missing.hpp"
+#include "words/quoting.hpp"
+
+namespace pcor::internal {
+namespace {
+
+constexpr int series_over_time = 1001;  // the file format index
+
+std::string trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return std::string(text.substr(first, text.find_last_not_of(" \t\r") - first + 1));
+}
+
+std::vector<std::string> fields_of(std::string_view line) {
+  std::vector<std::string> fields;
+  for (std::size_t from = 0; from <= line.size();) {
+    const std::size_t to = std::min(line.find(',', from), line.size());
+    fields.push_back(trimmed(line.substr(from, to - from)));
+    from = to + 1;
+  }
+  return fields;
+}
+
+/// The length of the header and the file format index, of the first line; empty for another kind of line.
+std::optional<std::pair<int, int>> first_line_of(const std::string& line) {
+  int length = 0;
+  int index = 0;
+  char more = 0;
+  const int found = std::sscanf(line.c_str(), " %6d , %6d%c", &length, &index, &more);
+  const bool ends = found == 2 || (found == 3 && (more == ',' || more == ' ' || more == '\r'));
+  return ends && length > 12 && index >= 1001 && index < 10000 ? std::optional(std::pair(length, index))
+                                                               : std::nullopt;
+}
+
+/// A text file of the ICARTT conventions, file format index 1001: one independent variable, the time, and
+/// series over it. All of it is in memory.
+///
+/// The independent variable is called Time; its unit has the date of the header, from whose midnight it
+/// counts. Missing values, and those below or above the limits of detection, are NaN; scale factors are
+/// applied. The header's lines and its "NAME: value" comments are attributes: institution, source, project,
+/// platform.
+class IcarttFile final : public FlightFile {
+ public:
+  /// @throws Error "path:line: what is wrong; what to do"
+  explicit IcarttFile(std::filesystem::path path);
+
+  const std::filesystem::path& path() const override { return path_; }
+  int variable_count() const override { return static_cast<int>(variables_.size()); }
+  std::optional<int> find_variable(const std::string& name) const override;
+  std::string variable_name(int variable) const override { return at(variable).name; }
+  std::vector<int> dimensions_of(int /*variable*/) const override { return {0}; }
+  std::string dimension_name(int /*dimension*/) const override { return "Time"; }
+  std::size_t dimension_length(int /*dimension*/) const override { return variables_.front().values.size(); }
+  std::vector<std::string> attribute_names(int variable) const override;
+  std::string text_attribute(int variable, const std::string& name) const override;
+  std::vector<double> number_attribute(int variable, const std::string& name) const override;
+  bool is_numeric(int /*variable*/) const override { return true; }
+  double greatest_number(int variable) const override;
+  std::vector<double> missing_values(int /*variable*/) const override { return {}; }
+  std::array<double, 2> valid_range(int variable) const override;
+  void read(int variable, RecordBlock records, double* out) const override;
+
+ private:
+  using Attributes = std::vector<std::pair<std::string, std::string>>;
+
+  struct Variable {
+    std::string name;
+    Attributes attributes{};
+    double scale = 1.0;
+    std::vector<double> missing{};  ///< flags of missing values
+    std::vector<double> values{};
+  };
+
+  class Reader;
+
+  const Variable& at(int variable) const { return variables_.at(static_cast<std::size_t>(variable)); }
+  const Attributes& attributes_of(int variable) const;
+
+  std::filesystem::path path_;
+  Attributes attributes_;
+  std::vector<Variable> variables_;  // the time first
+};
+
+/// Reads line after line.
+class IcarttFile::Reader {
+ public:
+  explicit Reader(IcarttFile& file) : file_(file), stream_(file.path_, std::ios::binary) {}
+
+  void run() {
+    const auto first = first_line_of(next());
+    if (!first) fail("this is not the first line of an ICARTT file");
+    if (first->second != series_over_time)
+      fail(fmt::format("the file format index is {}, and pcor reads 1001, series over time; convert the file",
+                       first->second));
+    put("institution", next(2));
+    put("source", next());
+    put("project", next());
+    next();  // volumes
+    const std::string date = date_of(next());
+    next();  // interval
+    Variable& time = file_.variables_.emplace_back(Variable{"Time"});
+    const std::vector<std::string> independent = fields_of(next());
+    time.attributes = {{"units", fmt::format("seconds since {} 00:00:00 +0000", date)},
+                       {"long_name", independent.front()}};
+    time.missing = {-9999.0, -99999.0};
+    read_names(count());
+    read_comments();
+    if (line_ != first->first)
+      fail(fmt::format("the header has {} lines, but {} according to its first line", line_, first->first));
+    read_values();
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& why) const {
+    throw Error(Error::Code::file,
+                fmt::format("{}:{}: {}; correct it, or fetch the file again from its source",
+                            file_.path_.string(), line_, why));
+  }
+
+  /// The next line, or one further on.
+  std::string next(int lines = 1) {
+    std::string line;
+    for (; lines > 0; --lines) {
+      ++line_;
+      if (!std::getline(stream_, line)) fail("the header ends too early");
+    }
+    return trimmed(line);
+  }
+
+  double number(const std::string& text) const {
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    if (text.empty() || *end != '\0') fail(fmt::format("{} is not a number", in_quotes(text)));
+    return value;
+  }
+
+  int count() {
+    const double value = number(next());
+    if (!(value >= 0.0 && value < 100'000.0)) fail("a number of lines is wanted here");
+    return static_cast<int>(value);
+  }
+
+  std::vector<double> numbers(int wanted) {
+    std::vector<double> all;
+    while (static_cast<int>(all.size()) < wanted) {
+      for (const std::string& field : fields_of(next())) all.push_back(number(field));
+    }
+    return all;
+  }
+
+  void put(const std::string& name, const std::string& value) {
+    if (!value.empty() && value != "N/A") file_.attributes_.emplace_back(name, value);
+  }
+
+  std::string date_of(const std::string& line) const {
+    int year = 0;
+    int month = 0;
+    int day = 0;
+    if (std::sscanf(line.c_str(), "%4d%*[ ,]%2d%*[ ,]%2d", &year, &month, &day) != 3)
+      fail("the date of the data is wanted here, as 2018,11,04");
+    return fmt::format("{:04}-{:02}-{:02}", year, month, day);
+  }
+
+  void read_names(int variables) {
+    const std::vector<double> scales = numbers(variables);
+    const std::vector<double> missing = numbers(variables);
+    for (int i = 0; i < variables; ++i) {
+      const std::vector<std::string> fields = fields_of(next());
+      Variable& variable = file_.variables_.emplace_back(Variable{fields[0]});
+      if (fields.size() > 1) variable.attributes.emplace_back("units", fields[1]);
+      if (fields.size() > 2 && !fields[2].empty()) variable.attributes.emplace_back("icartt_name", fields[2]);
+      if (fields.size() > 3 && !fields[3].empty()) variable.attributes.emplace_back("long_name", fields[3]);
+      variable.scale = scales[static_cast<std::size_t>(i)];
+      variable.missing = {missing[static_cast<std::size_t>(i)]};
+    }
+  }
+
+  void read_comments() {
+    for (int special = count(); special > 0; --special) next();
+    const int normal = count();
+    for (int i = 0; i < normal; ++i) {
+      const std::string line = next();
+      const std::size_t colon = line.find(':');
+      if (colon == std::string::npos || line.substr(0, colon).find_first_of(" ,") != std::string::npos)
+        continue;
+      const std::string name = line.substr(0, colon);
+      const std::string value = trimmed(line.substr(colon + 1));
+      put(name, value);
+      if (name == "LLOD_FLAG" || name == "ULOD_FLAG") {
+        for (Variable& variable : file_.variables_) {
+          if (&variable != &file_.variables_.front()) variable.missing.push_back(number(value));
+        }
+      }
+    }
+  }
+
+  void read_values() {
+    for (std::string line; std::getline(stream_, line);) {
+      ++line_;
+      const char* at = line.c_str();
+      if (trimmed(line).empty()) continue;
+      for (Variable& variable : file_.variables_) {
+        char* end = nullptr;
+        const double value = std::strtod(at, &end);
+        const bool is_last = &variable == &file_.variables_.back();
+        while (*end == ' ' || *end == '\t' || *end == '\r') ++end;
+        if (end == at || (*end != ',' && !(is_last && *end == '\0')))
+          fail(fmt::format("{} numbers with commas between them are wanted here", file_.variables_.size()));
+        const bool is_missing =
+            std::find(variable.missing.begin(), variable.missing.end(), value) != variable.missing.end();
+        variable.values.push_back(is_missing ? nan : value * variable.scale);
+        at = end + (*end == ',' ? 1 : 0);
+      }
+    }
+  }
+
+  IcarttFile& file_;
+  std::ifstream stream_;
+  int line_ = 0;
+};
+
+IcarttFile::IcarttFile(std::filesystem::path path) : path_(std::move(path)) { Reader(*this).run(); }
+
+std::optional<int> IcarttFile::find_variable(const std::string& name) const {
+  for (int i = 0; i < variable_count(); ++i) {
+    if (at(i).name == name) return i;
+  }
+  return std::nullopt;
+}
+
+const IcarttFile::Attributes& IcarttFile::attributes_of(int variable) const {
+  return variable == whole_file ? attributes_ : at(variable).attributes;
+}
+
+std::vector<std::string> IcarttFile::attribute_names(int variable) const {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : attributes_of(variable)) names.push_back(name);
+  return names;
+}
+
+std::string IcarttFile::text_attribute(int variable, const std::string& name) const {
+  for (const auto& [key, value] : attributes_of(variable)) {
+    if (key == name) return value;
+  }
+  return {};
+}
+
+std::vector<double> IcarttFile::number_attribute(int variable, const std::string& name) const {
+  const std::string text = text_attribute(variable, name);
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  return text.empty() || *end != '\0' ? std::vector<double>() : std::vector<double>{value};
+}
+
+double IcarttFile::greatest_number(int /*variable*/) const { return std::numeric_limits<double>::max(); }
+
+std::array<double, 2> IcarttFile::valid_range(int /*variable*/) const { return {-infinity, infinity}; }
+
+void IcarttFile::read(int variable, RecordBlock records, double* out) const {
+  const std::vector<double>& values = at(variable).values;
+  std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(records.first), records.count, out);
+}
+
+}  // namespace
+
+bool is_icartt(const std::filesystem::path& path) {
+  std::string start(40, '\0');
+  std::ifstream(path, std::ios::binary).read(start.data(), static_cast<std::streamsize>(start.size()));
+  return first_line_of(start.substr(0, start.find('\n'))).has_value();
+}
+
+std::unique_ptr<FlightFile> open_icartt(const std::filesystem::path& path) {
+  return std::make_unique<IcarttFile>(path);
+}
+
+}  // namespace pcor::internal

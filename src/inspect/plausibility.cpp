@@ -1,0 +1,188 @@
+#include "inspect/plausibility.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <pcor/physics/air_data.hpp>
+#include <pcor/physics/constants.hpp>
+#include <pcor/physics/standard_atmosphere.hpp>
+#include <pcor/words/utc.hpp>
+#include "numerics/median.hpp"
+#include "numerics/missing.hpp"
+#include "roles/jumps.hpp"
+#include "roles/plausible_pressure.hpp"
+#include "roles/recorded_series.hpp"
+#include "roles/resolution.hpp"
+
+namespace pcor::internal {
+namespace {
+
+using Q = Quantity;
+
+/// From which step on a series is coarse, in the unit of its role.
+constexpr std::array<std::pair<Quantity, double>, 9> coarse_steps{{{Q::static_pressure, 0.1},
+                                                                   {Q::dynamic_pressure, 0.1},
+                                                                   {Q::radome_dynamic_pressure, 0.1},
+                                                                   {Q::recovery_temperature, 0.25},
+                                                                   {Q::ambient_temperature, 0.25},
+                                                                   {Q::altitude, 5.0},
+                                                                   {Q::attack, 0.2},
+                                                                   {Q::heading, 0.5},
+                                                                   {Q::ground_speed, 0.5}}};
+
+class Plausibility {
+ public:
+  Plausibility(const Flight& flight, const ModelFile& model)
+      : flight_(flight), model_(model), time_(record_times(flight)) {}
+
+  std::vector<Problem> run() {
+    pressure();
+    temperature_against_height();
+    dynamic_against_airspeed();
+    angles();
+    ground_speed_against_position();
+    jumps();
+    steps();
+    return std::move(problems_);
+  }
+
+ private:
+  RecordedSeries read(Quantity role) const { return read_role(flight_, model_, role); }
+
+  std::string all_times() const {
+    return fmt::format("{} to {}", utc_text(time_.front(), "%H:%M:%S"), utc_text(time_.back(), "%H:%M:%S"));
+  }
+
+  void add(const std::string& variable, std::string kind, double number, std::string unit,
+           std::string action) {
+    problems_.push_back({variable, std::move(kind), all_times(), number, std::move(unit), std::move(action)});
+  }
+
+  static double median_of(const std::vector<double>& a, const std::vector<double>& b,
+                          double (*of)(double, double)) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) values.push_back(of(a[i], b[i]));
+    return median(std::move(values));
+  }
+
+  void pressure() {
+    const std::optional<ImpossiblePressure> wrong = impossible_pressure(flight_, model_);
+    if (!wrong) return;
+    add(model_.variables.at(Q::static_pressure), "static pressure over that of " + wrong->against,
+        wrong->ratio, "1",
+        fmt::format("refused; state its unit in the [units] of the model{}",
+                    wrong->unit.empty() ? "" : fmt::format(", static_pressure = \"{}\"", wrong->unit)));
+  }
+
+  void temperature_against_height() {
+    const RecordedSeries temperature = read(Q::ambient_temperature);
+    const RecordedSeries altitude = read(Q::altitude);
+    constexpr double most = 40.0;  // K: no air is so far from the standard atmosphere
+    const double excess = median_of(temperature.values, altitude.values,
+                                    [](double t, double h) { return t - standard_temperature(h); });
+    if (std::abs(excess) > most)
+      add(temperature.variable, "temperature against height", excess, "K",
+          "taken as it is; state its unit in the [units] of the model");
+  }
+
+  void dynamic_against_airspeed() {
+    const RecordedSeries p = read(Q::static_pressure);
+    const RecordedSeries q = read(Q::dynamic_pressure);
+    const RecordedSeries airspeed = read(Q::true_airspeed);
+    if (p.values.empty() || q.values.empty() || airspeed.values.empty()) return;
+    const RecordedSeries temperature = read(Q::ambient_temperature);
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < p.values.size(); ++i) {
+      if (!(p.values[i] > 0.0) || !(q.values[i] > 0.0) || !(airspeed.values[i] > 60.0)) continue;
+      const double t = temperature.values.empty() ? standard_temperature(pressure_altitude(p.values[i]))
+                                                  : temperature.values[i];
+      const double mach = mach_number(p.values[i], q.values[i], dry_air<double>());
+      ratios.push_back(true_airspeed(mach, t, dry_air<double>()) / airspeed.values[i]);
+    }
+    const double ratio = median(std::move(ratios));
+    constexpr double most = 0.1;
+    if (std::abs(ratio - 1.0) > most)
+      add(q.variable, "airspeed by the pressures over " + airspeed.variable, ratio, "1",
+          "taken as it is; name another dynamic pressure in the [variables] of the model, or its unit in "
+          "[units]");
+  }
+
+  void angles() {
+    for (const Quantity role : {Q::heading, Q::ground_track, Q::pitch, Q::roll}) {
+      const RecordedSeries angle = read(role);
+      if (angle.values.empty()) continue;
+      double most = 0.0;
+      for (const double each : angle.values)
+        most = std::isfinite(each) ? std::max(most, std::abs(each)) : most;
+      // A heading of radians goes to 6.28, and one of degrees to 360, unless the flight is one leg.
+      const bool is_turn = role == Q::heading || role == Q::ground_track;
+      const bool looks_like_radians = is_turn && most > 3.0 && most < 6.3;
+      if (looks_like_radians)
+        add(angle.variable, "angle that goes as far as radians do", most, "degree",
+            fmt::format("taken as it is; if it is in radians, {} = \"radian\" in the [units] of the model",
+                        facts_of(role).name));
+    }
+  }
+
+  void ground_speed_against_position() {
+    const RecordedSeries latitude = read(Q::latitude);
+    const RecordedSeries longitude = read_usual(flight_, family_of(model_, flight_), "longitude");
+    const RecordedSeries speed = read(Q::ground_speed);
+    if (latitude.values.empty() || longitude.values.empty() || speed.values.empty()) return;
+    constexpr std::size_t apart = 20;
+    constexpr double metres = 6371000.0 * constants::radians_per_degree;
+    std::vector<double> ratios;
+    for (std::size_t i = apart; i < time_.size(); ++i) {
+      const double north = latitude.values[i] - latitude.values[i - apart];
+      const double east = std::remainder(longitude.values[i] - longitude.values[i - apart], 360.0) *
+                          std::cos(latitude.values[i] * constants::radians_per_degree);
+      const double by_position = metres * std::hypot(north, east) / (time_[i] - time_[i - apart]);
+      if (speed.values[i] > 40.0) ratios.push_back(by_position / speed.values[i]);
+    }
+    const double ratio = median(std::move(ratios));
+    constexpr double most = 0.05;
+    if (std::abs(ratio - 1.0) > most)
+      add(speed.variable, "speed by the positions over it", ratio, "1",
+          "taken as it is; state its unit in the [units] of the model");
+  }
+
+  void jumps() {
+    const RecordedSeries altitude = read(Q::altitude);
+    for (const Jump& jump : find_jumps(altitude.values, time_)) {
+      problems_.push_back({altitude.variable, "jump",
+                           fmt::format("{} to {}", utc_text(time_[jump.first]),
+                                       utc_text(time_[jump.first + jump.count - 1], "%H:%M:%S")),
+                           jump.size, "m", "masked where heights are compared"});
+    }
+  }
+
+  void steps() {
+    for (const auto& [role, coarse] : coarse_steps) {
+      const RecordedSeries series = read(role);
+      const double step = resolution_of(series.values);
+      if (step >= 0.999 * coarse)
+        add(series.variable, "recorded in steps", step, std::string(facts_of(role).unit),
+            fmt::format("taken as it is; rounding alone is {:.2g} {} rms", rounding_of(step),
+                        facts_of(role).unit));
+    }
+  }
+
+  const Flight& flight_;
+  const ModelFile& model_;
+  std::vector<double> time_;
+  std::vector<Problem> problems_;
+};
+
+}  // namespace
+
+std::vector<Problem> find_problems(const Flight& flight, const ModelFile& model) {
+  return Plausibility(flight, model).run();
+}
+
+}  // namespace pcor::internal

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include <pcor/flight/flight.hpp>
+#include <pcor/inspect/inspect.hpp>
+#include <pcor/laws/model_file.hpp>
+
+namespace pcor::internal {
+
+/// What cannot be right of the series of a model on a flight: pressures against height, airspeed and each
+/// other, the temperature against height, angles in other units, ground speeds against positions, jumps, and
+/// values in coarse steps.
+std::vector<Problem> find_problems(const Flight& flight, const ModelFile& model);
+
+}  // namespace pcor::internal

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace pcor::internal {
+
+/// Samples between a jump away from where a series was and the jump back.
+struct Jump {
+  std::size_t first = 0;
+  std::size_t count = 0;
+  double size = 0.0;  ///< the largest departure from a line across
+};
+
+/// Where a height of GPS leaves its path and comes back within a minute: its rate departs from that of the
+/// seconds around by eight of its robust deviations and by more than 20 m/s. @param time s
+std::vector<Jump> find_jumps(const std::vector<double>& height, const std::vector<double>& time);
+
+/// Makes them missing.
+void mask(const std::vector<Jump>& jumps, std::vector<double>& values);
+
+/// "GGALT jumps by up to 320 m from 2015-07-29 19:11:00 to 19:11:03 UTC (4 samples)".
+std::string told_of(const std::string& variable, const Jump& jump, const std::vector<double>& time);
+
+}  // namespace pcor::internal

@@ -1,0 +1,34 @@
+#include "roles/resolution.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace pcor::internal {
+
+double rounding_of(double step) { return step / std::sqrt(12.0); }
+
+double resolution_of(const std::vector<double>& values) {
+  constexpr std::size_t fewest_values = 10;
+  std::vector<double> sorted;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(sorted),
+               [](double x) { return std::isfinite(x); });
+  if (sorted.empty()) return 0.0;
+  std::sort(sorted.begin(), sorted.end());
+  const double rounding = 4e-7 * std::max(std::abs(sorted.front()), std::abs(sorted.back()));  // of 32 bits
+  const double range = sorted.back() - sorted.front();
+  sorted.erase(
+      std::unique(sorted.begin(), sorted.end(), [&](double a, double b) { return b - a <= rounding; }),
+      sorted.end());
+  if (sorted.size() < fewest_values) return 0.0;
+  double step = range;
+  for (std::size_t i = 1; i < sorted.size(); ++i) step = std::min(step, sorted[i] - sorted[i - 1]);
+  for (const double value : sorted) {
+    const double left = std::remainder(value - sorted.front(), step);
+    const double count = (value - sorted.front()) / step;
+    if (std::abs(left) > rounding * (1.0 + count) + 0.02 * step) return 0.0;
+  }
+  return step;
+}
+
+}  // namespace pcor::internal

@@ -1,0 +1,93 @@
+// Text files of the ICARTT conventions as flights.
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <string>
+
+#include <pcor/flight/flight.hpp>
+#include <pcor/flight/flight_writer.hpp>
+#include <pcor/words/error.hpp>
+#include "support/netcdf_file.hpp"
+#include "support/temporary_directory.hpp"
+
+namespace pcor::internal {
+namespace {
+
+using testing::DoubleEq;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsNan;
+
+const std::string head =
+    "24, 1001, V02_2016\r\nDoe, Jane\nTheir laboratory\nN/A\nMISSION\n1, 1\n2018, 11, 04, 2019, 05, 13\n1\n"
+    "Time_Start, seconds\n3\n1, 0.1, 1\n-9999, -9999, -9999\n"
+    "static_pressure, hPa\ndynamic_pressure, hPa, Pressure_dynamic, dynamic pressure of the boom\nmach, N/A\n"
+    "1\na special comment\n6\nPLATFORM: N701BN\nLLOD_FLAG: -8888\nno comment of a name\nULOD_FLAG: -7777\n"
+    "REVISION: R0\nTime_Start,static_pressure,dynamic_pressure,mach\n";
+
+class Icartt : public testing::Test {
+ protected:
+  std::filesystem::path write(const std::string& text) {
+    std::ofstream(path_, std::ios::binary) << text;
+    return path_;
+  }
+
+  test::TemporaryDirectory folder_;
+  std::filesystem::path path_ = folder_.path() / "flight.ict";
+};
+
+std::vector<double> values_of(const Flight& flight, const std::string& name) {
+  std::vector<double> values(flight.records());
+  flight.read(name, {0, flight.records()}, UnitConversion(), values.data());
+  return values;
+}
+
+const std::string values = "47076, 850, 300, 0.3\n47077,-9999,-8888, 0.31\r\n47078, 852.5, 310, -7777\n";
+
+TEST_F(Icartt, IsAFlight) {
+  const Flight flight(write(head + values));
+  EXPECT_EQ(flight.records(), 3U);
+  EXPECT_EQ(flight.time().first, 1541289600.0 + 47076.0) << "the midnight of 2018-11-04";
+  EXPECT_EQ(flight.aircraft(), "N701BN");
+  EXPECT_EQ(flight.project(), "MISSION");
+  EXPECT_EQ(flight.attribute("institution"), "Their laboratory");
+  EXPECT_EQ(flight.variable("mach").units, "N/A");
+  EXPECT_EQ(flight.variable("dynamic_pressure").long_name, "dynamic pressure of the boom");
+  EXPECT_THAT(values_of(flight, "static_pressure"), ElementsAre(850, IsNan(), 852.5));
+  EXPECT_THAT(values_of(flight, "dynamic_pressure"), ElementsAre(DoubleEq(30), IsNan(), DoubleEq(31)));
+  EXPECT_THAT(values_of(flight, "mach"), ElementsAre(0.3, 0.31, IsNan()));
+}
+
+TEST_F(Icartt, IsCopiedToNetcdf) {
+  const std::filesystem::path output = folder_.path() / "out.nc";
+  const Flight flight(write(head + values));
+  FlightWriter writer(output, flight, {});
+  writer.copy("static_pressure");
+  writer.finish();
+  EXPECT_THAT(values_of(Flight(output), "static_pressure"), ElementsAre(850, IsNan(), 852.5));
+  EXPECT_EQ(Flight(output).time().first, flight.time().first);
+}
+
+TEST_F(Icartt, WhatIsWrongIsToldWithItsLine) {
+  const auto refusal = [this](const std::string& text) {
+    write(text);
+    return test::message_of<Error>([this] { Flight flight(path_); });
+  };
+  EXPECT_THAT(refusal(head + values + "47079, 850"), HasSubstr("flight.ict:28: 4 numbers"));
+  EXPECT_THAT(refusal(head + "47076, 850, x, 0.3\n"), HasSubstr("flight.ict:25: 4 numbers"));
+  EXPECT_THAT(refusal("25, 2110\n"), HasSubstr("flight.ict:1: the file format index is 2110"));
+  EXPECT_THAT(refusal("25, 1001\nDoe\n"), HasSubstr("the header ends too early"));
+  EXPECT_THAT(refusal("23" + head.substr(2) + values), HasSubstr("but 23 according to its first line"));
+  EXPECT_THAT(refusal(head), HasSubstr("has no records"));
+  EXPECT_THAT(refusal("70 people"), HasSubstr("is not a netCDF file, nor one of ICARTT"));
+}
+
+TEST_F(Icartt, ACompressedFileIsToUnpack) {
+  path_ = folder_.path() / "flight.ict.gz";
+  write("\x1f\x8b");
+  EXPECT_THAT(test::message_of<Error>([this] { Flight flight(path_); }),
+              HasSubstr("unpack it with gunzip -k"));
+}
+
+}  // namespace
+}  // namespace pcor::internal

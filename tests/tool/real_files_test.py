@@ -1,0 +1,253 @@
+#!/usr/bin/env python3
+"""What made files of other aircraft end a session: each point once on a simulated flight, and the way from inspect to a
+corrected flight on real ones.
+
+    real_files_test.py TOOL SOURCE_DIRECTORY
+
+Real flights are in the folder that PCOR_FLIGHTS names; without it their tests are skipped.
+"""
+
+import gzip
+import json
+import os
+import shlex
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import netCDF4
+import numpy
+
+TOOL = Path(sys.argv[1]).resolve()
+SOURCE = Path(sys.argv[2]).resolve()
+FLIGHTS = Path(os.environ.get("PCOR_FLIGHTS", "/nowhere"))
+BARE = 'format = "pcor-model/1"\nname = "bare"\n{}[[effect]]\nid = "static-constant"\n[[effect]]\nid = "static-qp"\n'
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = Path(folder.name)
+
+    def run_tool(self, *arguments, status=0):
+        result = subprocess.run([TOOL, *map(str, arguments)], capture_output=True, text=True, cwd=self.path)
+        self.assertEqual(result.returncode, status, result.stderr + result.stdout)
+        return result
+
+    def inspect(self, flight, *more):
+        self.run_tool("inspect", flight, *more, "--quiet", "--json", "inspect.json")
+        return json.loads((self.path / "inspect.json").read_text())["flights"][0]
+
+    def follow(self, flight):
+        """Pastes the commands that inspect prints; the number of commands, inspect among them."""
+        commands = self.inspect(flight)["next"]
+        self.assertLessEqual(len(commands), 3)
+        for command in commands:
+            words = shlex.split(command)
+            self.run_tool(*words[1:])
+        return 1 + len(commands)
+
+    def every_variable_is_told(self, flight, inspected):
+        told = set(inspected["not_used"])
+        for role in inspected["roles"].values():
+            told.update([role["variable"], *role["others"]])
+        for candidates in inspected["candidates"].values():
+            told.update(each["variable"] for each in candidates)
+        with netCDF4.Dataset(flight) as file:
+            self.assertEqual(set(file.variables) - told - {"Time", "time", "time_offset"}, set())
+
+
+class Simulated(Case):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.simulated = Path(cls.folder.name) / "short.nc"
+        subprocess.run([TOOL, "simulate", SOURCE / "data/scenarios/c130-short.toml", "-o", cls.simulated, "--quiet"],
+                       check=True)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def write(self, names, attributes=(), units=()):
+        """The simulated flight with variables of other names: {new name: name there}."""
+        path = self.path / "flight.nc"
+        with netCDF4.Dataset(self.simulated) as source, netCDF4.Dataset(path, "w") as file:
+            for name, value in dict(attributes).items():
+                file.setncattr(name, value)
+            file.createDimension("Time", None)
+            time = file.createVariable("Time", "f8", ("Time",))
+            time.units = source["Time"].units
+            time[:] = source["Time"][:]
+            for name, there in names.items():
+                new = file.createVariable(name, "f4", ("Time",), fill_value=-32767.0)
+                new.units = dict(units).get(name, source[there].units)
+                values = numpy.ma.filled(source[there][:].astype(float), numpy.nan)
+                new[:] = numpy.ma.masked_invalid(values if values.ndim == 1 else values.mean(axis=1))
+        return path
+
+    NCAR = {name: name for name in ("PSFD", "QCF", "TTRR", "DPXC", "GGALT", "GGVSPD", "GGLAT", "PITCH", "ROLL", "THDG",
+                                    "ATTACK", "SSLIP")}
+    CORRECTED = {**{"PSXC": "TRUE_PS", "QCXC": "QCF"}, **{name: name for name in NCAR if name not in ("PSFD", "QCF")}}
+
+    def test_the_attribute_of_files_since_2012(self):
+        flight = self.write(self.NCAR, {"institution": "NCAR", "Platform": "N677F"})
+        inspected = self.inspect(flight)
+        self.assertEqual(inspected["aircraft"], "N677F")
+        self.assertTrue(inspected["laws"])
+
+    def test_a_range_that_r_wrote(self):
+        flight = self.write(self.NCAR, {"institution": "NCAR"})
+        with netCDF4.Dataset(flight, "a") as file:
+            for name, text in (("PITCH", "c(-180, 180)"), ("ROLL", "c(-180, 180)"), ("THDG", "as usual")):
+                file[name].setncattr_string("valid_range", text)
+        inspected = self.inspect(flight)
+        for role, variable in (("pitch", "PITCH"), ("roll", "ROLL"), ("heading", "THDG")):
+            self.assertEqual(inspected["roles"][role]["variable"], variable)
+        self.assertTrue(any("THDG (valid_range = 'as usual')" in note for note in inspected["notes"]), inspected["notes"])
+
+    def test_a_corrected_pair_alone(self):
+        flight = self.write(self.CORRECTED, {"institution": "NCAR", "Platform": "N130AR"})
+        inspected = self.inspect(flight)
+        self.assertTrue(any("corrected already by the archive" in note for note in inspected["notes"]))
+        self.assertLessEqual(self.follow(flight), 5)
+        with netCDF4.Dataset(self.path / "corrected.nc") as corrected:
+            self.assertIn("PSXC_NEW", corrected.variables)
+        self.assertTrue((self.path / "corrected.html").exists())
+
+    def test_a_model_of_pressures_alone_gets_the_other_roles(self):
+        flight = self.write(self.CORRECTED, {"institution": "NCAR"})
+        (self.path / "two.toml").write_text(
+            BARE.format('[variables]\nstatic_pressure = "PSXC"\ndynamic_pressure = "QCXC"\n'))
+        result = self.run_tool("compare", flight, "-m", "two.toml", "--reference", "height")
+        self.assertIn("altitude = GGALT", result.stderr)
+        self.assertNotIn("R2 nan", result.stdout)
+
+    def test_the_avionics_are_a_second_pair(self):
+        flight = self.write({**self.CORRECTED, "PS_A": "PSFRD", "QC_A": "QCFR"}, {"institution": "NCAR"})
+        self.run_tool("check", flight, "--quiet", "--json", "check.json")
+        checks = {each["name"]: each for each in json.loads((self.path / "check.json").read_text())["checks"]}
+        self.assertTrue(checks["total-pressure"]["ran"], checks["total-pressure"])
+        self.run_tool("check", flight, "--reference", "total:PS_A+QC_A")
+        (self.path / "raw.toml").write_text(BARE.format(""))
+        flight = self.write({**self.NCAR, "PS_A": "PSFRD", "QC_A": "QCFR", "PSXC": "TRUE_PS", "QCXC": "QCF"},
+                            {"institution": "NCAR"})
+        self.assertIn("--reference pressure:PS_A", " ".join(self.inspect(flight)["next"]))
+
+    def test_coefficients_are_held_by_every_command(self):
+        flight = self.write({**self.NCAR, "TRUTH": "TRUE_PS"}, {"institution": "NCAR"})
+        (self.path / "m.toml").write_text(BARE.format(""))
+        for command, output in (("refit", ("-o", "r.toml")), ("diagnose", ()), ("improve", ("-o", "i.toml", "--force"))):
+            self.run_tool(command, flight, "-m", "m.toml", "--reference", "pressure:TRUTH", "--fix", "static-constant.a0",
+                          *output)
+            result = self.run_tool(command, flight, "-m", "m.toml", "--reference", "pressure:TRUTH", "--fix", "static-x",
+                                   *output, status=1)
+            self.assertIn("--fix static-x: the model has no such parameter or effect", result.stderr)
+        self.assertIn("a0 = 0.0", (self.path / "r.toml").read_text())
+
+    def test_heights_alone_are_enough_to_diagnose(self):
+        flight = self.write(self.NCAR, {"institution": "NCAR"})
+        (self.path / "m.toml").write_text(BARE.format(""))
+        self.run_tool("diagnose", flight, "-m", "m.toml", "--reference", "height", "--quiet", "--json", "d.json")
+        self.assertIn(json.loads((self.path / "d.json").read_text())["verdict"],
+                      {"silent", "identified", "cannot be told apart", "partial", "unexplained"})
+
+    def test_hectopascals_that_are_called_pascals(self):
+        flight = self.write(self.NCAR, {"institution": "NCAR"}, {"PSFD": "Pa"})
+        (self.path / "m.toml").write_text(BARE.format(""))
+        for command in (("process", flight, "-m", "m.toml", "-o", "o.nc"), ("compare", flight, "-m", "m.toml", "--reference",
+                                                                         "height")):
+            result = self.run_tool(*command, status=1)
+            self.assertIn("PSFD in 'Pa'", result.stderr)
+            self.assertIn('static_pressure = "hPa"', result.stderr)
+        (self.path / "m.toml").write_text(BARE.format('[units]\nstatic_pressure = "hPa"\n'))
+        self.run_tool("process", flight, "-m", "m.toml", "-o", "o.nc")
+
+    def test_whole_hectopascals(self):
+        flight = self.write(self.NCAR, {"institution": "NCAR"})
+        with netCDF4.Dataset(flight, "a") as file:
+            file["PSFD"][:] = numpy.round(file["PSFD"][:])
+        inspected = self.inspect(flight, "--write-model", "m.toml")
+        problem = next(each for each in inspected["problems"] if each["variable"] == "PSFD")
+        self.assertEqual((problem["kind"], problem["number"], problem["unit"]), ("recorded in steps", 1.0, "hPa"))
+        self.assertIn("static_pressure = 0.289", (self.path / "m.toml").read_text())
+        self.run_tool("check", flight, "-m", "m.toml", "--quiet", "--json", "check.json")
+        spectrum = next(each for each in json.loads((self.path / "check.json").read_text())["checks"]
+                        if each["name"] == "spectrum")
+        if spectrum["ran"]:
+            self.assertEqual(spectrum["verdict"], "cannot tell")
+
+    def test_a_fault_of_gps(self):
+        flight = self.write(self.NCAR, {"institution": "NCAR"})
+        with netCDF4.Dataset(flight, "a") as file:
+            file["GGALT"][1000:1003] = file["GGALT"][1000:1003] + numpy.array([30.0, 160.0, 320.0])
+        problem = next(each for each in self.inspect(flight)["problems"] if each["kind"] == "jump")
+        self.assertEqual(problem["variable"], "GGALT")
+        self.assertGreater(problem["number"], 250)
+        (self.path / "m.toml").write_text(BARE.format(""))
+        self.assertIn("GGALT jumps by up to", self.run_tool("compare", flight, "-m", "m.toml", "--reference",
+                                                           "height").stdout)
+
+    def test_names_that_nobody_knows(self):
+        """An unknown file gets a model that runs."""
+        names = {"static_pressure": "PSFD", "impact_pressure": "QCF", "total_air_temperature": "TTRR",
+                 "gps_altitude": "GGALT", "lat": "GGLAT", "pitch_angle": "PITCH", "roll_angle": "ROLL", "true_heading": "THDG",
+                 "angle_of_attack": "ATTACK", "vert_velocity": "GGVSPD", "dewpoint": "DPXC", "ozone": "QCR"}
+        flight = self.write(names)
+        inspected = self.inspect(flight, "--write-model", "m.toml")
+        for role, variable in (("static_pressure", "static_pressure"), ("dynamic_pressure", "impact_pressure"),
+                               ("recovery_temperature", "total_air_temperature"), ("altitude", "gps_altitude"),
+                               ("latitude", "lat"), ("attack", "angle_of_attack"), ("dew_point", "dewpoint")):
+            self.assertEqual(inspected["roles"][role]["variable"], variable)
+            self.assertTrue(inspected["roles"][role]["why"])
+        self.assertEqual(inspected["not_used"], ["ozone"])
+        self.every_variable_is_told(flight, inspected)
+        self.run_tool("process", flight, "-m", "m.toml", "-o", "corrected.nc")
+
+
+@unittest.skipUnless(FLIGHTS.is_dir(), "PCOR_FLIGHTS names no folder of real flights")
+class Real(Case):
+    def corrects(self, name):
+        flight = FLIGHTS / name
+        if not flight.exists():
+            self.skipTest(f"{name} is not there")
+        inspected = self.inspect(flight)
+        self.every_variable_is_told(flight, inspected)
+        self.assertLessEqual(self.follow(flight), 5)
+        self.assertTrue((self.path / "corrected.nc").exists())
+        self.assertTrue((self.path / "corrected.html").exists())
+        return inspected
+
+    def test_cset(self):
+        inspected = self.corrects("CSETrf11-GV-2015-13750s.nc")
+        jumps = [each for each in inspected["problems"] if each["kind"] == "jump" and each["number"] > 100]
+        self.assertEqual([each["times"][:16] for each in jumps], ["2015-07-29 19:11"])
+        for role in ("pitch", "roll", "heading", "latitude"):
+            self.assertIn(role, inspected["roles"])
+
+    def test_ideas4(self):
+        self.assertEqual(self.corrects("IDEAS4-rf04-GV-2013.nc")["aircraft"], "N677F")
+
+    def test_cacti(self):
+        inspected = self.corrects("CACTI-G1-2018-11-04-AAFNAV.nc")
+        steps = {each["variable"]: each["number"] for each in inspected["problems"] if each["kind"] == "recorded in steps"}
+        self.assertEqual(steps, {"static_pressure": 1.0, "dynamic_pressure": 1.0})
+        with netCDF4.Dataset(self.path / "corrected.nc") as corrected:
+            first = corrected["PSXC"][:].copy()
+        packed = FLIGHTS / "CACTI-G1-2018-11-04-AAFNAV.ict.gz"
+        original = self.path / "flight.ict"
+        original.write_bytes(gzip.decompress(packed.read_bytes()))
+        self.assertLessEqual(self.follow(original), 5)
+        with netCDF4.Dataset(self.path / "corrected.nc") as corrected:
+            numpy.testing.assert_allclose(corrected["PSXC"][:], first, atol=0.01)
+        self.assertIn("gunzip", self.run_tool("inspect", packed, status=1).stderr)
+
+    def test_gotex(self):
+        self.corrects("GOTEX-rf06-C130-2004.nc")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

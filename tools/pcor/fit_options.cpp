@@ -1,0 +1,58 @@
+#include "fit_options.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <pcor/words/error.hpp>
+#include <pcor/words/suggest.hpp>
+#include "command.hpp"
+
+namespace pcor::tool {
+namespace {
+
+/// Holds or frees a coefficient, or all those of an effect.
+void set_fixed(ModelFile& model, const std::string& name, bool fixed, const char* option) {
+  bool found = false;
+  std::vector<std::string> known;
+  model.fits.resize(model.model.effects.size());
+  for (std::size_t e = 0; e < model.model.effects.size(); ++e) {
+    const ModelEffect& effect = model.model.effects[e];
+    const std::vector<std::string> names = parameter_names(effect);
+    model.fits[e].resize(names.size());
+    for (std::size_t p = 0; p < names.size(); ++p) {
+      known.push_back(effect.id + "." + names[p]);
+      if (name != known.back() && name != effect.id) continue;
+      model.fits[e][p].fixed = fixed;
+      found = true;
+    }
+  }
+  if (found) return;
+  const std::string meant = did_you_mean(name, known);
+  throw Error(fmt::format("{} {}: the model has no such parameter or effect; {}", option, name,
+                          meant.empty() ? fmt::format("it has {}", fmt::join(known, ", ")) : meant));
+}
+
+}  // namespace
+
+void add_fit_options(CLI::App& command, FitOptions& options) {
+  add_list_option(command, "--fix", options.fix,
+                  "hold a coefficient, or all of an effect, at its value, e.g. static-qp.a2")
+      ->type_name("NAME");
+  add_list_option(command, "--free", options.free, "fit a coefficient that the model file holds fixed")
+      ->type_name("NAME");
+}
+
+ModelFile with_fit_options(ModelFile model, const FitOptions& options) {
+  for (const std::string& name : options.free) set_fixed(model, name, false, "--free");
+  for (const std::string& name : options.fix) set_fixed(model, name, true, "--fix");
+  return model;
+}
+
+std::string command_line(const FitOptions& options) {
+  std::string line;
+  for (const std::string& name : options.fix) line += " --fix " + shell_word(name);
+  for (const std::string& name : options.free) line += " --free " + shell_word(name);
+  return line;
+}
+
+}  // namespace pcor::tool
