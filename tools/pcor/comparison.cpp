@@ -83,6 +83,7 @@ void add_flight_options(CLI::App& command, ComparisonOptions& options) {
                    "leave out a flight that is damaged or is none, and say so");
   add_processes_option(command);
   command.parse_complete_callback([&options] {
+    options.references = in_order(options.references);
     if (options.skip_unreadable) leave_out_unreadable(options.flights);
   });
 }

@@ -327,6 +327,12 @@ void deliver_models(RefitResult& result, const std::vector<std::filesystem::path
   deliver(*result.reference, options.reference_output, inputs);
 }
 
+/// The first reference is the one that is fitted too.
+void put_static_systems_first(std::vector<std::string>& references) {
+  std::stable_partition(references.begin(), references.end(),
+                        [](const std::string& each) { return each.rfind("static:", 0) == 0; });
+}
+
 void run(const Options& options) {
   std::vector<std::filesystem::path> inputs = input_files(options.comparison);
   inputs.emplace_back(options.model);
@@ -445,7 +451,10 @@ std::function<void()> add_refit(CLI::App& program) {
       {"refit first.nc second.nc -m model.toml -o fitted.toml --report refit.html",
        "refit first.nc second.nc --holdout third.nc -m model.toml -o fitted.toml",
        "refit first.nc second.nc -m model.toml --stage 'pitch manoeuvre: static-alpha' -o staged.toml"});
-  return [options] { run(*options); };
+  return [options] {
+    if (!options->reference_output.empty()) put_static_systems_first(options->comparison.references);
+    run(*options);
+  };
 }
 
 }  // namespace pcor::tool
