@@ -107,7 +107,8 @@ bool says_why(pcor::QualityFlags quality, Quantity result) {
                                  Quality::after_gap,
                                  Quality::defect_exceeds_dynamic_pressure,
                                  Quality::filter_window_incomplete,
-                                 Quality::no_airflow};
+                                 Quality::no_airflow,
+                                 Quality::awaiting_later_samples};
   return std::any_of(std::begin(reasons), std::end(reasons),
                      [quality](Quality reason) { return quality.has(reason); });
 }

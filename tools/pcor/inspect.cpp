@@ -177,7 +177,7 @@ void print(const Inspection& flight) {
 
 /// What to do next, as a command to paste.
 std::string next_step(const Options& options, const Inspection& flight) {
-  const std::string path = shell_word(flight.path);
+  const std::string path = shell_path(flight.path);
   if (!flight.model)
     return "To go on: name the variables of its pressures in the [variables] of a model "
            "(data/models/FORMAT.md)";
@@ -189,7 +189,7 @@ std::string next_step(const Options& options, const Inspection& flight) {
       reference = " --reference " + shell_word("pressure:" + flight.corrected_pressure);
     }
     return fmt::format("To fit a law: {} refit {} -m {} -o fitted.toml{}", program(), path,
-                       shell_word(options.model), reference);
+                       shell_path(options.model), reference);
   }
   const auto fits =
       std::find_if(flight.laws.begin(), flight.laws.end(), [](const LawOfFlight& law) { return law.fits(); });

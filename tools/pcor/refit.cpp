@@ -234,7 +234,7 @@ void print_next_step(const Options& options) {
   say_written({options.output, options.reference_output});
   if (options.reference_output.empty()) {
     say("To see where it still fails: {} compare {} -m {} -m {}\n", program(),
-        advised_command_line(options.comparison), shell_word(options.model), shell_word(options.output));
+        advised_command_line(options.comparison), shell_path(options.model), shell_path(options.output));
     return;
   }
   ComparisonOptions fitted = options.comparison;
@@ -246,7 +246,7 @@ void print_next_step(const Options& options) {
       reference = reference.substr(0, colon) + ":" + options.reference_output;
   }
   say("To see where they still fail: {} compare {} -m {}\n", program(), advised_command_line(fitted),
-      shell_word(options.output));
+      shell_path(options.output));
 }
 
 /// The flights with the model before and after the fit, for the report.
