@@ -6,9 +6,9 @@ namespace pcor {
 
 /// Whether samples come at the intervals of a rate.
 ///
-/// What a sample is ahead of or behind an even clock is added up and slowly forgotten, over a dozen samples. So
-/// times that jitter by less than a third of a sample are even, and so is a rate that is 2 % off; one that is 3 %
-/// off is not, nor is one step that is longer or shorter by a third.
+/// What a sample is ahead of or behind an even clock is added up and forgotten, over five samples. So times that
+/// jitter by less than a tenth of a sample are even, and so is a rate that is less than 2 % off; one that is more
+/// is not, nor is one step that is longer or shorter by a tenth.
 class SampleClock {
  public:
   /// @param rate samples in a second
@@ -18,8 +18,8 @@ class SampleClock {
 
   /// @param step s since the sample before
   bool is_uneven(double step) noexcept {
-    constexpr double kept = 11.0 / 12.0;
-    constexpr double most = 0.3;  // samples
+    constexpr double kept = 0.8;
+    constexpr double most = 0.1;  // samples
     ahead_ = ahead_ * kept + (step * rate_ - 1.0);
     if (std::abs(ahead_) <= most) return false;
     ahead_ = 0.0;
