@@ -191,7 +191,9 @@ struct Flight::Implementation {
           fmt::format("{} has {} records, and a flight has at most {}; cut it with ncks -d {}",
                       path(), records, most_records,
                       shell_word(file->dimension_name(source.dimension) + ",FIRST,LAST")));
-    for (int id = 0; id < file->variable_count(); ++id) {
+    // In files of HDF5 every question how many there are looks at each.
+    const int count = file->variable_count();
+    for (int id = 0; id < count; ++id) {
       names.push_back(file->variable_name(id));
       if (!index.emplace(names.back(), names.size() - 1).second)
         throw Error(Error::Code::file,

@@ -217,7 +217,8 @@ class Attributes(Changed):
 class Reports(Changed):
     def test_no_control_and_no_direction(self):
         signs = "\x1b[31m\x07\u202e\u2066\u2028\ufeff"
-        model = self.model(lambda text: re.sub(r'^name = ".*"$', f'name = "law \\\\u001b\\\\u0007{signs[5:]}"', text, count=1, flags=re.M))
+        model = self.model(lambda text: re.sub(r'^name = ".*"$', lambda _: f'name = "law \\u001b\\u0007{signs[6:]}"', text,
+                                               count=1, flags=re.M))
 
         def change(flight):
             flight.setncattr("ProjectName", f"project {signs}")
@@ -232,22 +233,17 @@ class Reports(Changed):
 class Inspect(Changed):
     def seconds(self, variables):
         path = self.path / f"{variables}.nc"
-        with netCDF4.Dataset(path, "w", format="NETCDF3_64BIT_OFFSET") as flight:
-            flight.createDimension("Time", 4)
-            flight.set_fill_off()
-            seconds = flight.createVariable("Time", "i4", ("Time",))
-            seconds.units = "seconds since 2011-11-17 00:00:00 +0000"
-            for i in range(variables):
-                flight.createVariable(f"V{i}", "f4", ("Time",)).units = "hPa"
-            seconds[:] = range(4)
+        declared = "".join(f'float V{i}(Time); V{i}:units = "hPa";\n' for i in range(variables))
+        text = ('netcdf many { dimensions: Time = 4; variables: int Time(Time);\n'
+                f'Time:units = "seconds since 2011-11-17 00:00:00 +0000";\n{declared} data: Time = 0, 1, 2, 3; }}')
+        subprocess.run(["ncgen", "-k", "nc4", "-o", path, "-"], input=text, text=True, check=True)
         begin = time.monotonic()
-        result = self.run_tool("inspect", path, "--json", "-")
-        self.assertIn(result.returncode, (0, 1), result.stderr)
+        self.done("inspect", path, "--json", "-")
         return time.monotonic() - begin
 
     def test_many_variables_take_linear_time(self):
-        few, many = min(self.seconds(2000) for _ in range(2)), self.seconds(20000)
-        self.assertLess(many, 20 * few + 1.0)
+        few, many = min(self.seconds(5000) for _ in range(2)), self.seconds(20000)
+        self.assertLess(many, 2 * 4 * few + 1.0)
 
     def test_a_link_to_a_pipe_does_not_hang(self):
         library = ctypes.util.find_library("hdf5_serial") or ctypes.util.find_library("hdf5")
