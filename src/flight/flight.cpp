@@ -251,8 +251,8 @@ struct Flight::Implementation {
     std::string dimensions;
     for (const int each : file->dimensions_of(variable.id)) {
       dimensions += (dimensions.empty() ? "" : ", ") + file->dimension_name(each);
-      if (file->dimension_name(each).rfind("sps", 0) == 0)
-        dimensions += fmt::format(" = {}", file->dimension_length(each));
+      const bool is_rate = file->dimension_name(each).rfind("sps", 0) == 0;
+      if (is_rate && !rate_of_dimension(*file, each)) dimensions += fmt::format(" = {}", file->dimension_length(each));
     }
     throw Error(
         Error::Code::variable,

@@ -58,7 +58,8 @@ Counting counting_of(const FlightFile& file, int variable) {
   const std::string name = file.variable_name(variable), path = file.path().string();
   return {path + ": " + name,
           "state the unit it is in with ncatted -a " +
-              shell_word("units," + name + ",o,c,seconds since 2004-02-18 00:00:00 +0000") + " " +
+              shell_word("units," + name + ",o,c,") +
+              shell_word("seconds since 2004-02-18 00:00:00 +0000") + " " +
               shell_path(path),
           file.text_attribute(variable, "units"), file.text_attribute(variable, "calendar")};
 }
