@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <string_view>
+#include <utility>
 
 #include <pcor/flight/flight.hpp>
 #include <pcor/words/error.hpp>
@@ -91,6 +93,17 @@ Allowed allowed_by_all(const std::vector<Allowed>& flights) {
 }
 
 }  // namespace
+
+std::vector<std::string> in_order(std::vector<std::string> texts) {
+  constexpr std::array<std::string_view, 6> forms{"lams", "static", "pressure", "total", "height", "wind"};
+  const auto place_of = [&forms](const std::string& text) {
+    return std::find(forms.begin(), forms.end(), text.substr(0, text.find(':'))) - forms.begin();
+  };
+  std::sort(texts.begin(), texts.end(), [&place_of](const std::string& a, const std::string& b) {
+    return std::make_pair(place_of(a), a) < std::make_pair(place_of(b), b);
+  });
+  return texts;
+}
 
 ChosenReferences read_references(const std::vector<std::string>& texts, const ModelFile& model,
                                  const FlightSet& flights) {

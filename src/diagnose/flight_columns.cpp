@@ -71,6 +71,8 @@ References usable_references(const References& references, std::vector<std::stri
           reference->name()));
     }
   }
+  // The samples are read once, for the first, and the laser reads the most.
+  std::stable_partition(result.begin(), result.end(), [](const auto& each) { return each->reads_laser(); });
   result.insert(result.end(), of_windows.begin(), of_windows.end());
   if (result.empty())
     throw Error(

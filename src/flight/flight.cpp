@@ -3,6 +3,7 @@
 #include <strings.h>
 #include <pcor/flight/flight.hpp>
 #include <pcor/words/error.hpp>
+#include <pcor/words/shell_word.hpp>
 #include <pcor/words/suggest.hpp>
 #include <pcor/words/utc.hpp>
 
@@ -35,6 +36,7 @@ constexpr std::size_t most_gaps_listed = 1000;
 // much, in whatever unit.
 constexpr double no_value = 1e30;
 constexpr double most_samples_a_second = 1000, rounding = 1e-3;  // of the times of records
+constexpr std::size_t fewest_doubted = 200'000;      // records of which the size of the file tells nothing
 constexpr std::size_t most_records = 100'000'000;  // more than a day has thousandths of a second
 
 /// A variable of the file, and what turns its stored numbers into values.
@@ -54,7 +56,9 @@ std::optional<int> rate_of_dimension(const FlightFile& file, int dimension) {
   if (name.rfind("sps", 0) != 0 || name.find_first_not_of("0123456789", 3) != std::string::npos)
     return std::nullopt;
   const std::size_t length = file.dimension_length(dimension);
-  return length > std::numeric_limits<int>::max() ? std::nullopt : std::optional(static_cast<int>(length));
+  if (length > std::numeric_limits<int>::max() || (name.size() > 3 && name.substr(3) != std::to_string(length)))
+    return std::nullopt;
+  return static_cast<int>(length);
 }
 
 /// A number that packed values are turned with. @throws Error if the attribute is there and is none.
@@ -66,9 +70,10 @@ double packing_number(const FlightFile& file, int variable, const char* attribut
   if (is_number && (numbers.front() != 0 || otherwise == 0)) return numbers.front();
   throw Error(Error::Code::variable,
               fmt::format("{}: the attribute {} of {} is \"{}\", which values cannot be unpacked with; "
-                          "correct it with ncatted -a {},{},o,d,NUMBER {}",
-                          file.path().string(), attribute, file.variable_name(variable), text, attribute,
-                          file.variable_name(variable), file.path().string()));
+                          "correct it with ncatted -a {} {}",
+                          file.path().string(), attribute, file.variable_name(variable), text,
+                          shell_word(fmt::format("{},{},o,d,NUMBER", attribute, file.variable_name(variable))),
+                          shell_path(file.path().string())));
 }
 
 /// Reads what turns the stored numbers into values.
@@ -183,12 +188,23 @@ struct Flight::Implementation {
         time_stamp(stamp),
         source(find_time(*file)),
         records(file->dimension_length(source.dimension)) {
+    std::error_code code;
+    const std::uintmax_t bytes = std::filesystem::file_size(file->path(), code);
+    if (!code && records > fewest_doubted && records > bytes)
+      throw Error(Error::Code::file,
+                  fmt::format("{} has {} records in {} bytes, and of a flight at most one record a byte is "
+                              "believed: hardly any of them is there; cut it with ncks -d {}",
+                              path(), records, bytes,
+                              shell_word(file->dimension_name(source.dimension) + ",FIRST,LAST")));
     if (records > most_records)
       throw Error(
           Error::Code::file,
-          fmt::format("{} has {} records, and a flight has at most {}; cut it with ncks -d {},FIRST,LAST",
-                      path(), records, most_records, file->dimension_name(source.dimension)));
-    for (int id = 0; id < file->variable_count(); ++id) {
+          fmt::format("{} has {} records, and a flight has at most {}; cut it with ncks -d {}",
+                      path(), records, most_records,
+                      shell_word(file->dimension_name(source.dimension) + ",FIRST,LAST")));
+    // In files of HDF5 every question how many there are looks at each.
+    const int count = file->variable_count();
+    for (int id = 0; id < count; ++id) {
       names.push_back(file->variable_name(id));
       if (!index.emplace(names.back(), names.size() - 1).second)
         throw Error(Error::Code::file,
@@ -217,7 +233,7 @@ struct Flight::Implementation {
     const std::vector<std::string> alike = suggest(name, names);
     throw Error(Error::Code::variable,
                 path() + ": " + name + " is not in this file; it has " +
-                    (alike.empty() ? fmt::format("{} others, see ncdump -h {}", names.size(), path())
+                    (alike.empty() ? fmt::format("{} others, see ncdump -h {}", names.size(), shell_path(path()))
                                    : fmt::format("{}", fmt::join(alike, ", "))));
   }
 
@@ -244,8 +260,11 @@ struct Flight::Implementation {
       return variable;
     }
     std::string dimensions;
-    for (const std::string& each : variable.info.dimensions)
-      dimensions += (dimensions.empty() ? "" : ", ") + each;
+    for (const int each : file->dimensions_of(variable.id)) {
+      dimensions += (dimensions.empty() ? "" : ", ") + file->dimension_name(each);
+      const bool is_rate = file->dimension_name(each).rfind("sps", 0) == 0;
+      if (is_rate && !rate_of_dimension(*file, each)) dimensions += fmt::format(" = {}", file->dimension_length(each));
+    }
     throw Error(
         Error::Code::variable,
         fmt::format(
@@ -372,9 +391,10 @@ struct Flight::Implementation {
     if (backward + repeated > 0)
       throw Error(fmt::format(
           "{}: time {} at record {} ({} after {}), {} backward and {} repeated steps in all; cut the file "
-          "there with ncks -d {},0,{}",
+          "there with ncks -d {}",
           path(), bad < bad_before ? "runs backwards" : "repeats", first_bad, utc_text(bad),
-          utc_text(bad_before), backward, repeated, file->dimension_name(source.dimension), first_bad - 1));
+          utc_text(bad_before), backward, repeated,
+          shell_word(fmt::format("{},0,{}", file->dimension_name(source.dimension), first_bad - 1))));
   }
 };
 

@@ -189,7 +189,8 @@ struct FlightWriter::Implementation {
 
   /// Whether every unit is one that UDUNITS knows.
   bool has_known_units() const {
-    for (int variable = 0; variable < file->variable_count(); ++variable) {
+    const int count = file->variable_count();
+    for (int variable = 0; variable < count; ++variable) {
       const std::string unit = file->text_attribute(variable, "units");
       const bool is_time = unit.find(" since ") != std::string::npos;
       if (!unit.empty() && !is_time && !is_known_unit(unit)) return false;

@@ -300,7 +300,14 @@ bool NetcdfFile::is_numeric(int variable) const { return number_type(type_of(var
 bool NetcdfFile::is_unsigned(int variable) const {
   const NumberType type = number_type(type_of(variable));
   if (!type.is_signed) return type.span > 0;
-  return strcasecmp(text_attribute(variable, "_Unsigned").c_str(), "true") == 0;
+  if (!find_attribute(variable, "_Unsigned")) return false;
+  const std::string said = text_attribute(variable, "_Unsigned");
+  const auto is = [&said](const char* word) { return strcasecmp(said.c_str(), word) == 0; };
+  if (!is("true") && !is("false")) {
+    refuse_attribute(variable, "_Unsigned",
+                     fmt::format("is {}, and neither true nor false", in_quotes(said)));
+  }
+  return is("true");
 }
 
 void NetcdfFile::make_unsigned(int variable, double* numbers, std::size_t count) const {
@@ -347,7 +354,7 @@ void NetcdfFile::refuse_attribute(int variable, const std::string& name, const s
       fmt::format("{}: the attribute {} of {} {}; correct it, or take it away with ncatted -a {} {}, or "
                   "with h5py where that cannot write the file",
                   path_.string(), name, is_global ? "the file" : of, why,
-                  shell_word(fmt::format("{},{},d,,", name, of)), shell_word(path_.string())));
+                  shell_word(fmt::format("{},{},d,,", name, of)), shell_path(path_.string())));
 }
 
 std::string NetcdfFile::ignored_range(int variable) const {

@@ -4,6 +4,7 @@
 #include <strings.h>
 #include <pcor/units/units.hpp>
 #include <pcor/words/error.hpp>
+#include <pcor/words/shell_word.hpp>
 #include <pcor/words/utc.hpp>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include <cstdio>
 #include <ctime>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 namespace pcor::internal {
@@ -77,10 +79,64 @@ Counting counting_of(const FlightFile& file, int variable) {
   const std::optional<double> date = flight_date(file);
   const std::string day_of_flight = date ? utc_text(*date, "%Y-%m-%d") : "DAY";
   return {path + ": " + name,
-          "state the unit it is in with ncatted -a units," + name + ",o,c,\"seconds since " + day_of_flight +
-              " 00:00:00 +0000\" " + path +
+          "state the unit it is in with ncatted -a " + shell_word("units," + name + ",o,c,") +
+              shell_word("seconds since " + day_of_flight + " 00:00:00 +0000") + " " + shell_path(path) +
               (date ? "" : ", where DAY is the one that it counts from, as year-month-day"),
           usual_spelling(file.text_attribute(variable, "units")), file.text_attribute(variable, "calendar")};
+}
+
+std::string unit_before(const std::string& units, std::size_t since) {
+  const std::size_t last = units.find_last_not_of(' ', since == 0 ? 0 : since - 1);
+  return units.substr(0, last == std::string::npos ? 0 : last + 1);
+}
+
+std::string_view after_date(std::string_view units, std::size_t date) {
+  const std::size_t begin = units.find_first_not_of(' ', date);
+  if (begin == std::string_view::npos) return {};
+  const std::size_t sign = units[begin] == '-' || units[begin] == '+' ? 1 : 0;
+  const std::size_t end = units.find_first_not_of("0123456789-", begin + sign);
+  return end == std::string_view::npos ? std::string_view() : units.substr(end);
+}
+
+// Takes a number of two digits at most, less than `limit`, off the text. Nothing where there is none.
+bool take_number(std::string_view& text, int limit) {
+  std::size_t digits = 0;
+  int number = 0;
+  for (; digits < 2 && digits < text.size() && std::isdigit(static_cast<unsigned char>(text[digits])) != 0;
+       ++digits)
+    number = 10 * number + (text[digits] - '0');
+  text.remove_prefix(digits);
+  return digits > 0 && number < limit;
+}
+
+bool take(std::string_view& text, char letter) {
+  if (text.empty() || text.front() != letter) return false;
+  text.remove_prefix(1);
+  return true;
+}
+
+// Whether numbers of a time of day and of an offset are possible: UDUNITS takes minutes of 60 and an offset
+// of 25 hours without a word. How they are to be written is left to it.
+bool is_time_of_day(std::string_view text) {
+  constexpr int day_hours = 25;  // 24:00:00
+  constexpr int most_offset = 15;
+  while (!text.empty() && (text.front() == ' ' || text.front() == 'T')) text.remove_prefix(1);
+  if (!text.empty() && std::isdigit(static_cast<unsigned char>(text.front())) != 0) {
+    if (!take_number(text, day_hours)) return false;
+    for (int part = 0; part < 2; ++part) {
+      const bool follows =
+          take(text, ':') || (!text.empty() && std::isdigit(static_cast<unsigned char>(text.front())) != 0);
+      if (follows && !take_number(text, part == 0 ? 60 : 61)) return false;
+    }
+    if (take(text, '.')) text.remove_prefix(std::min(text.find_first_not_of("0123456789"), text.size()));
+  }
+  while (take(text, ' ')) continue;
+  if (!take(text, '+') && !take(text, '-')) {
+    if (text.empty() || std::isdigit(static_cast<unsigned char>(text.front())) == 0) return true;
+  }
+  if (!take_number(text, most_offset)) return false;
+  take(text, ':');
+  return text.empty() || std::isdigit(static_cast<unsigned char>(text.front())) == 0 || take_number(text, 60);
 }
 
 // "seconds since 2004-02-18 00:00:00 +0000" as a conversion to seconds since 1970; nothing if there is no
@@ -102,15 +158,24 @@ std::optional<UnitConversion> epoch_conversion(const Counting& time) {
         fmt::format("{} counts from the year {} in the calendar \"{}\", whose days are not those of "
                     "the standard calendar; write the time in that",
                     time.of, year, time.calendar));
-  try {
-    return UnitConversion::between(time.units, "seconds since 1970-01-01 00:00:00 UTC", {});
-  } catch (const Error& error) {
-    if (error.code() != Error::Code::unit) throw;
+  const auto refuse_time_of_day = [&time]() {
     throw Error(
         fmt::format("{} counts in \"{}\", where what follows the date is not a time of day in UTC or "
                     "with an offset in hours; {}",
                     time.of, time.units, time.how_to_state));
+  };
+  if (!is_time_of_day(after_date(time.units, since + 6))) refuse_time_of_day();
+  try {
+    const UnitConversion epoch =
+        UnitConversion::between(time.units, "seconds since 1970-01-01 00:00:00 UTC", {});
+    // What a unit is long is not found from the two ends of 41 years.
+    const double scale = UnitConversion::between(unit_before(time.units, since), "s", {}).scale();
+    return UnitConversion(scale, epoch.offset());
+  } catch (const Error& error) {
+    if (error.code() != Error::Code::unit) throw;
+    refuse_time_of_day();
   }
+  return std::nullopt;
 }
 
 std::optional<double> base_time(const FlightFile& file) {

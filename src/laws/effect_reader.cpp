@@ -172,6 +172,12 @@ class EffectReader final : TomlReader {
       fail(*wrong.node, fmt::format("the formula of effect {} cannot be read: {}; correct it",
                                     in_quotes(effect.id), error.message));
     }
+    if (effect.parameters.empty()) {
+      fail(*given.formula->node,
+           fmt::format("the formula of effect {} has no coefficient; give it one in parameters, such as k, and "
+                       "multiply by it",
+                       in_quotes(effect.id)));
+    }
     if (formula->unused_parameters().empty()) return;
     const std::string& unused = formula->unused_parameters().front();
     const std::string meant = did_you_mean(unused, formula->variables());

@@ -32,11 +32,11 @@ const char* yes_or_no(bool yes) { return yes ? "yes" : "no"; }
 std::string options_text(const ProcessOptions& options) {
   return fmt::format("pcor " PCOR_VERSION
                      "; corrected with: {}; time stamp: {}; uncertainty: {}; suffix: '{}'; all variables: "
-                     "{}; hydrostatic: {}",
+                     "{}; hydrostatic: {}{}",
                      options.correct_with == CorrectWith::lams ? "LAMS" : "model",
                      options.time_stamp == TimeStamp::begin ? "begin" : "middle",
                      name_of(options.uncertainty), options.suffix, yes_or_no(options.copy_all),
-                     yes_or_no(options.hydrostatic));
+                     yes_or_no(options.hydrostatic), options.keep_frozen ? "; frozen sensors: kept" : "");
 }
 
 std::string coefficients_text(const ModelFile& model) {

@@ -26,6 +26,7 @@
 #include "process/delay_line.hpp"
 #include "process/origin.hpp"
 #include "roles/fast_series.hpp"
+#include "roles/frozen.hpp"
 #include "roles/model_inputs.hpp"
 #include "roles/recorded_series.hpp"
 
@@ -39,6 +40,7 @@ namespace {
 struct Input : ModelInput {
   std::vector<double> values{};  // of one block
   LeftOut left_out{};            // of all of them
+  std::vector<bool> frozen{};    // records in which the sensor is frozen; empty: none
 };
 
 /// The place of a bit among `quality_facts`.
@@ -91,6 +93,7 @@ class Processing {
   void choose_roles();
   void choose_chain();
   void choose_inputs();
+  void find_frozen_sensors();
   void choose_rate();
   ShortestPeriods choose_periods();
   void leave_out_noise(Quantity rate, const SignalBand& band);
@@ -124,6 +127,8 @@ class Processing {
   std::optional<DelayLine> results_;
   std::optional<DelayLine> filtered_;  // later still; and the quality bits, one of which is the filter's
   double sample_step_ = 1.0;           // s
+  std::vector<bool> frozen_;           // records in which any sensor is frozen; empty: none
+  std::size_t noted_ = 0;              // samples that have left the loop
   std::map<Quantity, std::string> output_names_;
   ProcessSummary summary_;
 };
@@ -172,6 +177,38 @@ void Processing::choose_inputs() {
   }
 }
 
+/// What stands still in flight for much longer than its noise lets it.
+void Processing::find_frozen_sensors() {
+  constexpr std::size_t fewest_records = 300;  // that a sensor with one value only is not left
+  const auto read = [this](const Input& input) {
+    return read_values(flight_, input.variable, input.conversion).values;
+  };
+  std::vector<bool> flying;
+  for (const Input& input : inputs_) {
+    if (input.quantity != Quantity::dynamic_pressure) continue;
+    for (const double q : read(input)) flying.push_back(q >= summary_.flying_dynamic_pressure);
+  }
+  const auto flown = static_cast<std::size_t>(std::count(flying.begin(), flying.end(), true));
+  std::vector<double> time;
+  for (Input& input : inputs_) {
+    const std::vector<double> values = read(input);
+    const std::vector<Stretch> frozen =
+        find_frozen(values, flying, always_varies(input.quantity) && flown >= fewest_records);
+    if (frozen.empty()) continue;
+    if (time.empty()) time = record_times(flight_);
+    summary_.notes.push_back(frozen_text(input.variable, input.quantity, values, time, frozen));
+    input.frozen.resize(values.size());
+    frozen_.resize(values.size());
+    for (const Stretch& span : frozen) {
+      for (std::size_t i = span.first; i < span.first + span.count; ++i) input.frozen[i] = frozen_[i] = true;
+    }
+  }
+  if (!frozen_.empty()) {
+    note(options_.keep_frozen ? "what frozen sensors read is corrected all the same; PCORFLAG says where"
+                              : "what frozen sensors read counts as missing; --keep-frozen corrects it");
+  }
+}
+
 void Processing::choose_rate() {
   for (const Quantity pressure : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
     summary_.rate = std::max(summary_.rate, flight_.variable(variable_of(pressure)).rate);
@@ -182,6 +219,7 @@ void Processing::choose_rate() {
   const ShortestPeriods periods = choose_periods();
   loop_ = Loop::build(chain_, rate, &why, options_.correct_with, uncertainty_, periods);
   if (!loop_) fail_model(why);
+  loop_->do_not_watch_sensors();  // this host knows their whole series
   results_.emplace(loop_->delay());
   filtered_.emplace(loop_->delay() + (chain_->has_lams() ? LowPass::delay(rate) : 0));
   sample_step_ = 1.0 / rate;
@@ -445,7 +483,9 @@ void Processing::note_sample() {
       summary_.greatest_defect = std::max(summary_.greatest_defect, defect);
     }
   }
-  const QualityFlags quality = loop_->quality();
+  QualityFlags quality = loop_->quality();
+  const std::size_t record = noted_++ / static_cast<std::size_t>(summary_.rate);
+  quality.set(!frozen_.empty() && frozen_[record], Quality::sensor_frozen);
   double bits = 0.0;
   if (quality.bits() != 0) {
     for (std::size_t i = 0; i < quality_facts.size(); ++i) {
@@ -492,7 +532,11 @@ void Processing::process_block(RecordBlock block, std::vector<double>& times) {
     const double time = times[i] - summary_.first_time;
     if (filtered_->inside() > 0 && loop_->starts_anew(time)) flush();
     State<double>& state = loop_->state();
-    for (const Input& input : inputs_) state[input.quantity] = input.values[i];
+    const std::size_t record = block.first + i / static_cast<std::size_t>(summary_.rate);
+    for (const Input& input : inputs_) {
+      const bool is_left_out = !options_.keep_frozen && !input.frozen.empty() && input.frozen[record];
+      state[input.quantity] = is_left_out ? missing<double>() : input.values[i];
+    }
     results_->enter();
     filtered_->enter();
     loop_->run(time);
@@ -515,6 +559,7 @@ ProcessSummary Processing::run(const std::filesystem::path& output) {
   choose_roles();
   for (std::string& each : notes_on_law(flight_, file_)) summary_.notes.push_back(std::move(each));
   choose_inputs();
+  find_frozen_sensors();
   choose_rate();
   note_uncertainty();
   const FileDescription description = describe();

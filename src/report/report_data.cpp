@@ -1,4 +1,5 @@
 #include <pcor/words/error.hpp>
+#include <pcor/words/message.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -336,6 +337,15 @@ struct ItemJson {
   json operator()(const ReportText&) const { return json::object(); }
 };
 
+/// What a terminal or a page would obey is shown.
+void show_texts(json& data) {
+  if (data.is_string()) {
+    data = shown_text(data.get_ref<const std::string&>());
+  } else if (data.is_structured()) {
+    for (json& each : data) show_texts(each);
+  }
+}
+
 }  // namespace
 
 const char* kind_of(const ReportItem& item) {
@@ -361,6 +371,7 @@ std::string data_json(const Report& report) {
     one["kind"] = kind_of(item);
     data["items"].push_back(std::move(one));
   }
+  show_texts(data);
   const std::string text = data.dump(-1, ' ', false, json::error_handler_t::replace);
   std::string safe;
   safe.reserve(text.size());

@@ -2,6 +2,7 @@
 #include <openssl/evp.h>
 #include <pcor/report/report.hpp>
 #include <pcor/words/error.hpp>
+#include <pcor/words/message.hpp>
 #include <pcor/words/replacement_file.hpp>
 
 #include <array>
@@ -26,7 +27,7 @@ namespace {
 
 std::string escaped(std::string_view text) {
   std::string safe;
-  for (const char letter : text) switch (letter) {
+  for (const char letter : shown_text(text)) switch (letter) {
       case '&':
         safe += "&amp;";
         break;

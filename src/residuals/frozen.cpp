@@ -1,157 +1,8 @@
 #include "residuals/frozen.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-
-#include <pcor/words/utc.hpp>
-#include "numerics/median.hpp"
-#include "numerics/missing.hpp"
+#include "roles/frozen.hpp"
 
 namespace pcor::internal {
-namespace {
-
-constexpr std::size_t fewest_samples = 20;
-constexpr std::size_t fewest_values = 50;  // with fewer a series tells nothing of its noise
-constexpr std::size_t neighbours = 20;
-constexpr std::size_t left_out = 2;
-constexpr double more_than_near = 20.0;
-constexpr double more_than_half = 5.0;
-constexpr double more_than_most = 10.0;
-constexpr double noisy = 3.0;        // steps of resolution in a second difference
-constexpr std::size_t around = 300;  // samples on either side
-constexpr std::size_t told = 3;
-
-/// The stretches of one value.
-std::vector<Stretch> runs_of(const std::vector<double>& values, const std::vector<bool>& looked_at) {
-  std::vector<Stretch> runs;
-  double last = nan;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double value = looked_at[i] ? values[i] : nan;
-    if (!std::isnan(value)) {
-      if (value != last) runs.push_back({i, 0});
-      ++runs.back().count;
-    }
-    last = value;
-  }
-  return runs;
-}
-
-/// The smallest step of a series.
-double resolution_of(const std::vector<double>& values) {
-  double resolution = infinity;
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    const double step = std::abs(values[i] - values[i - 1]);
-    if (step > 0.0) resolution = std::min(resolution, step);
-  }
-  return resolution;
-}
-
-/// Whether the noise from one sample to another is larger than the resolution; true where nothing tells.
-bool is_noisy(const std::vector<double>& values, std::size_t first, std::size_t end, double resolution) {
-  std::vector<double> bends;
-  for (std::size_t i = first + 2; i < end; ++i) {
-    const double before = values[i - 1] - values[i - 2];
-    const double now = values[i] - values[i - 1];
-    const double bend = std::abs(now - before);
-    if ((before != 0.0 || now != 0.0) && !std::isnan(bend)) bends.push_back(bend);
-  }
-  return bends.empty() || median(std::move(bends)) >= noisy * resolution;
-}
-
-/// Before a run and after it.
-bool is_noisy_around(const std::vector<double>& values, const Stretch& run, double resolution) {
-  const std::size_t after = run.first + run.count;
-  return is_noisy(values, run.first - std::min(run.first, around), run.first, resolution) &&
-         is_noisy(values, after, std::min(after + around, values.size()), resolution);
-}
-
-/// The length of run that the share `part` of the samples does not exceed.
-double usual_length(const std::vector<Stretch>& runs, double part) {
-  std::vector<std::size_t> lengths;
-  std::size_t samples = 0;
-  for (const Stretch& run : runs) {
-    lengths.push_back(run.count);
-    samples += run.count;
-  }
-  std::sort(lengths.begin(), lengths.end());
-  double within = 0.0;
-  for (const std::size_t length : lengths) {
-    within += static_cast<double>(length);
-    if (within >= part * static_cast<double>(samples)) return static_cast<double>(length);
-  }
-  return 0.0;
-}
-
-/// The mean length of the runs around one, but for those that last longest.
-double near_length(const std::vector<Stretch>& runs, std::size_t run) {
-  std::vector<std::size_t> lengths;
-  const std::size_t end = std::min(run + neighbours + 1, runs.size());
-  for (std::size_t i = run - std::min(run, neighbours); i < end; ++i) {
-    if (i != run) lengths.push_back(runs[i].count);
-  }
-  std::sort(lengths.begin(), lengths.end());
-  lengths.resize(lengths.size() - std::min(left_out, lengths.size() - 1));
-  double sum = 0.0;
-  for (const std::size_t length : lengths) sum += static_cast<double>(length);
-  return sum / static_cast<double>(lengths.size());
-}
-
-/// True for what no flying aircraft leaves at one value: flaps and liquid water may stay where they are.
-bool always_varies(Quantity quantity) {
-  constexpr std::array varying{Quantity::static_pressure,
-                               Quantity::dynamic_pressure,
-                               Quantity::radome_dynamic_pressure,
-                               Quantity::attack_differential_pressure,
-                               Quantity::sideslip_differential_pressure,
-                               Quantity::recovery_temperature,
-                               Quantity::ambient_temperature,
-                               Quantity::corrected_static_pressure,
-                               Quantity::lams_airspeed};
-  return std::find(varying.begin(), varying.end(), quantity) != varying.end();
-}
-
-/// "VLAMS is frozen, at 131.2 m/s from 2011-11-18 13:20:05 to 13:21:45 UTC (100 samples)".
-std::string told_of(const std::string& variable, Quantity quantity, const std::vector<double>& values,
-                    const std::vector<double>& time, const std::vector<Stretch>& frozen) {
-  std::vector<std::string> spans;
-  const std::string unit(index(quantity) < quantity_count ? facts_of(quantity).unit : "");
-  for (const Stretch& span : frozen) {
-    if (spans.size() == told) break;
-    spans.push_back(fmt::format("at {:.6g}{} from {} to {} UTC ({} samples)", values[span.first],
-                                unit.empty() || unit == "1" ? "" : " " + unit, utc_text(time[span.first]),
-                                utc_text(time[span.first + span.count - 1], "%H:%M:%S"), span.count));
-  }
-  return fmt::format("{} is frozen, {}{}", variable, fmt::join(spans, ", "),
-                     frozen.size() > told ? fmt::format(" and {} times more", frozen.size() - told) : "");
-}
-
-}  // namespace
-
-std::vector<Stretch> find_frozen(const std::vector<double>& values, const std::vector<bool>& looked_at,
-                                 bool always_varies) {
-  const std::vector<Stretch> runs = runs_of(values, looked_at);
-  const auto same = [&](const Stretch& run) { return values[run.first] == values[runs.front().first]; };
-  if (always_varies && !runs.empty() && std::all_of(runs.begin(), runs.end(), same)) return runs;
-  if (runs.size() < fewest_values) return {};
-  const auto is_long = [](const Stretch& run) { return run.count >= fewest_samples; };
-  if (std::none_of(runs.begin(), runs.end(), is_long)) return {};
-  const double resolution = resolution_of(values);
-  const double of_half = usual_length(runs, 0.5);
-  const double of_most = usual_length(runs, 0.9);
-  std::vector<Stretch> frozen;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (!is_long(runs[i])) continue;
-    const auto length = static_cast<double>(runs[i].count);
-    const double least =
-        is_noisy_around(values, runs[i], resolution) ? more_than_half * of_half : more_than_most * of_most;
-    if (length >= least && length >= more_than_near * near_length(runs, i)) frozen.push_back(runs[i]);
-  }
-  return frozen;
-}
 
 void mark_frozen(FlightSamples& samples, ModelSamples FlightSamples::*part, double least_airspeed) {
   std::vector<bool> flying;
@@ -161,7 +12,7 @@ void mark_frozen(FlightSamples& samples, ModelSamples FlightSamples::*part, doub
     const std::vector<double>& values = *read.find(quantity);
     const std::vector<Stretch> frozen = find_frozen(values, flying, always_varies(quantity));
     for (const Stretch& span : frozen) read.frozen.push_back({quantity, span.first, span.count});
-    if (!frozen.empty()) samples.notes.push_back(told_of(variable, quantity, values, samples.time, frozen));
+    if (!frozen.empty()) samples.notes.push_back(frozen_text(variable, quantity, values, samples.time, frozen));
   }
 }
 

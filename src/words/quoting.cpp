@@ -23,8 +23,9 @@ std::size_t bytes_of_letter(std::string_view text) {
 }
 
 // Whether it begins a new line (U+2028, U+2029) or has letters shown in another order than they stand in
-// (U+200E, U+200F, U+202A to U+202E, U+2066 to U+2069).
+// (U+061C, U+200E, U+200F, U+202A to U+202E, U+2066 to U+2069), or is seen by nobody (U+FEFF).
 bool is_layout(std::string_view letter) {
+  if (letter == "\xd8\x9c" || letter == "\xef\xbb\xbf") return true;
   if (letter.size() != 3) return false;
   const unsigned last = code_of(letter[2]);
   const std::string_view block = letter.substr(0, 2);

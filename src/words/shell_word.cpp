@@ -16,4 +16,12 @@ std::string shell_word(const std::string& word) {
   return text + "'";
 }
 
+std::string shell_path(const std::string& path) {
+  return shell_word(path.rfind('-', 0) == 0 && path != "-" ? "./" + path : path);
+}
+
+std::string shell_option(const std::string& name, const std::string& value) {
+  return name + (value.rfind('-', 0) == 0 ? "=" : " ") + shell_word(value);
+}
+
 }  // namespace pcor

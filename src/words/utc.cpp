@@ -13,7 +13,8 @@ std::string utc_text(double seconds, const char* pattern) {
     return {number,
             static_cast<std::size_t>(std::snprintf(number, sizeof number, "%g s after 1970-01-01", seconds))};
   }
-  const auto whole = static_cast<std::time_t>(std::floor(seconds));
+  constexpr double rounding = 1e-5;  // s, of times that are counted in milliseconds
+  const auto whole = static_cast<std::time_t>(std::floor(seconds + rounding));
   std::tm fields{};
   gmtime_r(&whole, &fields);
   char text[128];

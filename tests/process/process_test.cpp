@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <numeric>
 #include <random>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <pcor/physics/lams.hpp>
@@ -107,6 +109,13 @@ void write_flight(const std::filesystem::path& path, std::size_t records, int ra
 
 class Process : public testing::Test {
  protected:
+  /// For flights that are steadier than any: what never varies is no sensor that is frozen.
+  static ProcessOptions steady() {
+    ProcessOptions options;
+    options.keep_frozen = true;
+    return options;
+  }
+
   std::vector<double> read(const std::string& name, const std::string& unit) {
     const Flight flight(output_);
     std::vector<double> values(flight.records() * static_cast<std::size_t>(flight.variable(name).rate));
@@ -219,7 +228,7 @@ TEST_F(Process, RunsHighRateFlightsAtTheirRate) {
 // Blocks are an affair of the reader: a flight of many gives what its samples give one by one.
 TEST_F(Process, DoesNotDependOnBlocks) {
   write_flight(input_, 2 * records_per_block + 17, 1);
-  process_flight(input_, lams_model(), output_);
+  process_flight(input_, lams_model(), output_, steady());
   EXPECT_THAT(read("PCOR_LAMS", "hPa"), testing::Each(testing::DoubleNear(2.0, 3e-4)));
 }
 
@@ -358,7 +367,7 @@ TEST_F(FilteredTemperature, IsNotShiftedWhateverTheBlocks) {
   for (const int rate : {1, 25}) {
     const std::size_t records = records_per_block + 1000;
     write_swinging(test::sequence(50000.0, records), rate, 60.0);
-    const ProcessSummary summary = process_flight(input_, lams_model(), output_);
+    const ProcessSummary summary = process_flight(input_, lams_model(), output_, steady());
     EXPECT_THAT(summary.outputs, Contains("ATLAMSF"));
     const std::vector<double> found = difference();
     ASSERT_EQ(found.size(), records * static_cast<std::size_t>(rate));
@@ -455,6 +464,84 @@ TEST_F(FilteredTemperature, IsMissingWithItsSample) {
   std::size_t place = 0;
   while (quality_facts[place].bit != Quality::filter_window_incomplete) ++place;
   EXPECT_EQ(summary.flagged[place], flagged);
+}
+
+// Of a flight of noise one sensor is frozen for two minutes.
+TEST_F(Process, LeavesOutAFrozenSensorAndSaysSo) {
+  constexpr std::size_t first = 2000, count = 120, records = 4000;
+  const auto bit = static_cast<std::uint32_t>(Quality::sensor_frozen);
+  for (const std::string frozen : {"PSFD", "QCF", "TTRR"}) {
+    std::mt19937_64 engine(1);
+    std::normal_distribution<double> noise(0.0, 0.05);
+    auto maker = std::make_unique<test::NetcdfMaker>(input_);
+    maker->time(test::sequence(50000.0, records));
+    for (const auto& [name, unit, level] : {std::tuple{"PSFD", "hPa", 700.0}, {"QCF", "hPa", 60.0}, {"TTRR", "deg_C", 5.0},
+                                            {"QCR", "hPa", 60.0}, {"ADIFR", "hPa", -10.0}, {"EDPC", "hPa", 4.0}}) {
+      std::vector<double> values;
+      for (std::size_t i = 0; i < records; ++i) {
+        const bool is_held = name == frozen && i > first && i < first + count;
+        const double value = level + std::sin(0.01 * static_cast<double>(i)) + noise(engine);
+        values.push_back(is_held ? values.back() : value);
+      }
+      maker->series(name, unit, values);
+    }
+    maker.reset();  // writes it
+    ModelFile model = lams_model();
+    model.variables.erase(Quantity::lams_airspeed);
+    const ProcessSummary summary = process_flight(input_, model, output_);
+    EXPECT_THAT(summary.notes, Contains(HasSubstr(frozen + " is frozen")));
+    const std::string result = frozen == "TTRR" ? "TASX" : "PSXC";
+    const std::vector<double> missing_values = read(result, ""), flags = read("PCORFLAG", "");
+    ProcessOptions keep;
+    keep.keep_frozen = true;
+    process_flight(input_, model, output_, keep);
+    const std::vector<double> kept = read(result, ""), kept_flags = read("PCORFLAG", "");
+    for (std::size_t i = 0; i < records; ++i) {
+      const bool is_frozen = i >= first && i < first + count;
+      ASSERT_EQ((static_cast<std::uint32_t>(flags[i]) & bit) != 0, is_frozen) << i;
+      ASSERT_EQ(std::isnan(missing_values[i]), is_frozen) << i;
+      ASSERT_EQ((static_cast<std::uint32_t>(kept_flags[i]) & bit) != 0, is_frozen) << i;
+      ASSERT_FALSE(std::isnan(kept[i])) << i;
+    }
+  }
+}
+
+// A lag is undone at even samples; at others a bit says that it may not be.
+TEST_F(Process, SaysWhereSamplesAreUneven) {
+  std::vector<double> time = test::sequence(50000.0, 100), p, q;
+  for (double& each : time) each = 50000.0 + 4.0 * (each - 50000.0);
+  for (int i = 0; i < 90; ++i) time.push_back(time.back() + 1.0);
+  for (const double each : time) {
+    p.push_back(600.0 + 0.5 * (each - 50000.0));
+    q.push_back(60.0 + 0.01 * (each - 50000.0));
+  }
+  {
+    test::NetcdfMaker maker(input_);
+    maker.time(time);
+    maker.series("PSFD", "hPa", p);
+    maker.series("QCF", "hPa", q);
+  }
+  const ModelFile model = parse_model(R"(
+format = "pcor-model/1"
+name = "lagging"
+[variables]
+static_pressure = "PSFD"
+dynamic_pressure = "QCF"
+[[effect]]
+id = "static-lag"
+parameters = { tau = 5.0 }
+)",
+                                      "test.toml");
+  process_flight(input_, model, output_);
+  const std::vector<double> corrected = read("PSXC", ""), flags = read("PCORFLAG", "");
+  const auto bit = static_cast<std::uint32_t>(Quality::uneven_samples);
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    const bool is_right = std::abs(corrected[i] - p[i] - 2.5) < 0.1;
+    EXPECT_TRUE(is_right || (static_cast<std::uint32_t>(flags[i]) & bit) != 0 || std::isnan(corrected[i])) << i;
+    if (i < 90) {
+      EXPECT_EQ(static_cast<std::uint32_t>(flags[i]) & bit, 0U) << i;
+    }
+  }
 }
 
 // A minute on the ramp, where the pressures of moving air are noise, and a minute of flight.
@@ -695,7 +782,7 @@ id = "temp-lag"
 parameters = { tau = 8.0 }
 )",
                                         "lag.toml");
-    return process_flight(input_, model, output_);
+    return process_flight(input_, model, output_, steady());
   }
 };
 

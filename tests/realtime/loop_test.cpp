@@ -297,7 +297,9 @@ TEST(Loop, FindsTheRatesThatEffectsNeed) {
       run(loop, sample(i / rate), i / rate);
       EXPECT_EQ(std::isnan(loop.state()[Quantity::time]), static_cast<std::size_t>(i) < loop.delay());
       EXPECT_EQ(loop.last_time(), i / rate);
-      EXPECT_EQ(own_bits(loop), 0U);
+      EXPECT_EQ(own_bits(loop), static_cast<std::size_t>(i) < loop.delay()
+                                    ? static_cast<std::uint32_t>(Quality::awaiting_later_samples)
+                                    : 0U);
     }
     const State<double> s = loop.state();
     const double time = (last - static_cast<double>(loop.delay())) / rate;
@@ -440,6 +442,144 @@ TEST(LoopGap, StartsAnewAtGapsAndWhereTimeDoesNotAdvance) {
     EXPECT_FALSE(loop.quality().has(Quality::after_gap));
   }
 }
+
+/// A lag of 5 s of a pressure that rises by 2 hPa/s, at the times given; the results and bits of each run.
+struct Lagged {
+  std::vector<double> defects{};
+  std::vector<std::uint32_t> bits{};
+  std::vector<double> times{};
+};
+
+Lagged run_lagged(double rate, const std::vector<double>& times) {
+  Model model;
+  model.effects = {{"static-lag", {5.0}}};
+  const Sample sample{{Quantity::static_pressure, 700.0}, {Quantity::dynamic_pressure, 60.0}};
+  Loop loop = build(model, sample, rate);
+  Lagged result;
+  for (const double time : times) {
+    run(loop, with(sample, {{Quantity::static_pressure, 700.0 + 2.0 * (time - times.front())}}), time);
+    const State<double>& state = loop.state();
+    result.defects.push_back(state[Quantity::port_static_pressure] - state[Quantity::static_pressure]);
+    result.bits.push_back(loop.quality().bits());
+    result.times.push_back(state[Quantity::time]);
+  }
+  return result;
+}
+
+std::vector<double> steps(const std::vector<std::pair<int, double>>& parts) {
+  std::vector<double> times{0.0};
+  for (const auto& [count, step] : parts)
+    for (int i = 0; i < count; ++i) times.push_back(times.back() + step);
+  return times;
+}
+
+/// Every result is right, or missing or doubtful with a bit that says so. How many are right.
+std::size_t expect_right_or_told(const Lagged& lagged) {
+  constexpr double right = 10.0;  // tau times the rate of change
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < lagged.defects.size(); ++i) {
+    if (std::abs(lagged.defects[i] - right) < 0.03 * right) {
+      ++count;
+    } else {
+      const QualityFlags none;
+      EXPECT_NE(lagged.bits[i] & (static_cast<std::uint32_t>(Quality::uneven_samples) |
+                                  static_cast<std::uint32_t>(Quality::awaiting_later_samples) |
+                                  static_cast<std::uint32_t>(Quality::after_gap)),
+                none.bits())
+          << i << ": " << lagged.defects[i];
+    }
+  }
+  return count;
+}
+
+TEST(LoopInterval, ThatChangesOrIsAnotherGivesTheRightResultOrABit) {
+  EXPECT_GT(expect_right_or_told(run_lagged(1.0, steps({{100, 1.0}, {90, 0.25}, {100, 1.0}}))), 150U);
+  EXPECT_GT(expect_right_or_told(run_lagged(1.0, steps({{100, 1.0}, {90, 1.4}}))), 80U);
+  expect_right_or_told(run_lagged(25.0, steps({{2000, 0.01}})));
+  expect_right_or_told(run_lagged(25.0, steps({{2000, 0.05}})));
+  std::vector<double> jitter;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> early(-0.4, 0.4);
+  for (int i = 0; i < 500; ++i) jitter.push_back(i + early(random));
+  expect_right_or_told(run_lagged(1.0, jitter));
+}
+
+TEST(LoopInterval, ThatIsTheRatesSetsNoBit) {
+  for (const double off : {1.0, 1.01, 0.99}) {
+    const Lagged lagged = run_lagged(25.0, steps({{3000, off / 25.0}}));
+    EXPECT_EQ(expect_right_or_told(lagged), 3001U - 75U);
+    for (const std::uint32_t bits : lagged.bits)
+      ASSERT_EQ(bits & static_cast<std::uint32_t>(Quality::uneven_samples), 0U);
+  }
+}
+
+TEST(LoopInterval, SaysThatLaterSamplesAreAwaited) {
+  const Lagged lagged = run_lagged(1.0, steps({{20, 1.0}, {1, 100.0}, {20, 1.0}}));
+  for (std::size_t i = 0; i < lagged.defects.size(); ++i) {
+    const bool waits = i < 6 || (i > 20 && i < 27);
+    EXPECT_EQ((lagged.bits[i] & static_cast<std::uint32_t>(Quality::awaiting_later_samples)) != 0, waits) << i;
+    EXPECT_EQ(std::isnan(lagged.times[i]), waits) << i;
+  }
+}
+
+/// A flight of noise at 25 Hz, in steps of `resolution`, in which one role is frozen for some time: at which
+/// samples the bit stands.
+std::vector<bool> told_frozen(Quantity role, double noise, double resolution, std::size_t from, std::size_t to) {
+  const Sample flown{{Quantity::static_pressure, 700.0},
+                     {Quantity::dynamic_pressure, 60.0},
+                     {Quantity::recovery_temperature, 280.0}};
+  Model model;
+  model.effects = {{"static-constant", {0.004}}};
+  Loop loop = build(model, flown, 25.0);
+  std::mt19937 random(3);
+  std::normal_distribution<double> gauss(0.0, noise);
+  double held = 0.0;
+  std::vector<bool> told;
+  for (std::size_t i = 0; i < 20000; ++i) {
+    Sample sample = flown;
+    for (auto& [quantity, value] : sample)
+      value = std::round((value + std::sin(0.001 * static_cast<double>(i)) + gauss(random)) / resolution) * resolution;
+    if (i >= from && i < to) {
+      if (i == from) held = sample[role];
+      sample[role] = held;
+    }
+    run(loop, sample, 0.04 * static_cast<double>(i));
+    told.push_back(loop.quality().has(Quality::sensor_frozen));
+  }
+  return told;
+}
+
+TEST(LoopFrozen, ASensorThatStandsStillSetsABit) {
+  for (const Quantity role :
+       {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::recovery_temperature}) {
+    const std::vector<bool> told = told_frozen(role, 0.05, 0.001, 5000, 9000);
+    for (std::size_t i = 0; i < told.size(); ++i)
+      ASSERT_EQ(told[i], i >= 5000 + 19 && i < 9000) << i << " of " << pcor::facts_of(role).name;
+  }
+}
+
+TEST(LoopFrozen, ACoarseSensorIsLeftFiveMinutes) {
+  const std::vector<bool> told = told_frozen(Quantity::static_pressure, 0.05, 0.5, 5000, 15000);
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    if (i < 10000 || i >= 15000) {
+      ASSERT_FALSE(told[i]) << i;
+    }
+  }
+  EXPECT_TRUE(told[14000]);
+}
+
+TEST(LoopFrozen, OnTheGroundNothingIs) {
+  const Sample parked{{Quantity::static_pressure, 1000.0}, {Quantity::dynamic_pressure, 0.0}};
+  Model model;
+  model.effects = {{"static-constant", {0.004}}};
+  Loop loop = build(model, parked, 25.0);
+  for (int i = 0; i < 20000; ++i) {
+    run(loop, parked, 0.04 * i);
+    ASSERT_FALSE(loop.quality().has(Quality::sensor_frozen));
+  }
+}
+
+TEST(Loop, CompilesWithArithmeticThatKeepsNan) { EXPECT_TRUE(pcor::arithmetic_keeps_nan()); }
 
 TEST(LoopGap, MayBeAskedFor) {
   Model model;

@@ -20,6 +20,7 @@ constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double pi = 3.14159265358979323846;
 constexpr double rates[] = {1.0, 25.0};
+const Quantity filtered_quantity = pcor::extra_quantity(0);  // of which all is believed
 
 struct Result {
   double value;
@@ -30,14 +31,14 @@ struct Result {
 class Filter {
  public:
   explicit Filter(double rate)
-      : filter_(Quantity::lams_temperature, Quantity::filtered_lams_temperature, rate) {}
+      : filter_(Quantity::lams_temperature, filtered_quantity, rate) {}
 
   Result operator()(double value) {
     State<double> state;
     QualityFlags flags;
     state[Quantity::lams_temperature] = value;
     filter_.compute(state, flags);
-    return {state[Quantity::filtered_lams_temperature], flags.has(Quality::filter_window_incomplete)};
+    return {state[filtered_quantity], flags.has(Quality::filter_window_incomplete)};
   }
 
   void reset() { filter_.reset(); }
@@ -85,12 +86,29 @@ Response response(double rate, double period) {
   return sum;
 }
 
+TEST(LowPass, IsMissingWhereItOvershootsBeyondAllFlights) {
+  LowPass filter(Quantity::lams_temperature, Quantity::filtered_lams_temperature, 25.0);
+  std::size_t missing_values = 0;
+  for (std::size_t i = 0; i < 1000; ++i) {
+    State<double> state;
+    QualityFlags flags;
+    state[Quantity::lams_temperature] = i < 500 ? 200.0 : 399.0;
+    filter.compute(state, flags);
+    const double value = state[Quantity::filtered_lams_temperature];
+    ASSERT_FALSE(value > 400.0) << i;
+    if (i < 2 * filter.delay() || !std::isnan(value)) continue;
+    ASSERT_TRUE(flags.has(Quality::filter_window_incomplete)) << i;
+    ++missing_values;
+  }
+  EXPECT_GT(missing_values, 0U);
+}
+
 }  // namespace
 
 TEST(LowPass, DeclaresWhatItReadsAndWrites) {
-  const LowPass filter(Quantity::lams_temperature, Quantity::filtered_lams_temperature, 1.0);
+  const LowPass filter(Quantity::lams_temperature, filtered_quantity, 1.0);
   EXPECT_THAT(filter.inputs(), ElementsAre(Quantity::lams_temperature));
-  EXPECT_THAT(filter.outputs(), ElementsAre(Quantity::filtered_lams_temperature));
+  EXPECT_THAT(filter.outputs(), ElementsAre(filtered_quantity));
 }
 
 TEST(LowPass, IsLateByItsDelay) {

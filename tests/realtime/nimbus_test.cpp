@@ -352,7 +352,7 @@ TEST(NimbusSystem, GivesEachRateItsOwnRateOfChange) {
     const double since = second < 15.0 ? second : second - 19.0;  // the last gap
     if (since < 6.0) {
       EXPECT_THAT(table.low("PSXC_R"), IsNan());
-      EXPECT_EQ(table.low("PCORFLAG_R"), 0.0F);
+      EXPECT_EQ(table.low("PCORFLAG_R"), static_cast<float>(Quality::awaiting_later_samples));
     } else {
       EXPECT_NEAR(lag(table.low("PSXC_R"), 706.0 - second, table.low("PCOR_R")), -0.15, 1e-4);
       EXPECT_EQ(table.low("PCORFLAG_R"), dry);

@@ -2,7 +2,7 @@
 ///
 ///     soak SAMPLES
 ///
-/// Gaps, missing and infinite values, denormals, absurd and plausible ones, each at random in every role,
+/// Gaps, other rates, missing and infinite values, denormals, absurd and plausible ones, each at random in every role,
 /// through models that use all stages. It counts the samples that break one of the laws of the loop: a result
 /// is finite and one that a flight has, or missing with a bit that says why; and after a gap it is, to the
 /// last bit, what a new loop makes of the same samples. It prints how long the runs took and how often they
@@ -107,7 +107,8 @@ bool says_why(pcor::QualityFlags quality, Quantity result) {
                                  Quality::after_gap,
                                  Quality::defect_exceeds_dynamic_pressure,
                                  Quality::filter_window_incomplete,
-                                 Quality::no_airflow};
+                                 Quality::no_airflow,
+                                 Quality::awaiting_later_samples};
   return std::any_of(std::begin(reasons), std::end(reasons),
                      [quality](Quality reason) { return quality.has(reason); });
 }
@@ -189,7 +190,11 @@ class Soak {
   void run(std::uint64_t samples) {
     for (std::uint64_t i = 0; i < samples; ++i) {
       if (since_gap_ > 200 && random_() % 500 == 0) fly_through_a_gap();
-      time_ += 1.0 / rate;
+      if (random_() % 1000 == 0) {
+        const double steps[] = {1.0, 1.0, 0.2, 0.9, 1.02, 1.4};
+        step_ = steps[random_() % std::size(steps)] / rate;
+      }
+      time_ += step_;
       const bool is_fair = random_() % 2 == 0;
       for (const Usual& role : world_.roles) loop_.state()[role.quantity] = value(role, is_fair);
       const bool is_compared = since_gap_ < 200;
@@ -272,6 +277,7 @@ class Soak {
   Loop fresh_;
   std::mt19937_64 random_{20111117};
   double time_ = 0.0;
+  double step_ = 1.0 / rate;  // which changes
   std::size_t since_gap_ = 0;
 };
 

@@ -1,4 +1,4 @@
-#include "residuals/frozen.hpp"
+#include "roles/frozen.hpp"
 
 #include <gmock/gmock.h>
 

@@ -378,7 +378,7 @@ class References(ComparisonTest):
     def test_each_reference_has_its_own_table(self):
         text = self.done("compare", ONE, "-m", self.model(), "--reference", "pressure:TRUE_PS", "--reference", "height",
                          "--reference", "total:PSFRD+QCFR").stdout
-        self.assertIn("references: pressure:TRUE_PS, height, total:PSFRD+QCFR", text)
+        self.assertIn("references: pressure:TRUE_PS, total:PSFRD+QCFR, height", text)
         self.assertIn("residual = hydrostatic height against that of GPS", text)
         self.assertIn("residual = total pressure of 'PSFRD+QCFR'", text)
 

@@ -85,7 +85,7 @@ void print(const ModelFile& model, const ModelFile& extended, const Options& opt
   say("\n");
   say_written({options.output, options.common.json});
   say("To fit it: {} refit {} -m {} -o fitted.toml\n", program(),
-      options.flight.empty() ? "IN.nc" : shell_word(options.flight), shell_word(options.output));
+      options.flight.empty() ? "IN.nc" : shell_path(options.flight), shell_path(options.output));
 }
 
 nlohmann::ordered_json as_json(const ModelFile& model, const ModelFile& extended, const Options& options) {

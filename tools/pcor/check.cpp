@@ -131,7 +131,7 @@ void print(const ReportTable& table) {
 /// As the options stand on a command line, for the commands that are advised.
 std::string command_line(const Options& options) {
   std::string line = advised_command_line(options.flights);
-  if (!options.model.empty()) line += " -m " + shell_word(options.model);
+  if (!options.model.empty()) line += " -m " + shell_path(options.model);
   return line;
 }
 
@@ -175,7 +175,7 @@ std::string next_step(const Checks& checks, const Options& options, bool has_las
     return fmt::format(
         "Nothing here speaks against the model{}. To apply it: {} process {} -m {} -o corrected.nc",
         open > 0 ? fmt::format("; {} check{} cannot tell", open, open == 1 ? "" : "s") : "", program(),
-        shell_word(options.flights.flights.front()), shell_word(options.model));
+        shell_path(options.flights.flights.front()), shell_path(options.model));
   }
   return pictures;
 }

@@ -193,14 +193,14 @@ void print(const Comparison& comparison, const ChosenReferences& references, con
   const std::string flights = advised_command_line(options.comparison);
   if (best->all.rms_over_noise() < 1.15) {
     say("The residual of {} is little more than noise. To apply it: {} process {} -m {} -o corrected.nc\n",
-        best->name, program(), shell_word(options.comparison.flights.front()), shell_word(model));
+        best->name, program(), shell_path(options.comparison.flights.front()), shell_path(model));
     return;
   }
-  say("To refit its coefficients: {} refit {} -m {} -o fitted.toml\n", program(), flights, shell_word(model));
+  say("To refit its coefficients: {} refit {} -m {} -o fitted.toml\n", program(), flights, shell_path(model));
   if (comparison.total_pressure && comparison.is_static_pressure) {
     say("To refit both systems together: {} refit {} -m {} -o fitted.toml --refit-reference "
         "fitted-reference.toml\n",
-        program(), flights, shell_word(model));
+        program(), flights, shell_path(model));
   }
 }
 
@@ -268,8 +268,8 @@ void print(const Levels& levels, const std::vector<Contender>& contenders) {
 
 std::string history_of(const Options& options) {
   std::string line = "pcor " PCOR_VERSION " compare " + command_line(options.comparison);
-  for (const std::string& model : options.models) line += " -m " + shell_word(model);
-  return line + " --residuals " + shell_word(options.residuals);
+  for (const std::string& model : options.models) line += " -m " + shell_path(model);
+  return line + " --residuals " + shell_path(options.residuals);
 }
 
 void run(const Options& options) {

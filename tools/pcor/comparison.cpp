@@ -83,6 +83,7 @@ void add_flight_options(CLI::App& command, ComparisonOptions& options) {
                    "leave out a flight that is damaged or is none, and say so");
   add_processes_option(command);
   command.parse_complete_callback([&options] {
+    options.references = in_order(options.references);
     if (options.skip_unreadable) leave_out_unreadable(options.flights);
   });
 }
@@ -126,7 +127,7 @@ std::string with_options(std::string line, const ComparisonOptions& options) {
   for (const std::string& reference : options.references)
     line += "--reference " + shell_word(reference) + " ";
   for (const std::string& regime : options.exclude) line += "--exclude " + shell_word(regime) + " ";
-  if (!options.intervals.empty()) line += "--intervals " + shell_word(options.intervals) + " ";
+  if (!options.intervals.empty()) line += "--intervals " + shell_path(options.intervals) + " ";
   if (options.least_airspeed != MaskOptions{}.least_airspeed)
     line += fmt::format("--min-airspeed {} ", options.least_airspeed);
   if (options.most_flaps) line += fmt::format("--max-flaps {} ", *options.most_flaps);
@@ -151,7 +152,7 @@ std::vector<std::filesystem::path> input_files(const ComparisonOptions& options)
 
 std::string command_line(const ComparisonOptions& options) {
   std::string flights;
-  for (const std::string& flight : options.flights) flights += shell_word(flight) + " ";
+  for (const std::string& flight : options.flights) flights += shell_path(flight) + " ";
   return with_options(std::move(flights), options);
 }
 
@@ -159,7 +160,7 @@ std::string advised_command_line(const ComparisonOptions& options) {
   constexpr std::size_t most_to_read = 16;
   if (options.flights.size() <= most_to_read) return command_line(options);
   return with_options(
-      shell_word(options.flights.front()) + " ... " + shell_word(options.flights.back()) + " ", options);
+      shell_path(options.flights.front()) + " ... " + shell_path(options.flights.back()) + " ", options);
 }
 
 ChosenReferences references_to_fit(const ComparisonOptions& options, const ModelFile& model,

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 
 #include <pcor/flight/file_in_hand.hpp>
 #include <pcor/words/replacement_file.hpp>
@@ -18,6 +19,7 @@ namespace pcor::tool {
 namespace {
 
 constexpr std::size_t stack_bytes = std::size_t{64} << 10;
+constexpr int seconds_between_looks = 5;
 constexpr std::array crashes{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 
 std::array<struct sigaction, crashes.size()> earlier;  // a sanitizer's, where there is one
@@ -79,6 +81,21 @@ extern "C" void watch(int /*signal*/) {
   if (file_in_hand() != nullptr && seconds_in_hand() >= most_seconds_in_hand) give_up(file_in_hand());
 }
 
+extern "C" void watch_waiting(int /*signal*/) {
+  const char* const file = file_in_hand();
+  static volatile std::sig_atomic_t times = 0;  // few pass while a user has stopped the program
+  const double waiting = seconds_of_waiting();
+  times = waiting < 0.9 * seconds_between_looks ? 0 : times + 1;
+  if (file == nullptr || waiting < most_seconds_of_waiting || times * seconds_between_looks < most_seconds_of_waiting)
+    return;
+  remove_unfinished_files();
+  print("pcor: ");
+  print(file);
+  print(" does not answer: half a minute passed without a byte, as where it links to a pipe or to a disk that is "
+        "gone; copy it, and give the copy\n");
+  _exit(status_of_crash);
+}
+
 /// Libraries end a program where they get no memory.
 extern "C" void explain_exit() {
   if (is_running != 0) give_up(nullptr);
@@ -107,6 +124,13 @@ CrashesExplained::CrashesExplained(int status) {
   handle(SIGPROF, watch, SA_RESTART, nullptr);
   const itimerval each_second{{1, 0}, {1, 0}};  // of processor time
   setitimer(ITIMER_PROF, &each_second, nullptr);
+  handle(SIGVTALRM, watch_waiting, SA_RESTART, nullptr);
+  sigevent event{};
+  event.sigev_notify = SIGEV_SIGNAL;
+  event.sigev_signo = SIGVTALRM;
+  timer_t timer{};
+  const itimerspec sometimes{{seconds_between_looks, 0}, {seconds_between_looks, 0}};  // of a clock on the wall
+  if (timer_create(CLOCK_MONOTONIC, &event, &timer) == 0) timer_settime(timer, 0, &sometimes, nullptr);
   is_running = 1;
   std::atexit(explain_exit);
 }

@@ -105,17 +105,17 @@ void print_others(const Diagnosis& diagnosis, bool all) {
 /// command cannot.
 std::string next_command(const Diagnosis& diagnosis, const Options& options) {
   const std::string flights = advised_command_line(options.comparison);
-  const std::string model = shell_word(options.model);
+  const std::string model = shell_path(options.model);
   if (diagnosis.verdict == Verdict::silent) {
     return fmt::format("To apply the model: {} process {} -m {} -o corrected.nc", program(),
-                       shell_word(options.comparison.flights.front()), model);
+                       shell_path(options.comparison.flights.front()), model);
   }
   const std::string and_fit =
       fmt::format(" -m {} --flight {} -o extended.toml && {} refit {} -m extended.toml -o fitted.toml", model,
-                  shell_word(options.comparison.flights.front()), program(), flights);
+                  shell_path(options.comparison.flights.front()), program(), flights);
   const auto add_formula = [&and_fit](const std::string& id, const std::string& formula,
                                       const std::string& where) {
-    return fmt::format("{} add {} --formula {} --where {}{}", program(), shell_word(id), shell_word(formula),
+    return fmt::format("{} add {} {} --where {}{}", program(), shell_word(id), shell_option("--formula", formula),
                        where, and_fit);
   };
   const auto of_catalogue = [](const Finding& finding) {

@@ -119,7 +119,7 @@ Json step_as_json(const FlightStep& step) {
 }
 
 std::string option(const char* name, const std::string& value) {
-  return fmt::format(" {} {}", name, shell_word(value));
+  return " " + shell_option(name, value);
 }
 
 /// What a model's file is called, in letters that mean nothing to a shell.
@@ -223,8 +223,8 @@ void add_commands(WhatIf& what_if, const std::string& model, const std::string& 
     const bool of_reference = shown.id != effect.id;
     if (!effect.is_formula() && !of_reference) shown.argument = shell_word(argument_of(effect));
     if (effect.is_formula() && effect.parameter_names == std::vector<std::string>{"k"})
-      shown.argument = fmt::format("{} --formula {} --where {}", shell_word(effect.id),
-                                   shell_word(effect.formula), facts_of(effect.where).name);
+      shown.argument = fmt::format("{} {} --where {}", shell_word(effect.id),
+                                   shell_option("--formula", effect.formula), facts_of(effect.where).name);
   }
   for (const WhatIfEffect& shown : what_if.panel.effects) {
     for (std::size_t c = shown.first; c < shown.first + shown.count; ++c) {
@@ -232,8 +232,8 @@ void add_commands(WhatIf& what_if, const std::string& model, const std::string& 
       coefficient.argument = shell_word(shown.id + "." + coefficient.name);
     }
   }
-  what_if.panel.commands = {fmt::format("{} add", program()), shell_word(model),
-                            fmt::format("--flight {}", shell_word(first_flight)),
+  what_if.panel.commands = {fmt::format("{} add", program()), shell_path(model),
+                            fmt::format("--flight {}", shell_path(first_flight)),
                             fmt::format("{} refit {}", program(), fit), plain_stem(model)};
 }
 

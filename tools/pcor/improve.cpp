@@ -124,7 +124,7 @@ void print(const Improvement& improvement, const ChosenReferences& references, c
   say("\n");
   say_written({options.output, options.common.report, options.common.figures, options.common.json});
   say("To apply it: {} process {} -m {} -o corrected.nc\n", program(),
-      shell_word(options.comparison.flights.front()), shell_word(options.output));
+      shell_path(options.comparison.flights.front()), shell_path(options.output));
 }
 
 ImproveOptions improve_options(const Options& options, const ModelFile& model, const CommandFlights& of) {
@@ -164,7 +164,7 @@ void run(const Options& options) {
     if (!options.common.report.empty()) {
       tried = what_if(of.flights, improvement, references.used, improve_with);
       std::string fit = command_line(options.comparison);
-      for (const std::string& flight : options.holdout) fit += " --holdout " + shell_word(flight);
+      for (const std::string& flight : options.holdout) fit += " --holdout " + shell_path(flight);
       if (options.training_share < 1.0) fit += fmt::format(" --training-share {}", options.training_share);
       if (options.loss != "huber") fit += " --loss " + options.loss;
       fit += command_line(options.held);

@@ -60,7 +60,7 @@ std::vector<std::string> next_commands(const Options& options, const Inspection&
     return commands;
   }
   std::vector<std::string> commands;
-  const std::string model = " -m " + shell_word(options.model.empty() ? "model.toml" : options.model);
+  const std::string model = " -m " + shell_path(options.model.empty() ? "model.toml" : options.model);
   if (options.model.empty()) {
     const std::string roles = options.roles.empty() ? "" : " --roles " + shell_word(options.roles);
     commands.push_back(command("inspect", flight, roles + stamp + " --write-model model.toml"));

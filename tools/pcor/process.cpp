@@ -41,6 +41,7 @@ struct Options {
   std::string suffix;
   bool copy_all = false;
   bool hydrostatic = false;
+  bool keep_frozen = false;
   bool if_stale = false;
   bool skip_unreadable = false;
 };
@@ -48,15 +49,16 @@ struct Options {
 /// What makes one output alone.
 std::string command_line(const ProcessTask& task, const Options& options) {
   std::string line =
-      fmt::format("pcor " PCOR_VERSION " process {} {} {} -o {}", shell_word(task.input.string()),
-                  options.models.empty() ? "-m" : "--models", shell_word(options.model + options.models),
-                  shell_word(task.output.string()));
+      fmt::format("pcor " PCOR_VERSION " process {} {} {} -o {}", shell_path(task.input.string()),
+                  options.models.empty() ? "-m" : "--models", shell_path(options.model + options.models),
+                  shell_path(task.output.string()));
   if (options.correct_with != "model") line += " --correct-with " + options.correct_with;
   if (options.time_stamp != "begin") line += " --time-stamp " + options.time_stamp;
   if (!options.uncertainty.empty()) line += " --uncertainty " + options.uncertainty;
-  if (!options.suffix.empty()) line += " --suffix " + shell_word(options.suffix);
+  if (!options.suffix.empty()) line += " " + shell_option("--suffix", options.suffix);
   if (options.copy_all) line += " --all";
   if (options.hydrostatic) line += " --hydrostatic";
+  if (options.keep_frozen) line += " --keep-frozen";
   return line;
 }
 
@@ -124,7 +126,7 @@ void print_flags(const Flags& flagged) {
 
 void print_hint(const ProcessedFlight& flight) {
   say("To look at the result: ncdump -v {} {} | less\n", flight.summary.outputs.front(),
-      shell_word(flight.output.string()));
+      shell_path(flight.output.string()));
 }
 
 /// All that is to be said of one flight.
@@ -276,6 +278,7 @@ ProcessOptions process_options(const Options& options) {
   process.time_stamp = options.time_stamp == "middle" ? TimeStamp::middle : TimeStamp::begin;
   process.copy_all = options.copy_all;
   process.hydrostatic = options.hydrostatic;
+  process.keep_frozen = options.keep_frozen;
   process.uncertainty = part_named(options.uncertainty);
   process.suffix = options.suffix;
   return process;
@@ -418,6 +421,8 @@ std::function<void()> add_process(CLI::App& program) {
                     "copy every variable of the input but texts, and say which these are");
   command->add_flag("--hydrostatic", options->hydrostatic,
                     "write HYDSTEP, the change of hydrostatic height per kelvin from sample to sample");
+  command->add_flag("--keep-frozen", options->keep_frozen,
+                    "correct what a sensor reads while it is frozen, too, which else counts as missing");
   add_common_options(*command, options->common);
   add_examples(*command, {"process third.nc -m best.toml -o corrected.nc",
                           "process third.nc -m best.toml --all --suffix _NEW -o everything.nc"});

@@ -142,7 +142,8 @@ Ending failed(const Error& error, bool at_once) {
   std::fflush(stdout);
   const Error of_all = team().leave(error).value_or(error);
   if (*of_all.what() != '\0') tell(fmt::format("pcor: {}", of_all.what()));
-  return {work_not_done, at_once || is_final(of_all)};
+  // HDF5 may hold what it could not write, whatever the refusal was: it would try once more at the exit.
+  return {work_not_done, at_once || is_final(of_all) || team().size() == 1};
 }
 
 }  // namespace

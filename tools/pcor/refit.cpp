@@ -240,7 +240,7 @@ void print_next_step(const Options& options) {
   say_written({options.output, options.reference_output});
   if (options.reference_output.empty()) {
     say("To see where it still fails: {} compare {} -m {} -m {}\n", program(),
-        advised_command_line(options.comparison), shell_word(options.model), shell_word(options.output));
+        advised_command_line(options.comparison), shell_path(options.model), shell_path(options.output));
     return;
   }
   ComparisonOptions fitted = options.comparison;
@@ -252,7 +252,7 @@ void print_next_step(const Options& options) {
       reference = reference.substr(0, colon) + ":" + options.reference_output;
   }
   say("To see where they still fail: {} compare {} -m {}\n", program(), advised_command_line(fitted),
-      shell_word(options.output));
+      shell_path(options.output));
 }
 
 /// The flights with the model before and after the fit, for the report.
@@ -331,6 +331,12 @@ void deliver_models(RefitResult& result, const std::vector<std::filesystem::path
   if (!result.reference) return;
   refuse_worse(result.worse, options.force, *result.reference);
   deliver(*result.reference, options.reference_output, inputs);
+}
+
+/// The first reference is the one that is fitted too.
+void put_static_systems_first(std::vector<std::string>& references) {
+  std::stable_partition(references.begin(), references.end(),
+                        [](const std::string& each) { return each.rfind("static:", 0) == 0; });
 }
 
 void run(const Options& options) {
@@ -447,7 +453,10 @@ std::function<void()> add_refit(CLI::App& program) {
       {"refit first.nc second.nc -m model.toml -o fitted.toml --report refit.html",
        "refit first.nc second.nc --holdout third.nc -m model.toml -o fitted.toml",
        "refit first.nc second.nc -m model.toml --stage 'pitch manoeuvre: static-alpha' -o staged.toml"});
-  return [options] { run(*options); };
+  return [options] {
+    if (!options->reference_output.empty()) put_static_systems_first(options->comparison.references);
+    run(*options);
+  };
 }
 
 }  // namespace pcor::tool

@@ -24,8 +24,8 @@ struct Options {
 };
 
 std::string command_line(const Options& options, std::uint64_t seed) {
-  return fmt::format("pcor " PCOR_VERSION " simulate {} -o {} --seed {}", shell_word(options.scenario),
-                     shell_word(options.output), seed);
+  return fmt::format("pcor " PCOR_VERSION " simulate {} -o {} --seed {}", shell_path(options.scenario),
+                     shell_path(options.output), seed);
 }
 
 nlohmann::ordered_json as_json(const SimulationSummary& summary, const Options& options) {
@@ -71,7 +71,7 @@ void print(const SimulationSummary& summary, const Options& options) {
       options.output);
   say_written({options.common.json});
   say("To see where a model fails on it: {} compare {} -m MODEL.toml\n", program(),
-      shell_word(options.output));
+      shell_path(options.output));
 }
 
 void run(const Options& options) {

@@ -294,7 +294,7 @@ void run(const Options& options) {
   say_written({options.output});
   if (result.worse.empty())
     say("To apply it: {} process {} -m {} -o corrected.nc\n", program(),
-        shell_word(first_used(result, options)), shell_word(options.output));
+        shell_path(first_used(result, options)), shell_path(options.output));
 }
 
 }  // namespace

@@ -13,6 +13,11 @@ struct ChosenReferences {
   std::vector<std::string> not_used{};  ///< where no text named any: which else there are, and why not these
 };
 
+/// The texts of references in the one order in which a command takes them, however they were given: the first
+/// decides where a single figure is told. LAMS comes first, then second systems, then what sees no single
+/// sample.
+std::vector<std::string> in_order(std::vector<std::string> texts);
+
 /// The references that `texts` name; without texts LAMS, and all else that the model and every flight allow:
 /// the total pressure of a second pair of pressures, heights, and wind.
 ///

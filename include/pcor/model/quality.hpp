@@ -29,6 +29,9 @@ enum class Quality : std::uint32_t {
   defect_exceeds_dynamic_pressure = 1U << 15,
   filter_window_incomplete = 1U << 16,
   no_airflow = 1U << 17,
+  sensor_frozen = 1U << 18,
+  uneven_samples = 1U << 19,
+  awaiting_later_samples = 1U << 20,
 };
 
 /// A quality bit and what it means.
@@ -38,7 +41,7 @@ struct QualityFacts {
   std::string_view meaning;
 };
 
-inline constexpr std::array<QualityFacts, 18> quality_facts{{
+inline constexpr std::array<QualityFacts, 21> quality_facts{{
     {Quality::static_pressure_missing, "static_pressure_missing",
      "no static pressure, or one beyond all flights: nothing is derived"},
     {Quality::dynamic_pressure_missing, "dynamic_pressure_missing",
@@ -68,9 +71,15 @@ inline constexpr std::array<QualityFacts, 18> quality_facts{{
     {Quality::defect_exceeds_dynamic_pressure, "defect_exceeds_dynamic_pressure",
      "delta-p above the dynamic pressure, or below its negative, as on the ramp: no delta-p"},
     {Quality::filter_window_incomplete, "filter_window_incomplete",
-     "filter window incomplete: no filtered LAMS temperature"},
+     "filter window incomplete, or its result beyond all flights: no filtered LAMS temperature"},
     {Quality::no_airflow, "no_airflow",
      "dynamic pressure too low to tell airflow from noise, as on the ramp: no Mach number, no airspeed"},
+    {Quality::sensor_frozen, "sensor_frozen",
+     "an input stands still for much longer than its noise lets it: what comes of it is wrong"},
+    {Quality::uneven_samples, "uneven_samples",
+     "samples at other intervals than those of the rate: effects of rates of change are wrong"},
+    {Quality::awaiting_later_samples, "awaiting_later_samples",
+     "later samples are awaited, after the start or a gap in real time: no results yet"},
 }};
 
 /// The quality bits of one sample.

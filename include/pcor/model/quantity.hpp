@@ -185,7 +185,7 @@ inline constexpr std::array<QuantityFacts, quantity_count> quantity_facts{{
      Quantity::port_dynamic_pressure},
 
     {"static_defect", "hPa", "delta-p of the model, added to the static pressure", Quantity::static_defect},
-    {"lams_static_defect", "hPa", "delta-p from LAMS", Quantity::lams_static_defect},
+    {"lams_static_defect", "hPa", "delta-p from LAMS", Quantity::lams_static_defect, -2000.0, 2000.0},
     {"corrected_static_pressure", "hPa", "corrected static pressure, p", Quantity::corrected_static_pressure,
      1.0, 2000.0},
     {"corrected_dynamic_pressure", "hPa", "corrected dynamic pressure, q",
@@ -201,7 +201,7 @@ inline constexpr std::array<QuantityFacts, quantity_count> quantity_facts{{
      2000.0},
     {"filtered_lams_temperature", "K",
      "ambient temperature from LAMS without periods under 3 s, half a window ago",
-     Quantity::filtered_lams_temperature},
+     Quantity::filtered_lams_temperature, 100.0, 400.0},
     {"height_step", "m/K", "step of geopotential height per kelvin since the sample before",
      Quantity::height_step},
 

@@ -59,6 +59,22 @@ constexpr auto is_finite(const S& value) {
   return !is_missing(value - value);
 }
 
+static_assert(is_missing(std::numeric_limits<double>::quiet_NaN()) &&
+                  !is_missing(std::numeric_limits<double>::infinity()),
+              "pcor finds missing values by NaN, which this compiler is told to ignore");
+
+/// True where the arithmetic that a program is compiled with keeps NaN and infinity. It does not under options
+/// of fast mathematics, which a pragma or an attribute sets without a word to the preprocessor.
+inline bool arithmetic_keeps_nan() noexcept {
+  const volatile double zero = 0.0;
+  const volatile double greatest = std::numeric_limits<double>::max();
+  const double nan = zero / zero;
+  const double beyond = greatest * greatest;
+  return is_missing(nan) && !is_finite(nan) && !is_finite(beyond) && !is_missing(beyond) && !(nan < 1.0) &&
+         !(nan > 1.0) && !(nan <= 1.0 || nan >= 1.0) && is_missing(nan * zero + greatest) &&
+         beyond > std::numeric_limits<double>::max();
+}
+
 /// The value where it is finite, else not a number.
 template <class S>
 constexpr S finite_or_missing(const S& value) {

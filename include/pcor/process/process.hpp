@@ -26,6 +26,8 @@ struct ProcessOptions {
   /// Write the steps of hydrostatic height, `HYDSTEP`, and copy what a fit of temperature needs besides.
   bool hydrostatic = false;
   UncertaintyPart uncertainty = UncertaintyPart::total_if_stated;
+  /// Correct what a frozen sensor reads, too; else it is missing. The bit `sensor_frozen` stands either way.
+  bool keep_frozen = false;
   std::string suffix{};  ///< added to the name of every derived variable
   TimeStamp time_stamp = TimeStamp::begin;
   std::string history{};  ///< what the output says of its making, e.g. the command line
@@ -78,8 +80,9 @@ struct ProcessSummary {
 /// it already, and its attribute `model` what of the rest of the model the pressures depend on.
 ///
 /// The loop runs at the higher rate of the two pressures; other inputs are brought to it
-/// (`Flight::read_at_rate`). Missing or impossible input gives missing output and a quality bit. Memory does
-/// not depend on the length of the flight.
+/// (`Flight::read_at_rate`). Missing or impossible input gives missing output and a quality bit, and so
+/// does a sensor that is frozen, which is found as comparisons and fits find it, from its whole series at one
+/// sample per record. But for such a series memory does not depend on the length of the flight.
 ///
 /// @throws Error, and leaves `output` as it was, if the flight or a variable that the model needs cannot be
 /// read, a unit is unknown, the model cannot be used, an uncertainty is asked for of which the model states

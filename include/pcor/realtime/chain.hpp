@@ -171,7 +171,8 @@ class Chain : public BoundModel {
     LamsSolution<S> solution = solve_lams(p, q, v, e, state, parameters, thermometer, recovery);
     if (limit_to_saturation(e, S(1.0), solution.temperature, flags))
       solution = solve_lams(p, q, v, e, state, parameters, thermometer, recovery);
-    const S found = finite_or_missing(solution.static_defect);
+    const S found =
+        finite_or_missing(plausible_or_missing(Quantity::lams_static_defect, solution.static_defect));
     const auto exceeds = exceeds_dynamic_pressure(found, q);
     const auto valid = p >= S(least_static_pressure) && is_flowing(q) && v > S(0.0) && !exceeds;
     const S defect = select(valid, found, missing<S>());

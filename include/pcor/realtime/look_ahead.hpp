@@ -56,6 +56,9 @@ class LookAhead {
   /// usual.
   std::size_t delay() const { return delay_; }
 
+  /// How many samples take part in the rates of one.
+  std::size_t window() const { return before_ + 1 + delay_; }
+
   /// Forgets all samples.
   void reset() noexcept {
     entered_ = 0;

@@ -11,10 +11,12 @@
 #include <utility>
 #include <vector>
 
+#include <pcor/realtime/frozen_watch.hpp>
 #include <pcor/realtime/functor.hpp>
 #include <pcor/realtime/look_ahead.hpp>
 #include <pcor/realtime/low_pass.hpp>
 #include <pcor/realtime/result_uncertainty.hpp>
+#include <pcor/realtime/sample_clock.hpp>
 #include <pcor/realtime/stages.hpp>
 #include <pcor/realtime/wetness.hpp>
 
@@ -53,12 +55,14 @@ enum class LaserFilter { with, without };
 ///     use(loop.state()[Quantity::corrected_static_pressure], loop.quality());
 ///
 /// A model with effects of rates of change, as lags are, needs later samples to correct one. After `run` the
-/// state then is that of the sample `delay()` runs ago, inputs, time and all; missing until there is one. Of
-/// the last samples before a gap or the end the host gets the results by further runs without values.
+/// state then is that of the sample `delay()` runs ago, inputs, time and all; missing until there is one,
+/// which the bit `awaiting_later_samples` says. Such effects are those of samples at the loop's rate: the bit
+/// `uneven_samples` stands at all samples whose rates of change samples at other intervals took part in
+/// (`SampleClock`). An input that stands still sets `sensor_frozen` (`FrozenWatch`). Of the last samples before a gap or the end the host gets the results by further runs without values.
 class Loop {
  public:
   /// A loop at `rate` samples in a second. A step of more than one and a half samples is a gap.
-  explicit Loop(double rate) : longest_step_(1.5 / rate) {}
+  explicit Loop(double rate) : clock_(rate), longest_step_(1.5 / rate) {}
 
   /// A loop that runs `model` on the roles `recorded`: delta-p, corrected pressures, Mach number, humidity,
   /// ambient temperature, airspeed, and what LAMS says where its airspeed is recorded, its temperature also
@@ -122,6 +126,9 @@ class Loop {
   /// The time of the sample that was run last, s; NaN before the first.
   double last_time() const noexcept { return previous_time_; }
 
+  /// Leaves it to the host to find sensors that are frozen, as one that knows the whole flight can.
+  void do_not_watch_sensors() noexcept { frozen_.reset(); }
+
   /// Forgets all earlier samples.
   void reset() noexcept { started_ = false; }
 
@@ -135,16 +142,34 @@ class Loop {
   /// Runs all functors on the sample at `time`, in seconds.
   void run(double time) noexcept {
     quality_.clear();
+    double step = missing<double>();
     if (starts_anew(time)) {
       for (const auto& functor : functors_) functor->reset();
       if (look_ahead_) look_ahead_->reset();
       if (wetness_) wetness_->reset();
+      if (frozen_) frozen_->reset();
+      clock_.reset();
+      uneven_ = 0;
+    } else {
+      step = time - previous_time_;
+      if (clock_.is_uneven(step)) {
+        if (look_ahead_) uneven_ = look_ahead_->window();
+        if (low_pass_ != nullptr) low_pass_->reset();
+      }
     }
     started_ = true;
     previous_time_ = time;
     state_[Quantity::time] = time;
-    if (wetness_) state_[Quantity::wetness] = (*wetness_)(state_[Quantity::liquid_water]);
-    if (look_ahead_ && !look_ahead_->exchange(state_, quality_)) return;
+    if (wetness_) state_[Quantity::wetness] = (*wetness_)(state_[Quantity::liquid_water], step);
+    if (uneven_ > 0) {
+      --uneven_;
+      quality_.set(Quality::uneven_samples);
+    }
+    if (look_ahead_ && !look_ahead_->exchange(state_, quality_)) {
+      quality_.set(Quality::awaiting_later_samples);
+      return;
+    }
+    if (frozen_) quality_.set((*frozen_)(state_), Quality::sensor_frozen);
     for (const auto& functor : functors_) functor->compute(state_, quality_);
   }
 
@@ -156,6 +181,10 @@ class Loop {
 
   std::optional<LookAhead> look_ahead_;
   std::optional<Wetness> wetness_;
+  std::optional<FrozenWatch> frozen_;
+  SampleClock clock_;
+  std::size_t uneven_ = 0;       // runs whose rates of change uneven samples take part in
+  LowPass* low_pass_ = nullptr;  // one of the functors
   std::vector<std::unique_ptr<Functor>> functors_;
   std::vector<std::string> extra_names_;
   State<double> state_;
@@ -236,6 +265,11 @@ inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, doubl
     if (error != nullptr) *error = why;
     return std::nullopt;
   };
+  if (!arithmetic_keeps_nan()) {
+    return fail(
+        "this program is compiled with fast mathematics, which loses the NaN of missing values: leave out "
+        "-ffast-math, -ffinite-math-only and pragmas of that kind");
+  }
   if (!(rate > 0.0 && is_finite(rate))) return fail("the rate of a loop is above zero samples in a second");
   if (with == CorrectWith::lams && !chain->has_lams()) {
     return fail("correction with LAMS needs the role 'lams_airspeed'");
@@ -252,14 +286,17 @@ inline std::optional<Loop> Loop::build(std::shared_ptr<const Chain> chain, doubl
       return fail("the coefficient 'drying' of temp-wetting is between 0 and 600 s");
     loop.wetness_.emplace(rate, drying);
   }
+  loop.frozen_.emplace(*chain, rate);
   loop.look_ahead_ = LookAhead::build(chain, rate, periods);
   Stages::each([&](auto stage) {
     auto functor = std::make_unique<StageFunctor<decltype(stage)>>(chain, with);
     if (!functor->outputs().empty()) loop.add(std::move(functor));
   });
   if (chain->has_lams() && filter == LaserFilter::with) {
-    loop.add(
-        std::make_unique<LowPass>(Quantity::lams_temperature, Quantity::filtered_lams_temperature, rate));
+    auto low_pass =
+        std::make_unique<LowPass>(Quantity::lams_temperature, Quantity::filtered_lams_temperature, rate);
+    loop.low_pass_ = low_pass.get();
+    loop.add(std::move(low_pass));
   }
   if (uncertainty.has_systematic() || uncertainty.has_random()) {
     auto functor = ResultUncertainty::build(chain, uncertainty, with, error);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include <pcor/model/plausible.hpp>
 #include <pcor/physics/constants.hpp>
 #include <pcor/physics/scalar.hpp>
 #include <pcor/realtime/functor.hpp>
@@ -31,7 +32,8 @@ namespace pcor {
 /// before and one after it, as far away, count together or, where one of them is missing, not at all, so that
 /// lines still pass exactly. Where the weights that count sum up to less than half, the value is missing, and
 /// the bit `filter_window_incomplete` says so: of that earlier sample, not of the one that is being run. With
-/// part of its window the filter takes away less. After a reset all earlier samples are missing.
+/// part of its window the filter takes away less. Where it overshoots beyond what is believed of the result, that
+/// is missing too. After a reset all earlier samples are missing.
 ///
 /// Source: memo, recommendation 6; window: Oppenheim and Schafer, Discrete-Time Signal Processing, ch. 7.
 class LowPass final : public Functor {
@@ -65,7 +67,7 @@ class LowPass final : public Functor {
     samples_[next_] = samples_[next_ + length_] = finite_or_missing(state[quantity_]);
     next_ = (next_ + 1) % length_;
     const double* const centre = samples_.data() + next_ + delay();
-    const double value = filtered(centre);
+    const double value = plausible_or_missing(filtered_, filtered(centre));
     flags.set(is_missing(value) && !is_missing(*centre), Quality::filter_window_incomplete);
     state[filtered_] = value;
   }

@@ -22,13 +22,20 @@ class Wetness {
   static constexpr double longest = 600.0;  ///< s, of drying
 
   /// @param rate samples in a second, above zero @param drying time constant, s, 0 to `longest`
-  Wetness(double rate, double drying) : wet_(1.0 / rate, wetting), dry_(1.0 / rate, drying) {}
+  Wetness(double rate, double drying)
+      : step_(1.0 / rate), drying_(drying), wet_(step_, wetting), dry_(step_, drying) {}
 
   /// Forgets all samples.
   void reset() noexcept { wetness_ = missing<double>(); }
 
-  /// @param liquid_water g/m3
-  double operator()(double liquid_water) noexcept {
+  /// @param liquid_water g/m3 @param step s since the sample before; NaN: that of the rate
+  double operator()(double liquid_water, double step = missing<double>()) noexcept {
+    constexpr double alike = 1e-6;
+    if (std::abs(step - step_) > alike * step_) {
+      step_ = step;
+      wet_ = Answer(step, wetting);
+      dry_ = Answer(step, drying_);
+    }
     const double cloud = effects::in_cloud(liquid_water);
     const double towards = cloud > 0.0 ? 1.0 : 0.0;
     const Answer& answer = cloud > 0.0 ? wet_ : dry_;
@@ -47,6 +54,8 @@ class Wetness {
     double mean;
   };
 
+  double step_;  // s
+  double drying_;
   Answer wet_;
   Answer dry_;
   double wetness_ = missing<double>();

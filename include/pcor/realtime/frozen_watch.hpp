@@ -1,0 +1,142 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include <pcor/physics/scalar.hpp>
+#include <pcor/realtime/chain.hpp>
+
+namespace pcor {
+
+/// What no flying aircraft leaves at one value; flaps and liquid water may stay where they are.
+inline constexpr std::array always_varying{Quantity::static_pressure,
+                                           Quantity::dynamic_pressure,
+                                           Quantity::radome_dynamic_pressure,
+                                           Quantity::attack_differential_pressure,
+                                           Quantity::sideslip_differential_pressure,
+                                           Quantity::recovery_temperature,
+                                           Quantity::ambient_temperature,
+                                           Quantity::lams_airspeed};
+
+/// Whether a sensor stands still, sample by sample.
+///
+/// How long it may have one value follows from its resolution, the smallest step that it has made. Where its
+/// noise is at least three such steps it is frozen after 20 samples of one value, or, if that is more, 20 times
+/// its usual time at one value, or five times that of a usual sample. Else, and while fewer than 50 values are
+/// known, it is frozen after five minutes.
+class SteadyValue {
+ public:
+  /// @param longest samples that any sensor may have one value
+  explicit SteadyValue(std::size_t longest) : longest_(longest) {}
+
+  void reset() noexcept { *this = SteadyValue(longest_); }
+
+  /// A sample that does not count.
+  void skip() noexcept {
+    last_ = missing<double>();
+    length_ = 0;
+  }
+
+  /// Takes a sample, which is not missing. True where the sensor is frozen.
+  bool operator()(double value) noexcept {
+    if (value == last_) {
+      ++length_;
+      if (length_ == fewest) limit_ = limit();
+      return length_ >= fewest && length_ >= limit_;
+    }
+    if (!is_missing(last_)) end_of_run(value - last_);
+    last_ = value;
+    length_ = 1;
+    return false;
+  }
+
+ private:
+  static constexpr std::size_t fewest = 20;         // samples
+  static constexpr std::size_t fewest_values = 50;  // that tell what is usual
+  static constexpr double noisy = 3.0;              // steps of resolution in a second difference
+  static constexpr double part = 1.0 / 64.0;        // of a mean, the last
+
+  void end_of_run(double step) noexcept {
+    const bool was_frozen = length_ >= fewest && length_ >= limit_;
+    if (!was_frozen) {
+      lengths_[runs_ % lengths_.size()] = length_;
+      ++runs_;
+    }
+    resolution_ = std::min(resolution_, std::abs(step));
+    const double bend = std::abs(step - (length_ > 1 ? 0.0 : last_step_));
+    is_bent_ += part * ((bend >= noisy * resolution_ ? 1.0 : 0.0) - is_bent_);
+    last_step_ = step;
+  }
+
+  std::size_t limit() const noexcept {
+    if (runs_ < fewest_values || is_bent_ < 0.5) return longest_;
+    const std::size_t count = std::min(runs_, lengths_.size());
+    double sum = 0.0;
+    double squares = 0.0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto length = static_cast<double>(lengths_[i]);
+      sum += length;
+      squares += length * length;
+    }
+    const double usual = std::max(20.0 * sum / static_cast<double>(count), 5.0 * squares / sum);
+    return std::min(longest_, static_cast<std::size_t>(std::max(usual, static_cast<double>(fewest))));
+  }
+
+  std::size_t longest_;
+  std::array<std::size_t, 64> lengths_{};  // of the last runs of one value, in samples
+  std::size_t runs_ = 0;
+  std::size_t limit_ = 0;
+  std::size_t length_ = 0;
+  double last_ = missing<double>();
+  double last_step_ = 0.0;
+  double resolution_ = std::numeric_limits<double>::infinity();
+  double is_bent_ = 0.0;  // the part of values whose second difference is large
+};
+
+/// Finds the inputs of a chain that are frozen in flight: what always varies there and stands still. After it
+/// is set up nothing is allocated.
+class FrozenWatch {
+ public:
+  /// @param rate samples in a second
+  FrozenWatch(const Chain& chain, double rate) {
+    constexpr double longest = 300.0;  // s
+    const double samples = std::min(std::max(longest * rate, 20.0), 1e9);
+    for (const Quantity quantity : always_varying) {
+      if (chain.recorded(quantity)) sensors_.push_back({quantity, SteadyValue(static_cast<std::size_t>(samples))});
+    }
+  }
+
+  void reset() noexcept {
+    for (Sensor& sensor : sensors_) sensor.value.reset();
+  }
+
+  /// True where one of them is frozen at this sample.
+  bool operator()(const State<double>& state) noexcept {
+    constexpr double least_dynamic_pressure = 20.0;  // hPa, 57 m/s at sea level
+    const bool flies = state[Quantity::dynamic_pressure] >= least_dynamic_pressure;
+    bool frozen = false;
+    for (Sensor& sensor : sensors_) {
+      const double value = state[sensor.quantity];
+      if (flies && !is_missing(value)) {
+        frozen = sensor.value(value) || frozen;
+      } else {
+        sensor.value.skip();
+      }
+    }
+    return frozen;
+  }
+
+ private:
+  struct Sensor {
+    Quantity quantity;
+    SteadyValue value;
+  };
+
+  std::vector<Sensor> sensors_;
+};
+
+}  // namespace pcor

@@ -1,0 +1,26 @@
+// What a program does that turns to fast mathematics by a pragma, of which the preprocessor learns nothing.
+#include <gtest/gtest.h>
+
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("finite-math-only")
+#define PCOR_LOSES_NAN
+#endif
+
+#include <pcor/realtime/loop.hpp>
+
+namespace {
+
+TEST(LostNan, NoLoopIsBuilt) {
+#ifndef PCOR_LOSES_NAN
+  GTEST_SKIP() << "this compiler has no such pragma";
+#endif
+  pcor::Model model;
+  model.effects = {{"static-constant", {0.004}}};
+  std::string error;
+  const auto loop = pcor::Loop::build(
+      model, {pcor::Quantity::static_pressure, pcor::Quantity::dynamic_pressure}, 25.0, &error);
+  EXPECT_FALSE(loop.has_value());
+  EXPECT_NE(error.find("fast mathematics"), std::string::npos) << error;
+}
+
+}  // namespace

@@ -1,0 +1,275 @@
+#!/usr/bin/env python3
+"""Flights, models and names that contradict themselves, or mean something to a shell.
+
+    contradiction_test.py TOOL SOURCE_DIRECTORY
+"""
+
+import ctypes
+import ctypes.util
+import json
+import os
+import re
+import resource
+import shutil
+import subprocess
+import sys
+import time
+import unittest
+
+import netCDF4
+import numpy
+
+sys.dont_write_bytecode = True  # no __pycache__ in the source directory
+import comparison_test  # noqa: E402
+from comparison_test import ONE, PUBLISHED, SCENARIO, ComparisonTest  # noqa: E402
+from tool_test import TOOL  # noqa: E402
+
+setUpModule, tearDownModule = comparison_test.setUpModule, comparison_test.tearDownModule
+
+HOSTILE = ("x;touch pwned.nc", "$(touch pwned).nc", "`touch pwned`.nc", "-rf.nc", "--help.nc", "it's a \"flight\" & more.nc",
+           "a b*?.nc", "~.nc", "#.nc", "a|touch pwned.nc")
+FAKE = '#!/bin/sh\nfor word; do printf "%s\\n" "$word"; done > "$FAKE_LOG"\n'
+
+
+class Changed(ComparisonTest):
+    def changed(self, change, name="changed.nc"):
+        """A copy of a flight after `change`."""
+        path = self.path / name
+        shutil.copy(ONE, path)
+        with netCDF4.Dataset(path, "r+") as flight:
+            flight.set_auto_maskandscale(False)
+            change(flight)
+        return path
+
+    def with_units(self, units):
+        def change(flight):
+            flight["Time"].units = units
+        return self.changed(change)
+
+
+class Pasting(Changed):
+    """Every command that is advised does what it says and nothing else when it is pasted into a shell."""
+
+    def setUp(self):
+        super().setUp()
+        programs = self.path / "programs"
+        programs.mkdir()
+        for name in ("ncatted", "ncks", "ncdump"):
+            (programs / name).write_text(FAKE)
+            (programs / name).chmod(0o755)
+        (programs / "pcor").symlink_to(TOOL)
+        self.log = self.path / "log"
+        self.environment = os.environ | {"PATH": f"{programs}:{os.environ['PATH']}", "FAKE_LOG": str(self.log)}
+        self.work = self.path / "work"
+        self.work.mkdir()
+
+    def here(self, *arguments):
+        return subprocess.run(["pcor", *map(str, arguments)], cwd=self.work, env=self.environment,
+                              capture_output=True, text=True, timeout=300)
+
+    def paste(self, command):
+        result = subprocess.run(command, shell=True, cwd=self.work, env=self.environment, capture_output=True,
+                                text=True, timeout=300)
+        self.assertFalse((self.work / "pwned").exists() or (self.work / "pwned.nc").exists(), command)
+        return result
+
+    def paste_all(self, text):
+        """The commands of this program in a text."""
+        commands = re.findall(r"(?<=: )pcor [a-z]+ .*$", text, flags=re.MULTILINE)
+        for command in commands:
+            result = self.paste(command.replace("corrected.nc", "corrected-anew.nc"))
+            self.assertIn(result.returncode, (0, 1), f"{command}\n{result.stderr}")
+        return len(commands)
+
+    def test_own_commands(self):
+        commands = 0
+        for number, name in enumerate(HOSTILE):
+            shutil.copy(ONE, self.work / name)
+            model = f"-{number}; touch pwned.toml"
+            (self.work / model).write_text(comparison_test.MODEL)
+            for arguments in (("inspect", "--", name),
+                              ("compare", f"--model={model}", "--", name),
+                              ("refit", f"--model={model}", f"--output=-fitted {number}.toml", "--", name),
+                              ("process", f"--model={model}", f"--output=-out {number}.nc", "--", name)):
+                with self.subTest(name=name, command=arguments[0]):
+                    result = self.here(*arguments)
+                    self.assertEqual(result.returncode, 0, result.stderr)
+                    commands += self.paste_all(result.stdout)
+        self.assertGreater(commands, 15)
+
+    def test_commands_that_are_a_result(self):
+        for name in HOSTILE[:4]:
+            shutil.copy(ONE, self.work / name)
+            result = self.here("inspect", "--json", "-", "--", name)
+            for command in json.loads(result.stdout).get("next", []):
+                self.assertIn(self.paste(command).returncode, (0, 1), command)
+
+    def test_commands_of_others(self):
+        for name in HOSTILE:
+            with self.subTest(name):
+                def text_scale(flight):
+                    flight["PSFD"].scale_factor = "text"
+
+                def no_year(flight):
+                    flight["Time"].units = "seconds since 1850-01-01"
+
+                def no_range(flight):
+                    flight["PSFD"].valid_range = numpy.array([5.0], "f4")
+
+                for change in (text_scale, no_year, no_range):
+                    shutil.copy(self.changed(change), self.work / name)
+                    result = self.here("process", "-m", PUBLISHED, "-o", "out.nc", "--", name)
+                    self.assertEqual(result.returncode, 1)
+                    advised = re.search(r"ncatted -a .*?(?=, or |$)", result.stderr.strip()).group()
+                    self.paste(advised)
+                    words = self.log.read_text().splitlines()
+                    self.assertEqual(words[-1], f"./{name}" if name.startswith("-") else name)
+                    self.assertEqual(len(words), 3, words)
+
+
+class Times(Changed):
+    def test_impossible_ones_are_refused(self):
+        with netCDF4.Dataset(ONE) as flight:
+            day = flight["Time"].units.split("since ")[1][:10]
+        for of_day in ("00:00:00 +25:00", "00:00:00 -99", "00:00:00 +9999", "00:60:00", "25:00:00", "00:00:00 +05:75"):
+            with self.subTest(of_day):
+                flight = self.with_units(f"seconds since {day} {of_day}")
+                self.refused("process", flight, "-m", PUBLISHED, "-o", self.path / "out.nc", words=[of_day, "ncatted"])
+                flight.unlink()
+
+    def test_possible_ones_are_what_they_say(self):
+        with netCDF4.Dataset(ONE) as flight:
+            units = flight["Time"].units
+        day = units.split("since ")[1][:10]
+        for of_day, hours in (("00:00:00", 0), ("00:00:00 +0000", 0), ("00:00:00 UTC", 0), ("00:00", 0), ("", 0),
+                              ("T00:00:00Z", 0), ("00:00:00.0", 0), ("00:00:00 +01:00", -1), ("01:00:00 +0", 1)):
+            with self.subTest(of_day):
+                flight = self.with_units(f"seconds since {day} {of_day}".replace(" T", "T"))
+                begins = self.json_of("inspect", flight)["flights"][0]["begin"]
+                with netCDF4.Dataset(ONE) as original:
+                    expected = original["Time"][0] + 3600 * hours
+                from datetime import datetime, timedelta
+                self.assertEqual(begins[:19], (datetime.fromisoformat(day) + timedelta(seconds=int(expected))).isoformat()[:19])
+
+    def test_milliseconds_lose_nothing(self):
+        def change(flight):
+            values = flight["Time"][:].astype("f8")
+            units = flight["Time"].units
+            flight.renameVariable("Time", "seconds_of_day")
+            milliseconds = flight.createVariable("Time", "f8", ("Time",))
+            epoch = netCDF4.num2date(0, units).isoformat()[:10]
+            since_1970 = (numpy.datetime64(epoch) - numpy.datetime64("1970-01-01")) / numpy.timedelta64(1, "s")
+            milliseconds.units = "milliseconds since 1970-01-01 00:00:00 +0000"
+            milliseconds[:] = 1000.0 * (since_1970 + values)
+        ours = self.json_of("inspect", self.changed(change))["flights"][0]
+        theirs = self.json_of("inspect", ONE)["flights"][0]
+        self.assertEqual((ours["begin"], ours["end"]), (theirs["begin"], theirs["end"]))
+
+
+class Attributes(Changed):
+    def packed(self, unsigned):
+        def change(flight):
+            values = flight["PSFD"][:]
+            flight.renameVariable("PSFD", "PSFD_AS_IT_WAS")
+            packed = flight.createVariable("PSFD", "i2", ("Time",))
+            packed.units, packed.scale_factor, packed.add_offset = "hPa", 0.02, 0.0
+            packed.setncattr("_Unsigned", unsigned)
+            packed[:] = numpy.nan_to_num(values / 0.02).astype("u2").astype("i2")
+        return self.changed(change)
+
+    def test_unsigned_is_true_or_false(self):
+        for word in ("yes", "1", "t", " true", 1):
+            with self.subTest(word):
+                self.refused("process", self.packed(word), "-m", PUBLISHED, "-o", self.path / "out.nc",
+                             words=["_Unsigned of PSFD", "neither true nor false"])
+                (self.path / "changed.nc").unlink()
+        self.done("process", self.packed("True"), "-m", PUBLISHED, "-o", self.path / "out.nc")
+
+    def test_a_rate_is_what_its_dimension_says(self):
+        def change(flight):
+            values = flight["PSFD"][:]
+            flight.renameVariable("PSFD", "PSFD_AS_IT_WAS")
+            flight.createDimension("sps25", 5)
+            flight.createVariable("PSFD", "f4", ("Time", "sps25")).units = "hPa"
+            flight["PSFD"][:] = numpy.repeat(values[:, None], 5, 1)
+        self.refused("process", self.changed(change), "-m", PUBLISHED, "-o", self.path / "out.nc", words=["PSFD(Time, sps25 = 5)"])
+
+    def test_a_formula_has_a_coefficient(self):
+        model = self.model(comparison_test.with_effect('id = "mine"\nwhere = "static"\nformula = "PSFD / 1000"\nunit = "hPa"\nparameters = {}\n'))
+        self.refused("process", ONE, "-m", model, "-o", self.path / "out.nc", words=["mine", "no coefficient"])
+
+    def test_a_small_file_does_not_demand_gigabytes(self):
+        path = self.path / "large.nc"
+        with netCDF4.Dataset(path, "w") as flight:
+            flight.createDimension("Time", 3000000)
+            seconds = flight.createVariable("Time", "i4", ("Time",), zlib=True, complevel=9, shuffle=True)
+            seconds.units = "seconds since 2011-11-17 00:00:00 +0000"
+            seconds[:] = numpy.arange(3000000)
+            for name in ("PSFD", "QCF", "TTRR", "VLAMS"):
+                flight.createVariable(name, "f4", ("Time",), zlib=True).units = "hPa"
+        self.assertLess(path.stat().st_size, 500000)
+        result = subprocess.run([TOOL, "inspect", path], capture_output=True, text=True,
+                                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (600 << 20, 600 << 20)))
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr, r"3000000 records in \d+ bytes")
+
+
+class Reports(Changed):
+    def test_no_control_and_no_direction(self):
+        signs = "\x1b[31m\x07\u202e\u2066\u2028\ufeff"
+        model = self.model(lambda text: re.sub(r'^name = ".*"$', lambda _: f'name = "law \\u001b\\u0007{signs[6:]}"', text,
+                                               count=1, flags=re.M))
+
+        def change(flight):
+            flight.setncattr("ProjectName", f"project {signs}")
+        for arguments in (("compare", self.changed(change), "-m", model), ("inspect", self.changed(change))):
+            page = self.path / "page.html"
+            self.done(*arguments, "--report", page)
+            text = page.read_text().split("<body>")[1].split("<script>")[0]
+            self.assertEqual([sign for sign in ("\x1b", "\x07", "\0", "\u202e", "\u2066", "\u2028", "\ufeff",
+                                                "\\u001b", "\\u0007", "\\u202e") if sign in text], [])
+
+
+class Inspect(Changed):
+    def seconds(self, variables):
+        path = self.path / f"{variables}.nc"
+        declared = "".join(f'float V{i}(Time); V{i}:units = "hPa";\n' for i in range(variables))
+        text = ('netcdf many { dimensions: Time = 4; variables: int Time(Time);\n'
+                f'Time:units = "seconds since 2011-11-17 00:00:00 +0000";\n{declared} data: Time = 0, 1, 2, 3; }}')
+        subprocess.run(["ncgen", "-k", "nc4", "-o", path, "-"], input=text, text=True, check=True)
+        begin = time.monotonic()
+        self.done("inspect", path, "--json", "-")
+        return time.monotonic() - begin
+
+    def test_many_variables_take_linear_time(self):
+        few, many = min(self.seconds(5000) for _ in range(2)), self.seconds(20000)
+        self.assertLess(many, 2 * 4 * few + 1.0)
+
+    def test_a_link_to_a_pipe_does_not_hang(self):
+        library = ctypes.util.find_library("hdf5_serial") or ctypes.util.find_library("hdf5")
+        if library is None:
+            self.skipTest("no library of HDF5 to make a link with")
+        hdf5 = ctypes.CDLL(library)
+        hdf5.H5Fopen.restype = ctypes.c_int64
+        hdf5.H5Fopen.argtypes = [ctypes.c_char_p, ctypes.c_uint, ctypes.c_int64]
+        hdf5.H5Lcreate_external.argtypes = [ctypes.c_char_p, ctypes.c_char_p, ctypes.c_int64, ctypes.c_char_p,
+                                            ctypes.c_int64, ctypes.c_int64]
+        hdf5.H5Fclose.argtypes = [ctypes.c_int64]
+        path, pipe = self.path / "linked.nc", self.path / "pipe"
+        with netCDF4.Dataset(path, "w") as flight:
+            flight.createDimension("Time", 4)
+            seconds = flight.createVariable("Time", "i4", ("Time",))
+            seconds.units = "seconds since 2011-11-17 00:00:00 +0000"
+            seconds[:] = range(4)
+        os.mkfifo(pipe)
+        file = hdf5.H5Fopen(os.fsencode(path), 1, 0)
+        self.assertGreaterEqual(file, 0)
+        self.assertGreaterEqual(hdf5.H5Lcreate_external(os.fsencode(pipe), b"/x", file, b"PSFD", 0, 0), 0)
+        hdf5.H5Fclose(file)
+        result = self.run_tool("inspect", path, timeout=90)
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr, r"linked\.nc .*pipe")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
