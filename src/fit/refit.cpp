@@ -401,7 +401,8 @@ RefitResult fit(const FlightSet& fitted_flights, const ModelFile& model, const R
   // Gusts are in the residual of the wind: a better law need not make it smaller.
   result.worse = why_worse(result, by_gps_alone ? infinity : before.rms_of(before.bulk_squares));
   result.least_squares_rms = gps ? result.rms : sums.rms_of(squares.least());
-  result.warnings = fit_warnings(flights, result, solution.values);
+  // Gusts and drifts of the wind are no faults of the model.
+  if (!by_gps_alone) result.warnings = fit_warnings(flights, result, solution.values);
   result.notes = notes_of(result, task, fitted, covariance.by_noise, gps, compared);
   result.model = fitted_model(model, 0, result, options.loss, fitted_flights.title());
   if (options.fit_reference) {
