@@ -14,7 +14,7 @@ import sys
 root = pathlib.Path(sys.argv[1])
 floors = [line.split() for line in (root / "tests/rooms/floors.txt").read_text().splitlines() if line and line[0] != "#"]
 floor_of = {room: number for number, floor in enumerate(floors) for room in floor}
-workshops = {"clients", "foreign", "fuzz", "hidden", "hostile", "package", "rooms", "support", "tool"}  # tests of no single room
+workshops = {"clients", "foreign", "fuzz", "hidden", "hostile", "package", "real", "rooms", "support", "tool"}  # tests of no single room
 trouble = []
 
 

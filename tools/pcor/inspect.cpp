@@ -36,7 +36,7 @@ double rate_of(const Inspection& flight) {
 
 /// A command of this program on the flight.
 std::string command(const std::string& name, const Inspection& flight, const std::string& options) {
-  return fmt::format("{} {} {}{}", program(), name, shell_word(flight.path), options);
+  return fmt::format("{} {} {}{}", program(), name, shell_path(flight.path), options);
 }
 
 /// Up to three commands to paste, in order, that end with a corrected flight and a report.
