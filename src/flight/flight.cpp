@@ -36,7 +36,7 @@ constexpr std::size_t most_gaps_listed = 1000;
 // much, in whatever unit.
 constexpr double no_value = 1e30;
 constexpr double most_samples_a_second = 1000, rounding = 1e-3;  // of the times of records
-constexpr std::size_t fewest_doubted = 200'000;      // records of which the size of the file tells nothing
+constexpr std::size_t fewest_doubted = 200'000;    // records of which the size of the file tells nothing
 constexpr std::size_t most_records = 100'000'000;  // more than a day has thousandths of a second
 
 /// A variable of the file, and what turns its stored numbers into values.
@@ -56,7 +56,8 @@ std::optional<int> rate_of_dimension(const FlightFile& file, int dimension) {
   if (name.rfind("sps", 0) != 0 || name.find_first_not_of("0123456789", 3) != std::string::npos)
     return std::nullopt;
   const std::size_t length = file.dimension_length(dimension);
-  if (length > std::numeric_limits<int>::max() || (name.size() > 3 && name.substr(3) != std::to_string(length)))
+  if (length > std::numeric_limits<int>::max() ||
+      (name.size() > 3 && name.substr(3) != std::to_string(length)))
     return std::nullopt;
   return static_cast<int>(length);
 }
@@ -68,12 +69,13 @@ double packing_number(const FlightFile& file, int variable, const char* attribut
   const std::vector<double> numbers = file.number_attribute(variable, attribute);
   const bool is_number = numbers.size() == 1 && std::isfinite(numbers.front());
   if (is_number && (numbers.front() != 0 || otherwise == 0)) return numbers.front();
-  throw Error(Error::Code::variable,
-              fmt::format("{}: the attribute {} of {} is \"{}\", which values cannot be unpacked with; "
-                          "correct it with ncatted -a {} {}",
-                          file.path().string(), attribute, file.variable_name(variable), text,
-                          shell_word(fmt::format("{},{},o,d,NUMBER", attribute, file.variable_name(variable))),
-                          shell_path(file.path().string())));
+  throw Error(
+      Error::Code::variable,
+      fmt::format("{}: the attribute {} of {} is \"{}\", which values cannot be unpacked with; "
+                  "correct it with ncatted -a {} {}",
+                  file.path().string(), attribute, file.variable_name(variable), text,
+                  shell_word(fmt::format("{},{},o,d,NUMBER", attribute, file.variable_name(variable))),
+                  shell_path(file.path().string())));
 }
 
 /// Reads what turns the stored numbers into values.
@@ -197,11 +199,10 @@ struct Flight::Implementation {
                               path(), records, bytes,
                               shell_word(file->dimension_name(source.dimension) + ",FIRST,LAST")));
     if (records > most_records)
-      throw Error(
-          Error::Code::file,
-          fmt::format("{} has {} records, and a flight has at most {}; cut it with ncks -d {}",
-                      path(), records, most_records,
-                      shell_word(file->dimension_name(source.dimension) + ",FIRST,LAST")));
+      throw Error(Error::Code::file,
+                  fmt::format("{} has {} records, and a flight has at most {}; cut it with ncks -d {}",
+                              path(), records, most_records,
+                              shell_word(file->dimension_name(source.dimension) + ",FIRST,LAST")));
     // In files of HDF5 every question how many there are looks at each.
     const int count = file->variable_count();
     for (int id = 0; id < count; ++id) {
@@ -231,10 +232,10 @@ struct Flight::Implementation {
     const auto found = index.find(name);
     if (found != index.end()) return variable(found->second);
     const std::vector<std::string> alike = suggest(name, names);
-    throw Error(Error::Code::variable,
-                path() + ": " + name + " is not in this file; it has " +
-                    (alike.empty() ? fmt::format("{} others, see ncdump -h {}", names.size(), shell_path(path()))
-                                   : fmt::format("{}", fmt::join(alike, ", "))));
+    throw Error(Error::Code::variable, path() + ": " + name + " is not in this file; it has " +
+                                           (alike.empty() ? fmt::format("{} others, see ncdump -h {}",
+                                                                        names.size(), shell_path(path()))
+                                                          : fmt::format("{}", fmt::join(alike, ", "))));
   }
 
   // The names of rates that can be brought to the wanted one, as this file has them: "1, 5 or 25".
@@ -263,7 +264,8 @@ struct Flight::Implementation {
     for (const int each : file->dimensions_of(variable.id)) {
       dimensions += (dimensions.empty() ? "" : ", ") + file->dimension_name(each);
       const bool is_rate = file->dimension_name(each).rfind("sps", 0) == 0;
-      if (is_rate && !rate_of_dimension(*file, each)) dimensions += fmt::format(" = {}", file->dimension_length(each));
+      if (is_rate && !rate_of_dimension(*file, each))
+        dimensions += fmt::format(" = {}", file->dimension_length(each));
     }
     throw Error(
         Error::Code::variable,

@@ -60,8 +60,9 @@ std::vector<std::string> held_out_names(const Improvement& improvement) {
 std::string rung_name(const ImproveStep& step) { return step.added.empty() ? "refitted" : "+ " + step.added; }
 
 bool delivers_rivals(const Improvement& improvement) {
-  return std::any_of(improvement.steps.begin(), improvement.steps.end(),
-                     [](const ImproveStep& step) { return step.delivered != step.added; });
+  return std::any_of(improvement.steps.begin(), improvement.steps.end(), [](const ImproveStep& step) {
+    return !step.rivals.empty() && step.delivered != step.added;
+  });
 }
 
 DotPanel ladder_picture(const Improvement& improvement) {

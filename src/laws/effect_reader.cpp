@@ -174,9 +174,10 @@ class EffectReader final : TomlReader {
     }
     if (effect.parameters.empty()) {
       fail(*given.formula->node,
-           fmt::format("the formula of effect {} has no coefficient; give it one in parameters, such as k, and "
-                       "multiply by it",
-                       in_quotes(effect.id)));
+           fmt::format(
+               "the formula of effect {} has no coefficient; give it one in parameters, such as k, and "
+               "multiply by it",
+               in_quotes(effect.id)));
     }
     if (formula->unused_parameters().empty()) return;
     const std::string& unused = formula->unused_parameters().front();

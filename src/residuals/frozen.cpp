@@ -12,7 +12,8 @@ void mark_frozen(FlightSamples& samples, ModelSamples FlightSamples::*part, doub
     const std::vector<double>& values = *read.find(quantity);
     const std::vector<Stretch> frozen = find_frozen(values, flying, always_varies(quantity));
     for (const Stretch& span : frozen) read.frozen.push_back({quantity, span.first, span.count});
-    if (!frozen.empty()) samples.notes.push_back(frozen_text(variable, quantity, values, samples.time, frozen));
+    if (!frozen.empty())
+      samples.notes.push_back(frozen_text(variable, quantity, values, samples.time, frozen));
   }
 }
 

@@ -502,7 +502,8 @@ TEST(Diagnose, AgainstHeightsTooIsSilentWhereNothingIsMissing) {
 
 TEST(Diagnose, NeedsAReferenceThatTellsOfEachSample) {
   const Paths flights{climbs(394, 0.0)};
-  EXPECT_THROW(pcor::diagnose(flights, model(), {pcor::height_reference(model())}), pcor::Error);
+  EXPECT_THROW(pcor::diagnose(flights, model(), {pcor::wind_reference(model())}), pcor::Error);
+  EXPECT_NO_THROW(pcor::diagnose(flights, model(), {pcor::height_reference(model())}));
   const Diagnosis diagnosis =
       pcor::diagnose(flights, model(), {pcor::lams_reference(), pcor::wind_reference(model())});
   EXPECT_THAT(diagnosis.notes, testing::Contains(HasSubstr("wind took no part")));

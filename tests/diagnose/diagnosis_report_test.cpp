@@ -456,8 +456,8 @@ TEST(ImprovementReport, BeginsWithTheModelAsItCameAndShowsHeldOutFlights) {
   made.rms_holdout = 0.13;
   ImproveStep& rung = made.steps[1];
   rung.rivals = {{"static-beta-odd", 0.8, 0.3}, {"lams-azimuth", 0.2, 0.0}};
-  rung.share = 0.4;
-  rung.spread = 0.12;
+  rung.delivered = "";
+  rung.rival_error = 0.12;
   for (const FlightDiagnosis& one : made.steps[0].diagnosis.flights) {
     if (one.samples)
       made.flights.push_back({one.samples, one.before.size(), 0, one.before, one.before, one.before});
@@ -473,8 +473,8 @@ TEST(ImprovementReport, BeginsWithTheModelAsItCameAndShowsHeldOutFlights) {
   EXPECT_EQ(ladder->rows.front().label, "as it came");
   EXPECT_EQ(ladder->rows.front().dots[1].value, 0.5);
   EXPECT_GT(ladder->rows.front().dots[1].error, 0.0);
-  EXPECT_EQ(ladder->rows[4].label, "averaged over rivals");
-  EXPECT_THAT(report.summary, Contains(HasSubstr("40 % of their average is applied")));
+  EXPECT_EQ(ladder->rows[4].label, "as it is written");
+  EXPECT_THAT(report.summary, Contains(HasSubstr("the model has none of them")));
   EXPECT_THAT(report.flight_names, Contains("later.nc, held out"));
   const auto* time = item<TimePanel>(report, "The ladder in time");
   ASSERT_NE(time, nullptr);

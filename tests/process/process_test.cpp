@@ -475,8 +475,12 @@ TEST_F(Process, LeavesOutAFrozenSensorAndSaysSo) {
     std::normal_distribution<double> noise(0.0, 0.05);
     auto maker = std::make_unique<test::NetcdfMaker>(input_);
     maker->time(test::sequence(50000.0, records));
-    for (const auto& [name, unit, level] : {std::tuple{"PSFD", "hPa", 700.0}, {"QCF", "hPa", 60.0}, {"TTRR", "deg_C", 5.0},
-                                            {"QCR", "hPa", 60.0}, {"ADIFR", "hPa", -10.0}, {"EDPC", "hPa", 4.0}}) {
+    for (const auto& [name, unit, level] : {std::tuple{"PSFD", "hPa", 700.0},
+                                            {"QCF", "hPa", 60.0},
+                                            {"TTRR", "deg_C", 5.0},
+                                            {"QCR", "hPa", 60.0},
+                                            {"ADIFR", "hPa", -10.0},
+                                            {"EDPC", "hPa", 4.0}}) {
       std::vector<double> values;
       for (std::size_t i = 0; i < records; ++i) {
         const bool is_held = name == frozen && i > first && i < first + count;
@@ -537,7 +541,8 @@ parameters = { tau = 5.0 }
   const auto bit = static_cast<std::uint32_t>(Quality::uneven_samples);
   for (std::size_t i = 0; i < time.size(); ++i) {
     const bool is_right = std::abs(corrected[i] - p[i] - 2.5) < 0.1;
-    EXPECT_TRUE(is_right || (static_cast<std::uint32_t>(flags[i]) & bit) != 0 || std::isnan(corrected[i])) << i;
+    EXPECT_TRUE(is_right || (static_cast<std::uint32_t>(flags[i]) & bit) != 0 || std::isnan(corrected[i]))
+        << i;
     if (i < 90) {
       EXPECT_EQ(static_cast<std::uint32_t>(flags[i]) & bit, 0U) << i;
     }

@@ -517,14 +517,16 @@ TEST(LoopInterval, SaysThatLaterSamplesAreAwaited) {
   const Lagged lagged = run_lagged(1.0, steps({{20, 1.0}, {1, 100.0}, {20, 1.0}}));
   for (std::size_t i = 0; i < lagged.defects.size(); ++i) {
     const bool waits = i < 6 || (i > 20 && i < 27);
-    EXPECT_EQ((lagged.bits[i] & static_cast<std::uint32_t>(Quality::awaiting_later_samples)) != 0, waits) << i;
+    EXPECT_EQ((lagged.bits[i] & static_cast<std::uint32_t>(Quality::awaiting_later_samples)) != 0, waits)
+        << i;
     EXPECT_EQ(std::isnan(lagged.times[i]), waits) << i;
   }
 }
 
 /// A flight of noise at 25 Hz, in steps of `resolution`, in which one role is frozen for some time: at which
 /// samples the bit stands.
-std::vector<bool> told_frozen(Quantity role, double noise, double resolution, std::size_t from, std::size_t to) {
+std::vector<bool> told_frozen(Quantity role, double noise, double resolution, std::size_t from,
+                              std::size_t to) {
   const Sample flown{{Quantity::static_pressure, 700.0},
                      {Quantity::dynamic_pressure, 60.0},
                      {Quantity::recovery_temperature, 280.0}};
@@ -538,7 +540,8 @@ std::vector<bool> told_frozen(Quantity role, double noise, double resolution, st
   for (std::size_t i = 0; i < 20000; ++i) {
     Sample sample = flown;
     for (auto& [quantity, value] : sample)
-      value = std::round((value + std::sin(0.001 * static_cast<double>(i)) + gauss(random)) / resolution) * resolution;
+      value = std::round((value + std::sin(0.001 * static_cast<double>(i)) + gauss(random)) / resolution) *
+              resolution;
     if (i >= from && i < to) {
       if (i == from) held = sample[role];
       sample[role] = held;

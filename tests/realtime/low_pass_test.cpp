@@ -30,8 +30,7 @@ struct Result {
 // The filter, sample by sample.
 class Filter {
  public:
-  explicit Filter(double rate)
-      : filter_(Quantity::lams_temperature, filtered_quantity, rate) {}
+  explicit Filter(double rate) : filter_(Quantity::lams_temperature, filtered_quantity, rate) {}
 
   Result operator()(double value) {
     State<double> state;

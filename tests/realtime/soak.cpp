@@ -2,11 +2,11 @@
 ///
 ///     soak SAMPLES
 ///
-/// Gaps, other rates, missing and infinite values, denormals, absurd and plausible ones, each at random in every role,
-/// through models that use all stages. It counts the samples that break one of the laws of the loop: a result
-/// is finite and one that a flight has, or missing with a bit that says why; and after a gap it is, to the
-/// last bit, what a new loop makes of the same samples. It prints how long the runs took and how often they
-/// took memory, and ends with status 1 where a law was broken.
+/// Gaps, other rates, missing and infinite values, denormals, absurd and plausible ones, each at random in
+/// every role, through models that use all stages. It counts the samples that break one of the laws of the
+/// loop: a result is finite and one that a flight has, or missing with a bit that says why; and after a gap
+/// it is, to the last bit, what a new loop makes of the same samples. It prints how long the runs took and
+/// how often they took memory, and ends with status 1 where a law was broken.
 #include <algorithm>
 #include <chrono>
 #include <cinttypes>

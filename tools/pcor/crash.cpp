@@ -86,13 +86,16 @@ extern "C" void watch_waiting(int /*signal*/) {
   static volatile std::sig_atomic_t times = 0;  // few pass while a user has stopped the program
   const double waiting = seconds_of_waiting();
   times = waiting < 0.9 * seconds_between_looks ? 0 : times + 1;
-  if (file == nullptr || waiting < most_seconds_of_waiting || times * seconds_between_looks < most_seconds_of_waiting)
+  if (file == nullptr || waiting < most_seconds_of_waiting ||
+      times * seconds_between_looks < most_seconds_of_waiting)
     return;
   remove_unfinished_files();
   print("pcor: ");
   print(file);
-  print(" does not answer: half a minute passed without a byte, as where it links to a pipe or to a disk that is "
-        "gone; copy it, and give the copy\n");
+  print(
+      " does not answer: half a minute passed without a byte, as where it links to a pipe or to a disk that "
+      "is "
+      "gone; copy it, and give the copy\n");
   _exit(status_of_crash);
 }
 
@@ -129,7 +132,8 @@ CrashesExplained::CrashesExplained(int status) {
   event.sigev_notify = SIGEV_SIGNAL;
   event.sigev_signo = SIGVTALRM;
   timer_t timer{};
-  const itimerspec sometimes{{seconds_between_looks, 0}, {seconds_between_looks, 0}};  // of a clock on the wall
+  const itimerspec sometimes{{seconds_between_looks, 0},
+                             {seconds_between_looks, 0}};  // of a clock on the wall
   if (timer_create(CLOCK_MONOTONIC, &event, &timer) == 0) timer_settime(timer, 0, &sometimes, nullptr);
   is_running = 1;
   std::atexit(explain_exit);

@@ -115,8 +115,8 @@ std::string next_command(const Diagnosis& diagnosis, const Options& options) {
                   shell_path(options.comparison.flights.front()), program(), flights);
   const auto add_formula = [&and_fit](const std::string& id, const std::string& formula,
                                       const std::string& where) {
-    return fmt::format("{} add {} {} --where {}{}", program(), shell_word(id), shell_option("--formula", formula),
-                       where, and_fit);
+    return fmt::format("{} add {} {} --where {}{}", program(), shell_word(id),
+                       shell_option("--formula", formula), where, and_fit);
   };
   const auto of_catalogue = [](const Finding& finding) {
     return !finding.effect.is_formula() && !finding.of_reference;

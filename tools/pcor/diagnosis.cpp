@@ -118,9 +118,7 @@ Json step_as_json(const FlightStep& step) {
           {"p_value", step.p_value}};
 }
 
-std::string option(const char* name, const std::string& value) {
-  return " " + shell_option(name, value);
-}
+std::string option(const char* name, const std::string& value) { return " " + shell_option(name, value); }
 
 /// What a model's file is called, in letters that mean nothing to a shell.
 std::string plain_stem(const std::string& model) {

@@ -20,12 +20,12 @@ inline constexpr int most_seconds_in_hand = 4;
 /// variables, or some thousand records of one. 0 where no flight is read.
 double seconds_in_hand() noexcept;
 
-/// Time, s, without any work of the processor, after which nothing more comes: a file may link to a pipe, which
-/// never answers.
+/// Time, s, without any work of the processor, after which nothing more comes: a file may link to a pipe,
+/// which never answers.
 inline constexpr int most_seconds_of_waiting = 30;
 
-/// How long the thread that reads has waited since it last began to read, s, without any work of the processor. 0
-/// where no flight is read, and where it works.
+/// How long the thread that reads has waited since it last began to read, s, without any work of the
+/// processor. 0 where no flight is read, and where it works.
 double seconds_of_waiting() noexcept;
 
 }  // namespace pcor

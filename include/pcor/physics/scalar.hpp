@@ -63,8 +63,8 @@ static_assert(is_missing(std::numeric_limits<double>::quiet_NaN()) &&
                   !is_missing(std::numeric_limits<double>::infinity()),
               "pcor finds missing values by NaN, which this compiler is told to ignore");
 
-/// True where the arithmetic that a program is compiled with keeps NaN and infinity. It does not under options
-/// of fast mathematics, which a pragma or an attribute sets without a word to the preprocessor.
+/// True where the arithmetic that a program is compiled with keeps NaN and infinity. It does not under
+/// options of fast mathematics, which a pragma or an attribute sets without a word to the preprocessor.
 inline bool arithmetic_keeps_nan() noexcept {
   const volatile double zero = 0.0;
   const volatile double greatest = std::numeric_limits<double>::max();

@@ -25,9 +25,9 @@ inline constexpr std::array always_varying{Quantity::static_pressure,
 /// Whether a sensor stands still, sample by sample.
 ///
 /// How long it may have one value follows from its resolution, the smallest step that it has made. Where its
-/// noise is at least three such steps it is frozen after 20 samples of one value, or, if that is more, 20 times
-/// its usual time at one value, or five times that of a usual sample. Else, and while fewer than 50 values are
-/// known, it is frozen after five minutes.
+/// noise is at least three such steps it is frozen after 20 samples of one value, or, if that is more, 20
+/// times its usual time at one value, or five times that of a usual sample. Else, and while fewer than 50
+/// values are known, it is frozen after five minutes.
 class SteadyValue {
  public:
   /// @param longest samples that any sensor may have one value
@@ -106,7 +106,8 @@ class FrozenWatch {
     constexpr double longest = 300.0;  // s
     const double samples = std::min(std::max(longest * rate, 20.0), 1e9);
     for (const Quantity quantity : always_varying) {
-      if (chain.recorded(quantity)) sensors_.push_back({quantity, SteadyValue(static_cast<std::size_t>(samples))});
+      if (chain.recorded(quantity))
+        sensors_.push_back({quantity, SteadyValue(static_cast<std::size_t>(samples))});
     }
   }
 

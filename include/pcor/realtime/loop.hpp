@@ -58,7 +58,8 @@ enum class LaserFilter { with, without };
 /// state then is that of the sample `delay()` runs ago, inputs, time and all; missing until there is one,
 /// which the bit `awaiting_later_samples` says. Such effects are those of samples at the loop's rate: the bit
 /// `uneven_samples` stands at all samples whose rates of change samples at other intervals took part in
-/// (`SampleClock`). An input that stands still sets `sensor_frozen` (`FrozenWatch`). Of the last samples before a gap or the end the host gets the results by further runs without values.
+/// (`SampleClock`). An input that stands still sets `sensor_frozen` (`FrozenWatch`). Of the last samples
+/// before a gap or the end the host gets the results by further runs without values.
 class Loop {
  public:
   /// A loop at `rate` samples in a second. A step of more than one and a half samples is a gap.

@@ -110,9 +110,9 @@ class Residuals {
   /// Of the same effect in both laws the flights know the difference alone, and there the two derivatives are
   /// exactly opposite. At the recorded pressures they differ by the noise of the residual, which a fit takes
   /// for a signal of what both systems have in common: it shrinks the noise by tens of hPa of static defect.
-  /// The pressures differ by the difference of the defects, less than 1 %, and so do the derivatives. The mean
-  /// still holds the noise of the noisier system, so the dynamic pressure is the one that the radome predicts,
-  /// where it is recorded.
+  /// The pressures differ by the difference of the defects, less than 1 %, and so do the derivatives. The
+  /// mean still holds the noise of the noisier system, so the dynamic pressure is the one that the radome
+  /// predicts, where it is recorded.
   std::shared_ptr<const FlightSamples> at_common_pressures() const;
 
   /// Delta-p that the reference asks for, p(reference) - p at the port, hPa; NaN where missing.
