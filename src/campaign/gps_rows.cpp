@@ -155,7 +155,11 @@ class Differentiation {
     for (std::size_t first = 0; first < wanted_.size(); first += jet_width) {
       const std::size_t width = std::min<std::size_t>(jet_width, wanted_.size() - first);
       for (std::size_t p = 0; p < dual_.size(); ++p) dual_[p] = Jet(parameters_[p]);
-      for (std::size_t k = 0; k < width; ++k) dual_[wanted_[first + k]].v[static_cast<Eigen::Index>(k)] = 1.0;
+      for (std::size_t k = 0; k < width; ++k) {
+        // Of the law of another system GPS knows nothing.
+        if (wanted_[first + k] < dual_.size())
+          dual_[wanted_[first + k]].v[static_cast<Eigen::Index>(k)] = 1.0;
+      }
       State<Jet> state;
       law_.air(sample, dual_.data(), state);
       const Jet& pressure = state[Quantity::corrected_static_pressure];

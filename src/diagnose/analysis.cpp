@@ -269,6 +269,7 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
     for (Eigen::Index i = 0; i < all.rows(); ++i) {
       const std::size_t part = part_of(f, binned_.bins[f].time()[static_cast<std::size_t>(i)]);
       for (const Eigen::MatrixXd* const each : {&white[f], &all}) {
+        if (each == &all && flight(f).reference != 0) continue;  // refit weighs each reference by its noise
         const std::size_t place = part + (each == &all ? held_out_parts : 0);
         sums.middleCols(width * as_index(place), width)
             .selfadjointView<Eigen::Lower>()

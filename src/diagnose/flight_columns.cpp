@@ -14,6 +14,7 @@
 #include "numerics/missing.hpp"
 #include "numerics/triangular_factor.hpp"
 #include "residuals/frozen.hpp"
+#include "residuals/masks.hpp"
 #include "team/workers.hpp"
 
 namespace pcor::internal {
@@ -181,11 +182,11 @@ void hold_imitated_coefficients(CandidateSet& set, TeamColumns& columns, TeamCol
   const Eigen::Index count = as_index(set.base.size());
   // Of all columns with each other; last the number of rows.
   const auto sums = columns.share.sum_of_each_flight<Eigen::MatrixXd>([&](std::size_t f) {
-    const Eigen::MatrixXd base = columns.flights[f].base.cast<double>();
+    const std::vector<std::size_t> used = used_samples(columns.flights[f].mask);
+    const Eigen::MatrixXd base = columns.flights[f].base(used, Eigen::all).cast<double>();
     Eigen::MatrixXd own(count, count + 1);
     own.leftCols(count) = base.transpose() * base;
-    own.rightCols(1).setConstant(static_cast<double>(
-        std::count(columns.flights[f].mask.begin(), columns.flights[f].mask.end(), Mask::none)));
+    own.rightCols(1).setConstant(static_cast<double>(used.size()));
     return own;
   });
   std::vector<Eigen::Index> kept;

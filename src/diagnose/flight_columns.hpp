@@ -32,7 +32,7 @@ Testability testability_of(const FlightColumns& flight, const std::vector<double
                            Eigen::Index count);
 
 /// The references that a diagnosis can use, those that tell of each sample first; a note on each of the
-/// others. @throws Error if none tells of each sample.
+/// others. @throws Error if there is none.
 References usable_references(const References& references, std::vector<std::string>& notes);
 
 /// Flights of a team, each against each of its references, those against the first one first. A member has

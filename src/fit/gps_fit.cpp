@@ -200,6 +200,10 @@ class GpsSolver {
       }
     }
     task_.tell();
+    if (samples_ == 0)
+      throw Error(
+          "wind and height have no sample in these flights: they need more than 40 m/s; leave them out, or "
+          "name other flights");
     eliminate_own(blocks);
   }
 
@@ -313,7 +317,6 @@ class GpsSolver {
 
   /// Of delta-p, hPa, rms over the flights.
   double error_of(const Eigen::MatrixXd& covariance) const {
-    if (samples_ == 0) return 0.0;
     return std::sqrt(std::max(0.0, (defects_ * covariance).trace() / static_cast<double>(samples_)));
   }
 

@@ -22,7 +22,12 @@ std::optional<LevelByGps> level_by_gps(const FlightSet& flights, const ModelFile
   const auto is_constant = [&constant](const ModelEffect& effect) { return effect.id == constant; };
   const auto& effects = model.model.effects;
   const bool has_it = std::any_of(effects.begin(), effects.end(), is_constant);
-  const ModelFile with = has_it ? model : with_effects(model, {neutral_effect(constant)});
+  ModelFile with = has_it ? model : with_effects(model, {neutral_effect(constant)});
+  // GPS alone is asked, not what an earlier fit knows.
+  with.covariance = {};
+  for (EffectFit& fit : with.fits) {
+    for (ParameterFit& parameter : fit) parameter.standard_error.reset();
+  }
   RefitOptions options;
   options.mask = mask;
   for (const ModelEffect& effect : effects) {

@@ -425,7 +425,9 @@ RefitResult refit(const FlightSet& flights, const ModelFile& model, const Refere
     result = fit(flights, model, in_order, options);
   } catch (const Error& error) {
     // The others are fitted before GPS, and have to determine all coefficients.
-    if (gps == in_order.begin() || gps == in_order.end() || error.code() == Error::Code::file) throw;
+    const bool has_both = gps != in_order.begin() && gps != in_order.end();
+    if (!has_both || error.code() != Error::Code::other || !options.stages.empty() || options.fit_reference)
+      throw;
     result = fit(flights, model, References(gps, in_order.end()), options);
     result.notes.insert(result.notes.begin(),
                         fmt::format("fitted to {} alone, since the other references do not determine the "

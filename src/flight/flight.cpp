@@ -126,9 +126,11 @@ Variable describe(const FlightFile& file, int id, int time_dimension) {
 /// The first word of a text that is a registration of civil aircraft: "N677F", "G-LUXE", "D-ADLR". Empty if
 /// none is.
 std::string registration_in(const std::string& text) {
-  static const std::regex registration(R"(\b(N[1-9][0-9]{1,4}[A-Z]{0,2}|[A-Z]{1,2}-[A-Z]{3,4})\b)");
+  static const std::regex of_usa(R"(\bN[1-9][0-9]{1,4}[A-Z]{0,2}\b)");
+  static const std::regex of_others(R"(\b(([CDFGI]|HB|OE|OH|OO|PH|SE|TF|VH)-[A-Z]{3,4})\b)");
   std::smatch found;
-  return std::regex_search(text, found, registration) ? found.str() : std::string();
+  if (std::regex_search(text, found, of_usa) || std::regex_search(text, found, of_others)) return found.str();
+  return {};
 }
 
 // Of an even number of values the lower of the middle two. Changes the order of the values.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -9,6 +10,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -190,6 +192,8 @@ class IcarttFile::Reader {
       if (fields.size() > 2 && !fields[2].empty()) variable.attributes.emplace_back("icartt_name", fields[2]);
       if (fields.size() > 3 && !fields[3].empty()) variable.attributes.emplace_back("long_name", fields[3]);
       variable.scale = scales[static_cast<std::size_t>(i)];
+      if (!std::isfinite(variable.scale) || variable.scale == 0.0)
+        fail(fmt::format("the scale factor of {} is no number other than 0", in_quotes(variable.name)));
       variable.missing = {missing[static_cast<std::size_t>(i)]};
     }
   }
@@ -206,8 +210,16 @@ class IcarttFile::Reader {
       const std::string value = trimmed(line.substr(colon + 1));
       put(name, value);
       if (name == "LLOD_FLAG" || name == "ULOD_FLAG") {
-        for (Variable& variable : file_.variables_) {
-          if (&variable != &file_.variables_.front()) variable.missing.push_back(number(value));
+        // One number for all, or one for each; "N/A" and the like mean that there is none.
+        std::stringstream fields(value);
+        for (std::string field; std::getline(fields, field, ',');) {
+          char* end = nullptr;
+          const std::string text = trimmed(field);
+          const double flag = std::strtod(text.c_str(), &end);
+          if (text.empty() || *end != '\0') continue;
+          for (Variable& variable : file_.variables_) {
+            if (&variable != &file_.variables_.front()) variable.missing.push_back(flag);
+          }
         }
       }
     }

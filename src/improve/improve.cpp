@@ -216,7 +216,18 @@ class Climb {
     }
     const bool is_top =
         std::all_of(choices.begin(), choices.end(), [](const RungChoice& choice) { return choice == 0U; });
-    delivered_ = is_top ? top() : model_with(choices);
+    delivered_ = top();
+    if (!is_top) {
+      try {
+        delivered_ = model_with(choices);
+      } catch (const Error& error) {  // chosen one by one, they cannot be fitted together
+        for (ImproveStep& step : result_.steps) step.delivered = step.added;
+        result_.fit.notes.push_back(fmt::format(
+            "the rivals that were chosen cannot be fitted together, so the model has the effects that "
+            "were added: {}",
+            error.what()));
+      }
+    }
     result_.model = delivered_.file;
     if (squares > 0.0) {
       double& stated = result_.model.uncertainty.static_defect.emplace(
@@ -260,7 +271,7 @@ class Climb {
     }
     const double matters = negligible * step.noise_rms;
     const RivalChoice choice = choose_rival(changes, weights, matters);
-    if (choice.rival == 0U && !(choice.error > matters)) return 0;
+    if (choice.rival == 0U && choice.error <= matters) return 0;
     step.rival_error = choice.error;
     step.delivered.clear();
     for (std::size_t i = 0; i < tested.size(); ++i)

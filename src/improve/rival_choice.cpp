@@ -35,6 +35,8 @@ RivalChoice choose_rival(const std::vector<std::vector<double>>& changes, const 
     }
     return true;
   };
+  const double error_of_first = expected_error(changes.front());
+  if (error_of_first <= tolerance) return {0, error_of_first};
   RivalChoice best{std::nullopt, expected_error(none)};
   for (std::size_t k = 0; k < changes.size(); ++k) {
     const double error = expected_error(changes[k]);

@@ -86,8 +86,16 @@ std::optional<GpsDesign> gps_design(const Flight& flight, const ModelFile& model
       information.ldlt().solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
   const Eigen::RowVectorXd mean = defects.colwise().mean();
   design.level = std::sqrt(mean * covariance.topLeftCorner(count, count) * mean.transpose());
-  design.slope = error_about_mean(defects, covariance, with_speed);
-  design.attack = error_about_mean(defects, covariance, with_attack);
+  // What is hardly better known than before the flight, or varies too little to be seen, is open.
+  constexpr double learnt = 0.5;
+  Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(count, count);
+  for (Eigen::Index k = 0; k < count; ++k) prior(k, k) = std::pow(deviations[static_cast<std::size_t>(k)], 2);
+  const auto error_of = [&](const std::vector<Eigen::Index>& with) {
+    const double error = error_about_mean(defects, covariance, with);
+    return error > learnt * error_about_mean(defects, prior, with) ? infinity : error;
+  };
+  design.slope = error_of(with_speed);
+  design.attack = error_of(with_attack);
   return design;
 }
 

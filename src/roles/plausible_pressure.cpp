@@ -122,7 +122,8 @@ std::optional<ImpossiblePressure> impossible_pressure(const Flight& flight, cons
 
 void require_possible_pressure(const Flight& flight, const ModelFile& model) {
   const std::optional<ImpossiblePressure> wrong = impossible_pressure(flight, model);
-  if (!wrong) return;
+  // Where no unit fits, the other sensor may be the one that is wrong: inspect lists it.
+  if (!wrong || wrong->unit.empty()) return;
   const std::string& variable = model.variables.at(Quantity::static_pressure);
   const std::string unit = flight.variable(variable).units;
   throw Error(

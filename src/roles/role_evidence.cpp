@@ -90,7 +90,8 @@ constexpr std::array<Signs, 32> signs{{
 }};
 
 /// What a word is short for.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 23> written_out{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 24> written_out{{
+    {"mag", "magnetic"},
     {"temp", "temperature"},
     {"press", "pressure"},
     {"pres", "pressure"},

@@ -38,6 +38,11 @@ TEST(RivalChoice, ARivalThatChangesNothingForbidsAllButTheTolerance) {
   EXPECT_TRUE(choose_rival({Series(10, 0.009), Series(10, 0.0)}, {0.99, 0.01}, 0.01).rival.has_value());
 }
 
+TEST(RivalChoice, DifferencesThatDoNotMatterLeaveTheFirstOne) {
+  EXPECT_EQ(choose_rival({Series(10, 0.004), Series(10, -0.004)}, {0.5, 0.5}, 0.01).rival, 0U);
+  EXPECT_EQ(choose_rival({Series(10, 0.0), Series(10, 0.0)}, {0.5, 0.5}, 0.0).rival, 0U);
+}
+
 TEST(RivalChoice, MissingSamplesDoNotCount) {
   const double missing = std::numeric_limits<double>::quiet_NaN();
   const RivalChoice choice = choose_rival({{1.0, missing, 1.0}, {1.0, 5.0, missing}}, {0.5, 0.5}, 0.01);

@@ -323,8 +323,9 @@ void run(const Options& options) {
   nlohmann::ordered_json result = as_json(comparison);
   for (std::size_t i = 0; i < levels.size(); ++i) {
     if (levels[i])
-      result["models"][i]["by_gps"] = {{"missing_hpa", levels[i]->missing},
-                                       {"stderr_hpa", levels[i]->standard_error}};
+      result["by_gps"].push_back({{"model", contenders[i].name},
+                                  {"missing_hpa", levels[i]->missing},
+                                  {"stderr_hpa", levels[i]->standard_error}});
   }
   json.write(result);
   together.appear();

@@ -213,6 +213,7 @@ void run(const Options& options) {
                       {diagnose_with, {}, true, diagnosis.own});
       std::string fit = command_line(options.comparison);
       if (options.trust_reference) fit += " --trust-reference";
+      fit += command_line(options.held);
       if (options.training_share < 1.0) fit += fmt::format(" --training-share {}", options.training_share);
       add_commands(tried, options.model, options.comparison.flights.front(), fit);
     }

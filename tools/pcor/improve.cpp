@@ -167,6 +167,7 @@ void run(const Options& options) {
       for (const std::string& flight : options.holdout) fit += " --holdout " + shell_path(flight);
       if (options.training_share < 1.0) fit += fmt::format(" --training-share {}", options.training_share);
       if (options.loss != "huber") fit += " --loss " + options.loss;
+      if (options.trust_reference) fit += " --trust-reference";
       fit += command_line(options.held);
       add_commands(tried, options.model, options.comparison.flights.front(), fit);
     }

@@ -13,6 +13,7 @@
 
 #include <pcor/inspect/inspection_report.hpp>
 #include <pcor/words/error.hpp>
+#include <pcor/words/message.hpp>
 #include <pcor/words/replacement_file.hpp>
 #include <pcor/words/utc.hpp>
 #include "command.hpp"
@@ -265,7 +266,8 @@ void print_by_gps(const GpsDesign& gps) {
   constexpr double known = 1.0;  // hPa
   const auto text = [](double error, const char* manoeuvre) {
     if (std::isnan(error)) return std::string("-");
-    return error < known ? fmt::format("+-{:.2f} hPa", error) : fmt::format("open; {} would tell", manoeuvre);
+    return error < known ? fmt::format("+-{:.2f} hPa", std::max(error, 0.01))
+                         : fmt::format("open; {} would tell", manoeuvre);
   };
   say("\nby GPS ({}) its manoeuvres determine of delta-p\n", gps.by_wind && gps.by_height ? "wind and height"
                                                              : gps.by_wind                ? "wind"
@@ -338,8 +340,12 @@ void deliver_with_candidates(const Inspection& flight, const std::string& output
       const bool is_used = std::any_of(variables.begin(), variables.end(), [&](const auto& variable) {
         return variable.second == each.variable;
       });
-      if (is_open && !is_used)
-        comments += fmt::format("# {} = \"{}\"  # {:.2f}: {}\n", role, each.variable, each.score, each.why);
+      // A name that TOML would have to escape is no suggestion.
+      const bool is_plain = each.variable.find_first_of("\"\\") == std::string::npos &&
+                            message_line(each.variable) == each.variable;
+      if (is_open && !is_used && is_plain)
+        comments += fmt::format("# {} = \"{}\"  # {:.2f}: {}\n", role, each.variable, each.score,
+                                message_line(each.why));
     }
   }
   std::string text = write_model(*flight.model);

@@ -143,7 +143,7 @@ class Loop {
   /// Runs all functors on the sample at `time`, in seconds.
   void run(double time) noexcept {
     quality_.clear();
-    double step = missing<double>();
+    auto step = missing<double>();
     if (starts_anew(time)) {
       for (const auto& functor : functors_) functor->reset();
       if (look_ahead_) look_ahead_->reset();
@@ -155,7 +155,7 @@ class Loop {
       step = time - previous_time_;
       if (clock_.is_uneven(step)) {
         if (look_ahead_) uneven_ = look_ahead_->window();
-        if (low_pass_ != nullptr) low_pass_->reset();
+        if (low_pass_ != nullptr) low_pass_->break_window();
       }
     }
     started_ = true;

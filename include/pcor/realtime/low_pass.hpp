@@ -60,7 +60,17 @@ class LowPass final : public Functor {
 
   std::size_t delay() const { return weights_.size() - 1; }
 
-  void reset() noexcept override { std::fill(samples_.begin(), samples_.end(), missing<double>()); }
+  void reset() noexcept override {
+    std::fill(samples_.begin(), samples_.end(), missing<double>());
+    broken_ = 0;
+  }
+
+  /// Forgets the samples, as after a step of another length. Values that are missing for it have the bit
+  /// `filter_window_incomplete`.
+  void break_window() noexcept {
+    reset();
+    broken_ = delay();
+  }
 
   void compute(State<double>& state, QualityFlags& flags) noexcept override {
     // Each sample is kept twice, so that the window lies in one piece, the oldest sample first.
@@ -68,7 +78,8 @@ class LowPass final : public Functor {
     next_ = (next_ + 1) % length_;
     const double* const centre = samples_.data() + next_ + delay();
     const double value = plausible_or_missing(filtered_, filtered(centre));
-    flags.set(is_missing(value) && !is_missing(*centre), Quality::filter_window_incomplete);
+    flags.set(is_missing(value) && (broken_ > 0 || !is_missing(*centre)), Quality::filter_window_incomplete);
+    if (broken_ > 0) --broken_;
     state[filtered_] = value;
   }
 
@@ -109,6 +120,7 @@ class LowPass final : public Functor {
   std::size_t length_;
   std::vector<double> samples_;
   std::size_t next_ = 0;
+  std::size_t broken_ = 0;  // samples until the window holds no step of another length
 };
 
 }  // namespace pcor
