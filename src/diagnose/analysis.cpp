@@ -49,8 +49,7 @@ Analysis::Analysis(TeamColumns columns, std::vector<ColumnGroup> groups, std::ui
       seed_(seed) {
   base_ = columns.flights.front().base.cols();
   binned_ = in_bins(share_, columns.flights, [&](std::size_t f) { return columns.flights[f].given; });
-  for (std::size_t f = 0; f < columns.flights.size(); ++f) {
-    FlightColumns& flight = columns.flights[f];
+  for (FlightColumns& flight : columns.flights) {
     (flight.reference == 0 ? flights_ : further_).push_back(std::move(flight));
   }
   first_bins_ = part(binned_.bins, 0, flights_.size());

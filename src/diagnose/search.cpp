@@ -324,7 +324,7 @@ Eigen::VectorXd Search::own_noise(std::size_t group, const std::vector<std::size
   const std::vector<Eigen::VectorXd> noise = left(with);
   const Eigen::VectorXd sums =
       scores_->by_minutes([&](std::size_t f) { return rows[f].cwiseProduct(noise[f]); });
-  const double squares =
+  const auto squares =
       scores_->share.sum_of_each_flight<double>([&rows](std::size_t f) { return rows[f].squaredNorm(); });
   return squares > 0.0 ? Eigen::VectorXd(sums / std::sqrt(squares)) : sums;
 }

@@ -71,11 +71,11 @@ struct Equations {
 
 class GpsSolver {
  public:
-  GpsSolver(const std::vector<FitFlights*>& flights, const Eigen::VectorXd& start, const BeforeGps& before,
+  GpsSolver(const std::vector<FitFlights*>& flights, Eigen::VectorXd start, const BeforeGps& before,
             const std::vector<std::size_t>& wanted)
       : flights_(flights),
         task_(flights.front()->task()),
-        values_(start),
+        values_(std::move(start)),
         before_(before),
         wanted_(wanted),
         count_(as_index(wanted.size())),

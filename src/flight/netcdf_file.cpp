@@ -112,8 +112,8 @@ std::string without_trailing_blanks(std::string text) {
 }
 
 Error damaged(const std::filesystem::path& path, const std::string& why) {
-  return Error(Error::Code::file,
-               path.string() + " is truncated or damaged" + why + "; fetch it again from its source");
+  return {Error::Code::file,
+          path.string() + " is truncated or damaged" + why + "; fetch it again from its source"};
 }
 
 std::string advice_to_reader(int status) {
@@ -193,7 +193,7 @@ void NetcdfFile::fail(const NcException& error, std::string_view doing) const {
 
 Error NetcdfFile::error_of(int status, const std::string& message) const {
   require_unchanged();
-  return Error(Error::Code::file, message + advice_to_reader(status));
+  return {Error::Code::file, message + advice_to_reader(status)};
 }
 
 void NetcdfFile::require_unchanged() const { state_.require(path_); }

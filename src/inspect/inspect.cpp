@@ -327,13 +327,12 @@ class Look {
     } else if (model.variables.at(Quantity::static_pressure) != avionics &&
                has_values(flight_, avionics, "hPa")) {
       references = {fmt::format("pressure:{}", avionics)};
-    } else if (!corrected.empty() && family_.name != aircraft_families().front().name) {
+    } else if (!corrected.empty() && (family_.name != aircraft_families().front().name ||
+                                      (!has_heights && !result_.is_corrected))) {
       references = {"pressure:" + corrected};
     } else if (has_heights) {
       if (has_wind) references.emplace_back("wind");
       references.emplace_back("height");
-    } else if (!corrected.empty() && !result_.is_corrected) {
-      references = {"pressure:" + corrected};
     }
     for (const auto& [role, variable] : model.variables) {
       const bool is_input = role == Quantity::static_pressure || role == Quantity::dynamic_pressure ||
