@@ -282,7 +282,7 @@ HeldOut Analysis::held_out(const std::vector<std::size_t>& groups) const {
   Eigen::Index place = base_;
   for (const std::size_t group : groups) {
     for (std::size_t k = 0; k < groups_[group].usual.size(); ++k) {
-      const double deviation = spread_of_sizes * groups_[group].usual[k];
+      const double deviation = groups_[group].deviation(k);
       if (deviation > 0.0) precision[place + as_index(k)] = 1.0 / (deviation * deviation);
     }
     place += groups_[group].count;

@@ -352,9 +352,8 @@ Eigen::VectorXd Search::precision_of(std::size_t group, double times) const {
   Eigen::VectorXd precision =
       Eigen::VectorXd::Constant(columns.count, 1.0 / static_cast<double>(scores_->row_count));
   for (std::size_t k = 0; k < columns.usual.size(); ++k) {
-    if (columns.usual[k] == 0.0) continue;
-    const double deviation = spread_of_sizes * columns.usual[k] * times;
-    const double scaled = scale_[base_ + columns.first + as_index(k)] / deviation;
+    if (columns.deviation(k) == 0.0) continue;
+    const double scaled = scale_[base_ + columns.first + as_index(k)] / (columns.deviation(k) * times);
     precision[as_index(k)] = scaled * scaled;
   }
   return precision;

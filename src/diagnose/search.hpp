@@ -21,6 +21,11 @@ struct ColumnGroup {
   std::vector<Bounds> bounds{};  ///< of each column's coefficient; an effect beyond them is impossible
   /// As large as each coefficient is met in practice; 0, or nothing, where nobody knows.
   std::vector<double> usual{};
+
+  /// Standard deviation of the size of a coefficient in nature; 0 where nobody knows.
+  double deviation(std::size_t column) const {
+    return column < usual.size() ? spread_of_sizes * usual[column] : 0.0;
+  }
 };
 
 struct SearchOptions {
