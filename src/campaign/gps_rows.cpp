@@ -91,22 +91,15 @@ Air air_of(const FlightSamples& samples, const ModelOnSamples& law, const double
   return air;
 }
 
-Series* find(ModelSamples& samples, Quantity quantity) {
-  for (auto& [each, values] : samples.columns) {
-    if (each == quantity) return &values;
-  }
-  return nullptr;
-}
-
 // What the model would have read at the airspeed without gusts, in the same static pressure and temperature.
 ModelSamples without_gusts(const FlightSamples& samples, const ModelFile& file, const double* parameters,
                            const Air& air, const Series& airspeed) {
   ModelSamples calm = samples.model;
-  Series& static_pressure = *find(calm, Quantity::static_pressure);
-  Series& dynamic_pressure = *find(calm, Quantity::dynamic_pressure);
-  Series* const recovery_temperature = find(calm, Quantity::recovery_temperature);
+  Series& static_pressure = *calm.find(Quantity::static_pressure);
+  Series& dynamic_pressure = *calm.find(Quantity::dynamic_pressure);
+  Series* const recovery_temperature = calm.find(Quantity::recovery_temperature);
   for (const Quantity independent : {Quantity::mach, Quantity::true_airspeed}) {
-    if (Series* const values = find(calm, independent)) *values = low_passed(*values, 45.0 / samples.step);
+    if (Series* const values = calm.find(independent)) *values = low_passed(*values, 45.0 / samples.step);
   }
   for (std::size_t i = 0; i < airspeed.size(); ++i) {
     if (std::isnan(airspeed[i])) continue;

@@ -212,14 +212,9 @@ std::shared_ptr<const FlightSamples> Residuals::at_common_pressures() const {
   const Implementation& own = *implementation_;
   if (own.reference->model() == nullptr) return nullptr;
   auto result = std::make_shared<FlightSamples>(*own.samples);
-  const auto column = [](ModelSamples& of, Quantity quantity) -> std::vector<double>& {
-    return std::find_if(of.columns.begin(), of.columns.end(),
-                        [quantity](const auto& each) { return each.first == quantity; })
-        ->second;
-  };
   for (const Quantity pressure : {Quantity::static_pressure, Quantity::dynamic_pressure}) {
-    std::vector<double>& ours = column(result->model, pressure);
-    std::vector<double>& theirs = column(result->reference, pressure);
+    std::vector<double>& ours = *result->model.find(pressure);
+    std::vector<double>& theirs = *result->reference.find(pressure);
     for (std::size_t i = 0; i < size(); ++i) ours[i] = 0.5 * (ours[i] + theirs[i]);
     if (pressure == Quantity::dynamic_pressure) ours = predicted_by_radome(std::move(ours), result->model);
     theirs = ours;

@@ -202,6 +202,10 @@ const std::vector<double>* ModelSamples::find(Quantity quantity) const {
   return found == columns.end() ? nullptr : &found->second;
 }
 
+std::vector<double>* ModelSamples::find(Quantity quantity) {
+  return const_cast<std::vector<double>*>(std::as_const(*this).find(quantity));
+}
+
 ModelSamples internal::read_model_columns(const Flight& flight, const ModelFile& model, bool with_laser,
                                           const std::vector<double>& time, std::vector<std::string>& notes) {
   const std::vector<Quantity> roles = roles_of(model, with_laser);

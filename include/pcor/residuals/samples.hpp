@@ -41,6 +41,7 @@ struct ModelSamples {
   FastSeries along_beam{};  ///< airspeed along the laser's beam, m/s, where a rate of it is read
 
   const std::vector<double>* find(Quantity quantity) const;
+  std::vector<double>* find(Quantity quantity);
 };
 
 /// A flight as comparisons and fits see it: what was recorded, how it was flown, at one sample per record.
