@@ -35,7 +35,7 @@ def blocks(text):
 
 
 def commands_of(content):
-    """The commands that a test can run: those of pcor, and copies of data."""
+    """Commands that a test can run: pcor, copies of data, and tools of the checkout."""
     lines = content.replace("\\\n", "").splitlines()
     return [line for line in lines if re.match(r"pcor |cp data/|tools/reference_pages ", line)]
 
