@@ -106,7 +106,7 @@ inline constexpr std::string_view refit_estimator_of_gps =
     "both.";
 
 struct RefitResult {
-  ModelDefinition model;  ///< with coefficients, standard errors, covariance and provenance
+  ModelDefinition model;  ///< fitted model with coefficients, standard errors, covariance and provenance
   std::optional<ModelDefinition> reference{};  ///< fitted model of the reference, if it was fitted too
   std::vector<FittedParameter> parameters{};
   std::vector<std::string> covariance_names{};

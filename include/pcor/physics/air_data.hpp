@@ -4,8 +4,8 @@
 
 namespace pcor {
 
-/// By what part of its temperature air warms where it is brought to rest, from static pressure `p` and
-/// dynamic pressure `q` (same unit):
+/// Relative temperature rise of air brought to rest, from static pressure `p` and dynamic pressure `q` (same
+/// unit):
 ///
 ///     h = T*/T - 1 = ((p+q)/p)^(R_a/c_p) - 1 = M^2 (gamma - 1)/2 = v^2/(2 c_p T)
 ///

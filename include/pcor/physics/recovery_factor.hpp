@@ -7,7 +7,7 @@
 
 namespace pcor {
 
-/// The recovery factor of a thermometer in the airstream: the part of the dynamic heating that it feels.
+/// Recovery factor of a thermometer in the airstream: the measured fraction of the dynamic heating.
 ///
 ///     a_r(M) = c0 + c1 L + c2 L^2 + c3 L^3,   L = log10 M
 ///

@@ -19,14 +19,13 @@ namespace pcor {
 /// pack in batch processing, an automatically differentiated number in a fit. A scalar has the four
 /// operations, comparisons, construction from `double`, and `sqrt`, `exp`, `log`, `sin`, `cos`, `tan` by
 /// argument-dependent lookup. Comparisons of a vector pack give one truth value for each lane, so formulas
-/// choose with `select` instead of `if`. The formulas of users ask for `abs`, `log10`, `tanh` and `pow`
-/// besides.
+/// choose with `select` instead of `if`. Formula effects also require `abs`, `log10`, `tanh` and `pow`.
 
 /// The type of an expression in a state of scalar `X` and parameters of scalar `P`.
 template <class X, class P>
 using Promoted = decltype(std::declval<X>() * std::declval<P>());
 
-/// `yes` where the condition holds, else `no`.
+/// Returns `yes` if the condition holds, otherwise `no`.
 template <class S>
 constexpr S select(bool condition, const S& yes, const S& no) {
   return condition ? yes : no;
@@ -61,7 +60,7 @@ constexpr auto is_finite(const S& value) {
 
 static_assert(is_missing(std::numeric_limits<double>::quiet_NaN()) &&
                   !is_missing(std::numeric_limits<double>::infinity()),
-              "pcor finds missing values by NaN, which this compiler is told to ignore");
+              "pcor detects missing values by NaN, which these compiler options disable");
 
 /// True where the arithmetic that a program is compiled with keeps NaN and infinity. It does not under
 /// options of fast mathematics, which a pragma or an attribute sets without a word to the preprocessor.
@@ -75,7 +74,7 @@ inline bool arithmetic_keeps_nan() noexcept {
          beyond > std::numeric_limits<double>::max();
 }
 
-/// The value where it is finite, else not a number.
+/// Value if finite, otherwise NaN.
 template <class S>
 constexpr S finite_or_missing(const S& value) {
   return select(is_finite(value), value, missing<S>());

@@ -20,27 +20,28 @@ namespace pcor {
 ///             -> lams_static_defect
 ///
 /// Every stage reads and writes a `State`. It is a template over the scalars of the state, `S`, and of the
-/// parameters, `P`, so that the same lines serve the real-time loop (both `double`), batches (`S` a vector
-/// pack) and fits (`P` a dual number). Where effects act before the static ports, `S` must be the
-/// promoted type. After `build` a chain allocates nothing, throws nothing, and holds nothing of a sample.
+/// parameters, `P`, so that the same code serves the real-time loop (both `double`), batches (`S` a vector
+/// pack) and fits (`P` a dual number). If effects act before the static ports, `S` must be the promoted type.
+/// After `build` a chain does not allocate or throw, and keeps no data of samples.
 class Chain : public BoundModel {
  public:
-  /// Prepares `model` for states in which the roles `recorded` are known. Returns nothing where the model
-  /// cannot be used; `error` then says why and what to do.
+  /// Prepares `model` for states in which the roles `recorded` are known. Returns nullopt if the model cannot
+  /// be used; `error` then holds the reason and the action.
   static std::optional<Chain> build(const Model& model, const std::vector<Quantity>& recorded,
                                     BindingError* error) {
     BindingError unasked;
     return made(ModelBinder::bind(model, recorded, error != nullptr ? *error : unasked));
   }
 
-  /// This chain with one more effect at the end of its model, or nothing; `error` then says why.
+  /// Chain with one more effect at the end of its model, or nullopt with the reason in `error`.
   std::optional<Chain> with_effect(const ModelEffect& effect, BindingError* error) const {
     BindingError unasked;
     return made(ModelBinder::with_effect(*this, effect, error != nullptr ? *error : unasked));
   }
 
-  /// The quantities in which the laws stand, the pressures at the ports, and the calibration of a recorded
-  /// ambient temperature. A recorded value that no flight has (`is_implausible`) is missing from here on.
+  /// Inputs of the effects: pressure ratios and flow angles, the pressures at the ports, and the calibration
+  /// of a recorded ambient temperature. Implausible recorded values (`is_implausible`) are treated as
+  /// missing.
   template <class S, class P, class Flags>
   void measure(State<S>& state, const P* parameters, Flags& flags) const {
     for (const Quantity input : inputs()) drop_implausible(input, state);
@@ -59,7 +60,7 @@ class Chain : public BoundModel {
     }
     flow_angles(state, parameters, flags);
     if (acts(EffectLocation::radome)) {
-      // What the radome loses at an angle is found from the angles without that loss, which is small.
+      // Radome loss at an angle, computed from angles without that loss, which is small.
       add(EffectLocation::radome, Quantity::radome_dynamic_pressure, state, parameters);
       flow_angles(state, parameters, flags);
     }
@@ -82,11 +83,11 @@ class Chain : public BoundModel {
               Quality::effect_input_missing);
   }
 
-  /// Delta-p of the model, hPa: the sum of the effects at the static ports, under the policy. NaN where a
-  /// pressure or an input of an effect is missing. Where the dynamic pressure is below the least of
-  /// the policy, no airflow causes a defect: NaN, but under a taper, which ends in zero. A defect beyond the
-  /// dynamic pressure is none, NaN: above it the corrected dynamic pressure would be negative; below its
-  /// negative the port would feel half of the corrected one, ten times what static ports do.
+  /// Delta-p of the model, hPa: the sum of the effects at the static ports, limited by the policy. NaN if a
+  /// pressure or an input of an effect is missing; if the dynamic pressure is below the minimum of the policy
+  /// (no airflow), unless a taper, which ends in zero, is used; and if the absolute defect exceeds the
+  /// dynamic pressure: above it the corrected dynamic pressure would be negative; below its negative the port
+  /// error would be half of the corrected one, ten times that of static ports.
   template <class S, class P, class Flags>
   Promoted<S, P> static_defect(const State<S>& state, const P* parameters, Flags& flags) const {
     using R = Promoted<S, P>;
@@ -127,11 +128,11 @@ class Chain : public BoundModel {
   }
 
   /// Humidity, Mach number, ambient temperature and airspeed from the corrected pressures. They depend on
-  /// each other through the constants of moist air and the limit of saturation over water, so they are found
-  /// together. An ambient temperature that is found from the recovery temperature is calibrated here.
-  /// Where the corrected dynamic pressure is below the least of the policy, as on the ramp, Mach
-  /// number and airspeed would be those of noise: NaN; the temperature, which such a flow hardly heats,
-  /// stays. A Mach number beyond all flights tells of an impossible pair of pressures.
+  /// each other through the constants of moist air and the limit of saturation over water, so they are solved
+  /// together. An ambient temperature derived from the recovery temperature is calibrated here. If the
+  /// corrected dynamic pressure is below the minimum of the policy, as on the ramp, Mach number and airspeed
+  /// would be noise and are NaN; the temperature, hardly affected by such a flow, is kept. An implausible
+  /// Mach number indicates an impossible pair of pressures.
   template <class S, class P, class Flags>
   void air(State<S>& state, const P* parameters, Flags& flags) const {
     const S p = state[Quantity::corrected_static_pressure];
@@ -157,9 +158,9 @@ class Chain : public BoundModel {
                true_airspeed_from_heating(air.heating, state[Quantity::ambient_temperature], air.constants));
   }
 
-  /// Delta-p that LAMS asks for at this sample, hPa, by the approach of the model. NaN where the laser or
-  /// anything that it needs is missing, without airflow, and beyond the dynamic pressure on either side,
-  /// where no airspeed of the laser can be right.
+  /// Delta-p from LAMS at this sample, hPa, by the approach of the model. NaN if the laser or another input
+  /// is missing, without airflow, and if its absolute value exceeds the dynamic pressure, because the laser
+  /// airspeed must then be wrong.
   template <class S, class P, class Flags>
   S lams_static_defect(const State<S>& state, const P* parameters, Flags& flags) const {
     const S& p = state[Quantity::port_static_pressure];
@@ -190,8 +191,8 @@ class Chain : public BoundModel {
     return beam_cosine(elevation, azimuth, state[Quantity::attack], sideslip);
   }
 
-  /// The airspeed by the corrected pressures along the beam of the laser, m/s; the true airspeed where there
-  /// is none. Of a state as it was recorded, with its rates of change. NaN where an input is missing.
+  /// Airspeed along the laser beam from the corrected pressures, m/s; the true airspeed without a laser. For
+  /// a state with recorded values and rates of change. NaN if an input is missing.
   template <class S, class P>
   S airspeed_along_beam(State<S> state, const P* parameters) const {
     NoQualityFlags flags;
@@ -227,7 +228,7 @@ class Chain : public BoundModel {
         state, flags, Quality::lams_missing);
   }
 
-  /// The part of the effects at the static ports that the taper leaves of delta-p: 1 without one.
+  /// Taper factor of the effects at the static ports: 1 without a taper.
   template <class S>
   S taper_fraction(const State<S>& state) const {
     const S q = state[Quantity::dynamic_pressure];
@@ -241,7 +242,8 @@ class Chain : public BoundModel {
     return recovery_(mach) + sum<S>(EffectLocation::recovery, state, parameters);
   }
 
-  /// By how much the ambient temperature changes with what it was before its calibration: 1 without one.
+  /// Derivative of the ambient temperature with respect to its value before calibration: 1 without a
+  /// calibration.
   template <class S, class P>
   S calibration_slope(const State<S>& state, const P* parameters) const {
     if (!acts(EffectLocation::ambient_temperature)) return S(1.0);
@@ -277,7 +279,8 @@ class Chain : public BoundModel {
   }
 
  private:
-  // hPa: that of 48 km height, and far less than any sensor resolves. A ratio to less than that says nothing.
+  // Minimum static pressure, hPa: that at 48 km height, far below the resolution of any sensor. Ratios to
+  // smaller pressures are not meaningful.
   static constexpr double min_static_pressure = 1.0;
   static constexpr double min_radome_pressure = 1e-6;
 
@@ -389,8 +392,8 @@ class Chain : public BoundModel {
     return missing<S>();
   }
 
-  // e/p at static pressure p, zero or above; zero where dry constants are asked for, nothing is recorded, or
-  // e is not below p, which no air is.
+  // Vapour pressure ratio e/p at static pressure p, zero or above; zero if dry constants are selected, no
+  // humidity is recorded, or e is not below p.
   template <class S, class P, class Flags>
   S recorded_humidity(const State<S>& state, const P* parameters, const S& p, Flags& flags) const {
     if (!counts_vapor()) return S(0.0);
@@ -412,7 +415,7 @@ class Chain : public BoundModel {
   // above.
   template <class S, class Flags>
   bool limit_to_saturation(S& vapor, const S& unit, const S& temperature, Flags& flags) const {
-    // Most air is far from saturation; only where it may not be is saturation itself computed.
+    // Saturation is computed only for air that may be saturated.
     if (!counts_vapor() || !any(vapor * unit > vapor_pressure_below_saturation(temperature))) return false;
     const S saturation = vapor_pressure_over_water(temperature) / unit;
     const auto above = vapor > saturation;
@@ -422,8 +425,7 @@ class Chain : public BoundModel {
     return true;
   }
 
-  // The ambient temperature after the effects that calibrate it, which are found from it as it was before
-  // them.
+  // Ambient temperature after calibration effects, whose input is the temperature before them.
   template <class S, class P, class Flags>
   S calibrated(const S& temperature, const State<S>& state, const P* parameters, Flags& flags) const {
     State<S> here = state;
@@ -435,7 +437,7 @@ class Chain : public BoundModel {
     return plausible_or_missing(Quantity::ambient_temperature, calibrated);
   }
 
-  // The same as a function of the temperature alone.
+  // Ambient temperature calibration as a function of the temperature only.
   template <class S, class P>
   struct Calibration {
     const Chain& chain;
@@ -463,7 +465,8 @@ class Chain : public BoundModel {
                            : lams_iterated(p, q, v, thermometer, e, recovery, 1e-7, 30, calibrate);
   }
 
-  // What goes on from the solution of a sample: the constants of its air, and its dynamic heating.
+  // Results of the solution of a sample that are used later: the constants of its air, and its dynamic
+  // heating.
   template <class S>
   struct AirOf {
     MoistAir<S> constants;

@@ -299,7 +299,7 @@ struct Report {
   std::string subtitle;
   std::vector<std::string> summary;                       ///< sentences
   std::vector<std::pair<std::string, std::string>> info;  ///< name and value, e.g. "Model"
-  std::vector<double> time;                               ///< of the samples, s since 1970 UTC
+  std::vector<double> time;                               ///< sample times, s since 1970 UTC
   std::vector<std::size_t> flight_starts;                 ///< first sample of each flight; {0} if empty
   std::vector<std::string> flight_names;                  ///< one per flight, or empty
   std::vector<ReportColumn> columns;

@@ -40,7 +40,7 @@ struct Scenario {
     double tropopause = 11000.0;         ///< m
     double ground_humidity = 70.0;       ///< relative humidity over water below the inversion, %
     double upper_humidity = 30.0;        ///< relative humidity above the inversion, %
-    double wind_speed = 5.0;             ///< at the ground, m/s
+    double wind_speed = 5.0;             ///< wind speed at the ground, m/s
     double wind_from = 250.0;            ///< deg
     double wind_shear = 2.0;             ///< increase of the wind with height, m/s per km
     double wind_drift = 0.3;             ///< rms of the mesoscale drift of each component, m/s
@@ -116,7 +116,8 @@ struct Scenario {
     std::string static_pressure{};
     std::string dynamic_pressure{};
     Law law;
-    bool independent_mach = false;  ///< true: M is the true Mach number; false: that of the pair in dry air
+    bool independent_mach =
+        false;  ///< true: M is the true Mach number; false: Mach number of the pair in dry air
   };
 
   /// The laser.
