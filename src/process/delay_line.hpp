@@ -14,13 +14,13 @@ namespace pcor::internal {
 struct Output {
   Quantity quantity = Quantity::count;
   double offset = 0.0;     ///< added to go from the library's unit to the file's
-  std::size_t number = 0;  ///< of the writer's
+  std::size_t number = 0;  ///< index in the writer
   std::vector<double> values{};
 
   double value_in(const Loop& loop) const { return loop.state()[quantity] + offset; }
 };
 
-/// What leaves the loop later than its sample entered it: brings it back to the samples that it is of.
+/// Assigns delayed outputs of the loop to their samples.
 class DelayLine {
  public:
   /// @param delay in runs of the loop
@@ -46,7 +46,7 @@ class DelayLine {
   /// After a gap nothing is in the loop.
   void reset() { runs_ = entered_ = left_ = 0; }
 
-  /// Writes the whole records of what has left.
+  /// Writes the complete records of delayed outputs.
   void write(FlightWriter& writer, std::size_t rate);
 
  private:

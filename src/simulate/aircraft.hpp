@@ -26,22 +26,22 @@ struct Thermometer {
   double recovery_factor(double mach) const;
 };
 
-/// What is particular to an aircraft. Sources: aircraft.cpp.
+/// Properties of an aircraft. Sources: aircraft.cpp.
 struct AircraftInfo {
   std::string_view type{};
   std::string_view registration{};
-  Thermometer thermometer{};         ///< of constant recovery factor, which a scenario may set
-  Thermometer second_thermometer{};  ///< of the recovery factor that processing uses since 2014
+  Thermometer thermometer{};         ///< constant recovery factor, which a scenario may set
+  Thermometer second_thermometer{};  ///< recovery factor used in processing since 2014
 
   double wing_area = 0.0;      ///< m2
-  double lift_slope = 0.0;     ///< of the lift coefficient at low Mach number, 1/deg
+  double lift_slope = 0.0;     ///< slope of the lift coefficient at low Mach number, 1/deg
   double zero_lift = 0.0;      ///< angle of attack without lift, flaps up, deg
-  double flap_lift = 0.0;      ///< by how much full flaps lower that angle, deg
+  double flap_lift = 0.0;      ///< decrease of the zero-lift angle with full flaps, deg
   double drag_constant = 0.0;  ///< drag coefficient C_D = drag_constant + induced_drag C_L^2
   double induced_drag = 0.0;
-  double weight = 0.0;              ///< at the start of a flight, kg
+  double weight = 0.0;              ///< initial weight, kg
   double fuel_flow = 0.0;           ///< kg/s
-  double power = 0.0;               ///< of all engines at 100 %, propellers' losses taken off, W
+  double power = 0.0;               ///< total power of the engines at 100 %, after propeller losses, W
   double cabin_differential = 0.0;  ///< greatest, hPa
 
   double min_speed = 0.0;       ///< true airspeed of manoeuvres, m/s

@@ -30,8 +30,8 @@ class Column {
   std::vector<Air> levels_;
 };
 
-/// The dissipation rate of turbulence, m2/s3, at a height in m: that of the boundary layer up to the
-/// inversion, that of the free troposphere from 300 m above it, in between by their geometric mean.
+/// Dissipation rate of turbulence, m2/s3, at a height in m: the boundary-layer value up to the inversion, the
+/// free-troposphere value from 300 m above it, their geometric interpolation in between.
 double dissipation(const Scenario::Atmosphere& atmosphere, double height);
 
 }  // namespace pcor::internal::simulate

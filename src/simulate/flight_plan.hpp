@@ -54,11 +54,11 @@ inline constexpr std::array<LegInfo, 12> leg_info{{
     {Scenario::Leg::Kind::landing, "landing", "speed rate flaps"},
 }};
 
-/// Fills the numbers of a leg that are not given with the usual ones of the aircraft. Sizes of manoeuvres:
-/// those of NCAR's calibration flights (QAtools, memo).
+/// Sets missing numbers of a leg to the usual ones of the aircraft. Sizes of manoeuvres: NCAR's calibration
+/// flights (QAtools, memo).
 void complete(Scenario::Leg& leg, const AircraftInfo& aircraft);
 
-/// The steps of one leg as it was flown: from `first` to before `last`.
+/// Steps of one simulated leg: [first, last).
 struct LegSteps {
   Scenario::Leg::Kind kind;
   std::size_t first;

@@ -12,8 +12,8 @@ namespace pcor::internal {
 /// memo does.
 TemperatureFit fit_height_by_least_squares(const std::vector<HeightRecord>& records, std::size_t terms);
 
-/// How many samples that follow each other tell as much as one that is independent, by the correlation of the
-/// heights that least squares leaves: errors are too small by its square root.
+/// Integrated autocorrelation time, in samples, of the least-squares height residuals: standard errors for
+/// independent samples are too small by its square root.
 double samples_as_one(const std::vector<HeightRecord>& records, const std::vector<double>& coefficients);
 
 /// The height by GPS less the integral with a correction, about its mean in each stretch, m.

@@ -53,9 +53,9 @@ ReportTable degree_table(const TemperatureResult& result) {
   ReportTable table;
   table.title = "Which degree";
   table.caption =
-      "-2 ln L, less that without correction: of all flights, and of each flight with the coefficients of "
-      "the others. A further coefficient is kept where flights that took no part are foretold better, by "
-      "more than 4 and two standard errors of the gain.";
+      "-2 ln L minus its value without correction: for all flights, and for each flight with the "
+      "coefficients of the others. A coefficient is kept if it improves the prediction of held-out flights "
+      "by more than 4 and by more than two standard errors.";
   table.headers = {"correction", "all flights", "held-out flights", "std. error"};
   const auto number = [](double x) { return std::isnan(x) ? std::string("-") : fmt::format("{:.1f}", x); };
   for (const DegreeChoice& choice : result.degrees)
@@ -87,12 +87,12 @@ ReportTable flight_table(const TemperatureResult& result) {
 
 ReportTable part_table(const TemperatureResult& result) {
   ReportTable table;
-  table.title = "Parts by themselves";
+  table.title = "Separate fits of parts";
   table.caption =
-      "What every flight says by itself, and climbs and descents: the common correction with a constant of "
-      "its own, with the error of the noise alone. Where they differ by more than chance makes once in 100 "
-      "times, the standard deviation between them is in the errors of the coefficients.";
-  table.headers = {"part", "at, °C", "by itself, K", "std. error, K", "of all, K"};
+      "Correction of each flight, and of climbs and descents: the common correction plus a constant, with "
+      "the error due to noise. If they differ significantly (p < 0.01), the standard deviation between them "
+      "is included in the errors of the coefficients.";
+  table.headers = {"part", "at, °C", "separate fit, K", "std. error, K", "all data, K"};
   for (const std::vector<PartCorrection>* parts : {&result.parts_by_flight, &result.parts_by_climb}) {
     for (const PartCorrection& part : *parts)
       table.rows.push_back({part.part, fmt::format("{:.1f}", part.temperature),
@@ -106,8 +106,8 @@ ReportTable law_table(const TemperatureResult& result) {
   ReportTable table;
   table.title = "Errors of the law";
   table.caption =
-      "What coefficients of the static pressure lack by the heights, found with those of the temperature and "
-      "taken off.";
+      "Errors of the static-pressure coefficients estimated from heights, fitted with those of the "
+      "temperature and corrected.";
   table.headers = {"effect", "coefficient", "lacks", "std. error", "range over the flights, hPa"};
   for (const LawError& error : result.law_errors)
     table.rows.push_back({error.effect, error.parameter, fmt::format("{:+.4g}", error.change),
@@ -118,7 +118,8 @@ ReportTable law_table(const TemperatureResult& result) {
 BarPanel correction_bars(const TemperatureResult& result) {
   BarPanel panel;
   panel.title = "The correction";
-  panel.caption = "What is added to the temperature, with its standard error, over the range of the flights.";
+  panel.caption =
+      "Correction added to the temperature, with its standard error, over the range of the flights.";
   panel.axis = "correction";
   panel.unit = "K";
   for (const TemperatureCorrection& at : result.corrections)
@@ -208,8 +209,8 @@ Report temperature_report(const TemperatureResult& result) {
   TimePanel difference;
   difference.title = "Height by GPS less the integral of the hydrostatic equation";
   difference.caption =
-      "Means over 10 s, about the mean of each stretch, with an estimate of the slope of isobars taken off. "
-      "A thermometer that errs makes the difference follow the height.";
+      "Means over 10 s, about the mean of each segment, after subtraction of an estimated slope of isobars. "
+      "A thermometer error makes the difference follow the height.";
   difference.columns = {"before", "after"};
   difference.axis = "height difference";
   report.items.emplace_back(difference);
@@ -219,10 +220,10 @@ Report temperature_report(const TemperatureResult& result) {
   height.columns = {"height"};
   report.items.emplace_back(height);
   BinnedPanel binned;
-  binned.title = "What the likelihood did not foresee";
+  binned.title = "Innovations of the likelihood";
   binned.caption =
-      "Innovations of the filter in standard deviations. A mean that goes with a variable is something the "
-      "correction lacks.";
+      "Innovations of the filter in standard deviations. A mean that varies with a variable indicates an "
+      "error of the correction.";
   binned.y = {"innovation"};
   binned.x_choices = {"temperature", "height"};
   report.items.emplace_back(binned);
