@@ -40,7 +40,7 @@ class DelayLine {
   /// Adds a bit of the sample that left last.
   void add_flag(double bit) { flags_->values[finished_ - 1] += bit; }
 
-  /// Takes what the last run of the loop gave. False where that is of no sample.
+  /// Takes the results of the last run of the loop. False if they belong to no sample.
   bool leave(const Loop& loop);
 
   /// After a gap nothing is in the loop.

@@ -151,8 +151,8 @@ void Processing::choose_roles() {
   choose_chain();
 }
 
-/// The model, and with it the doubt of its thermometer where uncertainties are found and the model does not
-/// state that of the thermometer: without its main source that of the temperature would be far too small.
+/// Model with the calibration uncertainty of its thermometer, if uncertainties are computed and the model
+/// does not state it: otherwise that of the temperature would be far too small.
 ModelDefinition Processing::doubted() const {
   const UncertaintyPart part = options_.uncertainty;
   if (part == UncertaintyPart::none || part == UncertaintyPart::random ||
@@ -287,7 +287,7 @@ ModelUncertainty Processing::uncertainty() {
                   what));
 }
 
-/// True where an uncertainty is stated of a coefficient at one of the places, or of one of the roles.
+/// True if an uncertainty is stated of a coefficient at one of the locations, or of one of the roles.
 bool Processing::states(std::initializer_list<EffectLocation> places,
                         std::initializer_list<Quantity> roles) const {
   const std::size_t count = chain_->parameters().size();

@@ -31,8 +31,8 @@ double total_pressure(const Air& air, double speed);
 /// Temperature, K, of the air brought to rest with the part `recovery` of its heating.
 double recovery_temperature(const Air& air, double speed, double recovery);
 
-/// The Mach number, 1, that a dry-air computer finds from a pair of pressures of one unit; 0 where the
-/// dynamic one is not positive.
+/// Mach number, 1, computed by a dry-air computer from a pair of pressures of one unit; 0 if the dynamic one
+/// is not positive.
 double dry_mach(double static_pressure, double dynamic_pressure);
 
 /// Saturation vapour pressure over water, hPa, temperature in K: Alduchov and Eskridge, J. Appl. Meteorol.

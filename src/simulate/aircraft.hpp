@@ -54,7 +54,7 @@ struct AircraftInfo {
   double speed_run_low = 0.0;   ///< usual, m/s
   double speed_run_high = 0.0;  ///< usual, m/s
   double speed_run_rate = 0.0;  ///< usual, m/s2
-  double clear_above = 0.0;     ///< where half of the laser's samples lack aerosol, m
+  double clear_above = 0.0;     ///< height at which half of the laser's samples are missing, m
 
   Radome attack{};
   Radome sideslip{};

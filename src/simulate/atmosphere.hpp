@@ -21,7 +21,7 @@ class Column {
   /// @throws Error if the air would be colder than 150 K below the tropopause.
   Column(const Scenario::Atmosphere& atmosphere, double latitude);
 
-  /// The air at a height, m. Beyond the column (500 m below the ground to 18 km) the last value.
+  /// Air at a height, m. The last value is used beyond the column (500 m below the ground to 18 km).
   Air at(double height) const;
 
  private:

@@ -25,12 +25,12 @@ struct SystemFaults {
   double dynamic_gain = 0.0;
 };
 
-/// All that is wrong. Series that nothing acts on are empty.
+/// Errors of all instruments. Series without an effect are empty.
 struct Faults {
   std::vector<SystemFaults> systems;
   Series lams_elevation;  ///< added to that of the beam, deg
   double lams_azimuth = 0.0;
-  Series lams_speed;  ///< added to the airspeed that the beam meets, m/s
+  Series lams_speed;  ///< airspeed added along the beam, m/s
   double lams_scale = 0.0;
   double recovery = 0.0;  ///< added to the recovery factor
   double temperature_lag = 0.0;

@@ -42,8 +42,8 @@ struct PortState {
 };
 double static_defect(const Scenario::Law& law, const PortState& state);
 
-/// The Mach number, 1, with which `law` gives the defect that the first system has by its own law: see
-/// `Scenario::Avionics`. It becomes the true one where the laws fade.
+/// Mach number, 1, with which `law` gives the defect of the first system: see `Scenario::Avionics`. It
+/// approaches the true one as the laws fade.
 Series mach_of_law(const Scenario& scenario, const Truth& truth, const AircraftInfo& aircraft);
 
 /// Air to ports, lines and transducers of one pair.
@@ -54,8 +54,8 @@ PairReading read_pair(const Scenario::System& system, const SystemFaults& faults
 RadomeReading read_radome(const Faults& faults, const Truth& truth, const AircraftInfo& aircraft,
                           const Series& defect);
 
-/// The airspeed along the laser beam, m/s: the product of the vectors of the beam and of the aircraft's
-/// motion through the air, in body axes (x forward, y starboard, z down). NaN where the laser has no signal.
+/// Airspeed along the laser beam, m/s: the product of the vectors of the beam and of the aircraft's motion
+/// through the air, in body axes (x forward, y starboard, z down). NaN without a laser signal.
 Series read_lams(const Scenario& scenario, const Faults& faults, const Truth& truth,
                  const AircraftInfo& aircraft);
 
@@ -66,7 +66,7 @@ Series read_thermometer(const Thermometer& thermometer, const Faults& faults, co
 /// it unchanged.
 Series with_response(Series series, double tau);
 
-/// The series `seconds` later (earlier where negative); its ends are held.
+/// Series delayed by `seconds` (advanced if negative); its ends are held.
 Series delayed(Series series, double seconds);
 
 /// Converts the input of a sensor to recorded values.
@@ -75,7 +75,7 @@ class Recorder {
   Recorder(const Scenario& scenario, const Faults& faults) : scenario_(scenario), faults_(faults) {}
 
   /// Adds response, clock, noise and resolution of `variable`, takes means over the intervals of `rate`
-  /// samples a second (NaN where fewer than half of the steps have a value), then outliers and gaps.
+  /// samples a second (NaN if fewer than half of the steps have a value), then outliers and gaps.
   std::vector<double> record(const std::string& variable, Series series, int rate) const;
 
   /// Means over the intervals alone.

@@ -42,7 +42,7 @@ struct Truth {
   Series torque;                ///< torque of the engines, percent
   Series bay_temperature;       ///< temperature of the transducers, K
   Series weight;                ///< kg
-  Series wind_east;             ///< where the air moves to, m/s
+  Series wind_east;             ///< direction of the air motion: eastward, m/s
   Series wind_north;            ///< m/s
   Series dissipation;           ///< dissipation rate of the turbulence, m2/s3
   Series hidden;                ///< slow wave that is not recorded in the file, rms 1

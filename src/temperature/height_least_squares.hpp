@@ -16,7 +16,7 @@ TemperatureFit fit_height_by_least_squares(const std::vector<HeightRecord>& reco
 /// independent samples are too small by its square root.
 double samples_as_one(const std::vector<HeightRecord>& records, const std::vector<double>& coefficients);
 
-/// The height by GPS less the integral with a correction, about its mean in each stretch, m.
+/// GPS height minus the integral with a correction, about its mean in each segment, m.
 std::vector<double> height_differences(const HeightRecord& record, const std::vector<double>& coefficients);
 
 }  // namespace pcor::internal

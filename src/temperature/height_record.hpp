@@ -70,7 +70,7 @@ struct HeightRecord {
   WayKnown way = WayKnown::over_ground;
   bool has_wind = false;
   double slope_left = 1.0;       ///< part of the usual slope of isobars that `excess` has in it yet, 0 to 1
-  bool returns = false;          ///< it is known to end within 50 km of where it began
+  bool returns = false;          ///< ends within 50 km of its start
   double min_temperature = 0.0;  ///< degC
   double max_temperature = 0.0;  ///< degC
   /// Rms of the static pressure by one unit of each of its errors, hPa.

@@ -95,9 +95,9 @@ void take_off_isobar_slope(HeightRecord& record, IsobarSlope option) {
   }
   if (record.way == WayKnown::length) {
     record.notes.emplace_back(
-        "neither the way over the ground nor the heading is recorded (GGSPD and GGTRK, or GGVEW and GGVNS, "
-        "or THDG): isobars may slope along the way flown as if it were one direction, so turns make errors "
-        "that are not stated");
+        "neither ground speed and track nor heading is recorded (GGSPD and GGTRK, or GGVEW and GGVNS, or "
+        "THDG): the slope of isobars is fitted as if the track were straight, so errors in turns are not "
+        "included");
   }
   if (option == IsobarSlope::fitted) return;
   if (option == IsobarSlope::geostrophic && !record.has_wind) {

@@ -26,14 +26,14 @@ std::vector<PartCorrection> corrections_of_climbs_and_descents(const std::vector
 struct Disagreement {
   double chi_squared = 0.0;  ///< chi-squared of the parts about their mean
   double chance = 1.0;       ///< the probability of as much or more by the noise alone
-  double spread = 0.0;  ///< standard deviation of the parts beyond their errors, K; 0 where it may be chance
+  double spread = 0.0;  ///< standard deviation of the parts beyond their errors, K; 0 if it may be chance
 };
 
 /// After DerSimonian & Laird, Controlled Clinical Trials 7 (1986): the variance between parts that makes
 /// chi-squared what is expected of it.
 Disagreement disagreement_of(const std::vector<PartCorrection>& parts);
 
-/// True where a part is closer to no correction than to the common one, by more than its noise explains.
+/// True if a part is closer to no correction than to the common one, by more than its noise explains.
 bool is_made_worse(const PartCorrection& part);
 
 }  // namespace pcor::internal

@@ -369,7 +369,7 @@ class TemperatureCalibration {
     result_.spread_of_climbs = disagreement_of(result_.parts_by_climb).spread;
   }
 
-  /// The range of the static pressure over the stretches by an error of one unit, hPa.
+  /// Range of the static pressure over the segments due to an error of one unit, hPa.
   double range_of(HeightError error) const {
     double range = 0.0;
     double least = 0.0;
@@ -535,7 +535,7 @@ class TemperatureCalibration {
     return fmt::format("{}: {} K", part.part, with_error(part.correction, part.standard_error));
   }
 
-  /// Rms of heights about their mean in each stretch, with a correction and without the other errors, m.
+  /// Rms of heights about their mean in each segment, with a correction and without the other errors, m.
   double rms_without_other_errors(const std::vector<double>& coefficients) const {
     HeightEquations::Vector others = likeliest_.equations.best_unknowns(as_index(terms_));
     others.head(as_index(calibration_terms)).setZero();

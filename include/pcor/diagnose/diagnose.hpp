@@ -234,8 +234,8 @@ struct FlightDiagnosis {
   std::vector<double> traced;           ///< first empirical predictor, in its unit; otherwise empty
   std::vector<double> static_pressure;  ///< corrected, hPa
   std::vector<double> mach;
-  std::vector<double> attack;    ///< deg; NaN where unknown
-  std::vector<double> sideslip;  ///< deg; NaN where unknown
+  std::vector<double> attack;    ///< deg; NaN if unknown
+  std::vector<double> sideslip;  ///< deg; NaN if unknown
 };
 
 struct Diagnosis {

@@ -36,7 +36,7 @@ struct NoiseFloor {
   double autocorrelation_time = 1.0;
 };
 
-/// @param values the series, NaN where missing; @param segments its `contiguous_segments`.
+/// @param values the series, NaN if missing; @param segments its `contiguous_segments`.
 /// @param step the usual step, s.
 /// NaN for rms if the series has fewer than 30 differences.
 NoiseFloor noise_floor(const std::vector<double>& values, const std::vector<Segment>& segments, double step);

@@ -64,7 +64,7 @@ S saturation_vapor_pressure(const S& temperature) {
                 vapor_pressure_over_water(temperature));
 }
 
-/// The factor by which air at `pressure` (hPa) raises the vapour pressure at `temperature` (K), 1:
+/// Enhancement factor of the vapour pressure at `temperature` (K) in air at `pressure` (hPa), 1:
 ///
 ///     f = 1 + 1e-5 p (4.923 - 0.0325 T + 5.84e-5 T^2)
 ///

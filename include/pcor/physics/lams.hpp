@@ -67,9 +67,9 @@ struct Uncalibrated {
 /// `recovery` gives a_r at a Mach number. NaN in gives NaN out. Accuracy: 1e-9 hPa over the envelopes of the
 /// C-130 and GV. Source: memo, "Equations for correcting", approach 1.
 ///
-/// `calibrate` makes of an ambient temperature (K) the calibrated one, T_c, which is then the temperature of
-/// the air. The thermometer's is T = T_r/(1 + a_r M^2 (gamma - 1)/2) still, with M = v/c(T_c): its dynamic
-/// heating is the above times T/T_c, which is found with the passes.
+/// `calibrate` returns the calibrated temperature T_c of an ambient temperature (K), used as the temperature
+/// of the air. The thermometer still measures T = T_r/(1 + a_r M^2 (gamma - 1)/2), with M = v/c(T_c): its
+/// dynamic heating is the above times T/T_c, determined in the same passes.
 template <class S, class Recovery, class Calibration = Uncalibrated>
 LamsSolution<S> lams_simultaneous(const S& static_pressure, const S& dynamic_pressure, const S& airspeed,
                                   const S& recovery_temperature, const S& vapor_pressure,

@@ -31,16 +31,16 @@ constexpr S select(bool condition, const S& yes, const S& no) {
   return condition ? yes : no;
 }
 
-/// True where the condition holds in every lane.
+/// True if the condition holds in every lane.
 constexpr bool all(bool condition) { return condition; }
 
-/// True where the condition holds in some lane.
+/// True if the condition holds in some lane.
 template <class Condition>
 constexpr bool any(const Condition& condition) {
   return !all(!condition);
 }
 
-/// True where the value is not a number.
+/// True if the value is not a number.
 template <class S>
 constexpr auto is_missing(const S& value) {
   return !(value == value);
@@ -52,7 +52,7 @@ constexpr S missing() {
   return S(std::numeric_limits<double>::quiet_NaN());
 }
 
-/// True where the value is neither infinite nor missing.
+/// True if the value is neither infinite nor missing.
 template <class S>
 constexpr auto is_finite(const S& value) {
   return !is_missing(value - value);
@@ -62,8 +62,8 @@ static_assert(is_missing(std::numeric_limits<double>::quiet_NaN()) &&
                   !is_missing(std::numeric_limits<double>::infinity()),
               "pcor detects missing values by NaN, which these compiler options disable");
 
-/// True where the arithmetic that a program is compiled with keeps NaN and infinity. It does not under
-/// options of fast mathematics, which a pragma or an attribute sets without a word to the preprocessor.
+/// True if the arithmetic of the compiled program keeps NaN and infinity. Fast-math options, which a pragma
+/// or an attribute can set without a macro, do not.
 inline bool arithmetic_keeps_nan() noexcept {
   const volatile double zero = 0.0;
   const volatile double greatest = std::numeric_limits<double>::max();
@@ -82,8 +82,8 @@ constexpr S finite_or_missing(const S& value) {
 
 /// `base` to the `exponent`, for a base above zero. A negative base gives NaN.
 ///
-/// Within a few units in the last place where the result is between 0.001 and 1000, as all powers of the
-/// chain are; `std::pow`, which keeps that up to any size, takes nearly twice the time.
+/// Accurate to a few units in the last place for results between 0.001 and 1000, the range of all powers of
+/// the chain; `std::pow`, accurate for any size, takes nearly twice the time.
 template <class S>
 S power(const S& base, const S& exponent) {
   if constexpr (std::is_floating_point_v<S>) {
@@ -137,8 +137,8 @@ constexpr double polynomial(double x, const std::array<double, 8>& c) {
 
 /// (1 + part/whole)^exponent - 1, for part/whole above -1.
 ///
-/// With `double` within 1e-15 of the result where that is as in flight, below Mach 0.847: two polynomials, by
-/// ln(1 + x) = 2 artanh(x/(2 + x)), which are there before two calls of the library are.
+/// For `double` accurate to 1e-15 of the result in the range of flight, below Mach 0.847: two polynomials, by
+/// ln(1 + x) = 2 artanh(x/(2 + x)), faster than two calls of the library.
 template <class S>
 S power_less_one(const S& part, const S& whole, const S& exponent) {
   if constexpr (std::is_same_v<S, double>) {

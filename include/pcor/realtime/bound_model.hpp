@@ -21,23 +21,22 @@ class BoundModel {
   /// added at each of the model's `additions`.
   const std::vector<double>& parameters() const { return parameters_; }
 
-  /// The variables that formulas use beyond the quantities of the library, by name. Number i belongs at
-  /// `extra_quantity(i)` of a state.
+  /// Further variables of formulas, by name. Number i belongs at `extra_quantity(i)` of a state.
   const std::vector<std::string>& extra_names() const { return extra_names_; }
 
   /// Recorded quantities, including those of formulas.
   const std::vector<Quantity>& inputs() const { return inputs_; }
 
-  /// True where the quantity is recorded.
+  /// True if the quantity is recorded.
   bool recorded(Quantity quantity) const { return recorded_[index(quantity)]; }
 
-  /// True where some stage needs the quantity.
+  /// True if some stage needs the quantity.
   bool needs(Quantity quantity) const { return needed_[index(quantity)]; }
 
-  /// True where the chain computes the quantity from others because it is not recorded.
+  /// True if the chain computes the quantity from others because it is not recorded.
   bool derives(Quantity quantity) const { return needs(quantity) && !recorded(quantity); }
 
-  /// True where some effect acts at the place.
+  /// True if an effect acts at the location.
   bool acts(EffectLocation location) const { return acting_[static_cast<std::size_t>(location)]; }
 
   /// Inputs of the effects at a location; at the static ports also those of the domain of the model.
@@ -70,12 +69,12 @@ class BoundModel {
     return recorded(Quantity::recovery_temperature) && !recorded(Quantity::ambient_temperature);
   }
 
-  /// True where a recorded ambient temperature is calibrated, which `Chain::measure` does in its place.
+  /// True if a recorded ambient temperature is calibrated, in place, by `Chain::measure`.
   bool calibrates_recorded_temperature() const {
     return acts(EffectLocation::ambient_temperature) && recorded(Quantity::ambient_temperature);
   }
 
-  /// True where water vapour changes the constants of the air: with moist constants, or by an effect.
+  /// True if water vapour changes the gas constants: with moist constants, or by an effect.
   bool counts_vapor() const { return moist_ || acts(EffectLocation::humidity); }
 
   bool has_lams() const { return recorded(Quantity::lams_airspeed); }
@@ -200,7 +199,7 @@ class BoundModel {
   std::vector<Term> effects_;  // order of the model
   std::vector<Term> terms_;    // what acts, by place
   std::array<std::size_t, location_count + 1> where_begin_{};
-  std::bitset<location_count> acting_;  // whether a term acts at each place
+  std::bitset<location_count> acting_;  // true for each location with a term
   std::vector<BoundFormula> formulas_;
   std::vector<double> parameters_;
   std::vector<std::string> extra_names_;

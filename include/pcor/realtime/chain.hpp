@@ -117,8 +117,8 @@ class Chain : public BoundModel {
     return select(enough, defect, missing<R>());
   }
 
-  /// Corrected pressures: p = p_port + delta-p, q = q_port - delta-p (memo eq. 1-3). Their sum stays. One
-  /// that is negative, as where a law is carried on to the ground, or beyond all flights, is impossible: NaN.
+  /// Corrected pressures: p = p_port + delta-p, q = q_port - delta-p (memo eq. 1-3). Their sum is unchanged.
+  /// Negative values, as from extrapolation to the ground, and implausible ones are NaN.
   template <class S, class Flags>
   void correct(State<S>& state, const S& defect, Flags& flags) const {
     put(Quantity::corrected_static_pressure, S(state[Quantity::port_static_pressure] + defect), state, flags,
@@ -212,9 +212,8 @@ class Chain : public BoundModel {
   }
 
   /// Ambient temperature (K, eq. 12) and dynamic pressure (hPa, eq. 8) from LAMS and the corrected pressures.
-  /// They test the model, not the laser: with pressures corrected by LAMS at this very sample they return
-  /// their inputs. NaN where the airspeed of the laser is missing, not above zero, or leads beyond all
-  /// flights.
+  /// They test the model, not the laser: with pressures corrected by LAMS at the same sample they return
+  /// their inputs. NaN if the airspeed of the laser is missing or not positive, or results are implausible.
   template <class S, class P, class Flags>
   void lams_air(State<S>& state, const P* parameters, Flags& flags) const {
     const S recorded = lams_airspeed(state, parameters);
@@ -254,9 +253,8 @@ class Chain : public BoundModel {
     return S(1.0) + above - sum<S>(EffectLocation::ambient_temperature, moved, parameters);
   }
 
-  /// Adds to a quantity of a state that `measure` has been through, and takes along what the laws see of it:
-  /// the ratios and the Mach number of the pressures, the ratios of the radome and the angles found from
-  /// them.
+  /// Adds to a quantity of a state after `measure`, and updates the derived inputs of effects: the ratios and
+  /// the Mach number of the pressures, the ratios of the radome and its flow angles.
   template <class S>
   void change(State<S>& state, Quantity quantity, const S& by) const {
     const S radome = state[Quantity::radome_dynamic_pressure];
@@ -290,7 +288,7 @@ class Chain : public BoundModel {
     return bound ? std::optional<Chain>(Chain(std::move(*bound))) : std::nullopt;
   }
 
-  // Takes a value that no flight has out of the state. True where it did.
+  // Removes an implausible value from the state. True if there was one.
   template <class S>
   static auto drop_implausible(Quantity quantity, State<S>& state) {
     const auto implausible = is_implausible(quantity, state[quantity]);
@@ -310,7 +308,7 @@ class Chain : public BoundModel {
     if (acts(location)) state[quantity] = state[quantity] + sum<S>(location, state, parameters);
   }
 
-  // Adds to a ratio of the radome, and to the angle that is found from it.
+  // Adds to a ratio of the radome, and to the flow angle derived from it.
   template <class S>
   void turn(State<S>& state, Quantity ratio, const S& by, Quantity angle,
             const RadomeCalibration& radome) const {
@@ -322,7 +320,7 @@ class Chain : public BoundModel {
     state[angle] = state[angle] + slope * by;
   }
 
-  // The ratios of the radome pressures, and the angles of flow where they are found from these.
+  // Ratios of the radome pressures, and the flow angles derived from them.
   template <class S, class P, class Flags>
   void flow_angles(State<S>& state, const P* parameters, Flags& flags) const {
     if (needs(Quantity::attack_ratio) || needs(Quantity::sideslip_ratio)) radome_ratios(state, flags);
@@ -355,7 +353,7 @@ class Chain : public BoundModel {
     return radome.needs_mach() ? radome(state[ratio], state[Quantity::mach]) : radome(state[ratio]);
   }
 
-  // True where the dynamic pressure is more than the noise of its sensor.
+  // True if the dynamic pressure exceeds the noise of its sensor.
   template <class S>
   auto is_flowing(const S& q) const {
     return q > S(0.0) && q >= S(policy_.min_dynamic_pressure);
@@ -411,8 +409,7 @@ class Chain : public BoundModel {
     return select(unknown || negative, S(0.0), e / p);
   }
 
-  // Brings a vapour pressure in units of `unit`, hPa, down to saturation over water. True where any was
-  // above.
+  // Limits a vapour pressure in units of `unit`, hPa, to saturation over water. True if any value was above.
   template <class S, class Flags>
   bool limit_to_saturation(S& vapor, const S& unit, const S& temperature, Flags& flags) const {
     // Saturation is computed only for air that may be saturated.

@@ -41,7 +41,7 @@ class SteadyValue {
     length_ = 0;
   }
 
-  /// Takes a sample, which is not missing. True where the sensor is frozen.
+  /// Adds a sample, which must not be missing. True if the sensor is frozen.
   bool operator()(double value) noexcept {
     if (value == last_) {
       ++length_;
@@ -115,7 +115,7 @@ class FrozenWatch {
     for (Sensor& sensor : sensors_) sensor.value.reset();
   }
 
-  /// True where one of them is frozen at this sample.
+  /// True if one of them is frozen at this sample.
   bool operator()(const State<double>& state) noexcept {
     constexpr double min_dynamic_pressure = 20.0;  // hPa, 57 m/s at sea level
     const bool flies = state[Quantity::dynamic_pressure] >= min_dynamic_pressure;

@@ -8,7 +8,7 @@
 
 namespace pcor {
 
-/// A derived variable, or a few that are found together: computed once for every sample from others.
+/// Derived variable, or several computed together, once for every sample from others.
 ///
 /// A functor declares its inputs and outputs; the loop orders functors by them. A quantity that is both is
 /// modified in place, before other functors read it. `compute` must not allocate or throw; for missing or

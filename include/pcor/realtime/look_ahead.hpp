@@ -16,8 +16,8 @@ namespace pcor {
 /// `RateFilter::usual_period`.
 using ShortestPeriods = std::vector<std::pair<Quantity, double>>;
 
-/// Holds samples back until those after them are there from which their rates of change are found
-/// (`RateFilter`): real time knows no later sample, and a rate without them would be late, or noise.
+/// Delays samples until the later samples required for their rates of change are available (`RateFilter`): a
+/// causal rate would be late, or noisy.
 ///
 /// Belongs to a chain that reads rates. Rates of recorded quantities are derivatives. That of the airspeed is
 /// computed along the laser beam, if there is a laser, from the corrected pressures, as the mean over the

@@ -40,7 +40,7 @@ class StageFunctor final : public Functor {
   CorrectWith with_;
 };
 
-/// Whether a loop with a laser filters its temperature: 12 s of samples for every new one, 300 of them at 25
+/// True if a loop with a laser filters its temperature: 12 s of samples for every new one, 300 of them at 25
 /// Hz.
 enum class LaserFilter { with, without };
 
@@ -100,7 +100,7 @@ class Loop {
   /// other; `error` names them.
   bool order(std::string* error);
 
-  /// True where some functor writes the quantity.
+  /// True if some functor writes the quantity.
   bool writes(Quantity quantity) const {
     return std::any_of(functors_.begin(), functors_.end(), [quantity](const auto& functor) {
       const std::vector<Quantity>& outputs = functor->outputs();
@@ -115,7 +115,7 @@ class Loop {
   /// The quality bits of the sample that the state is of.
   QualityFlags quality() const { return quality_; }
 
-  /// The variables beyond the quantities of the library, by name; number i is at `extra_quantity(i)`.
+  /// Further variables, by name; number i is at `extra_quantity(i)`.
   const std::vector<std::string>& extra_names() const { return extra_names_; }
 
   /// Delay of the results of a sample, in runs: 0 for a model that reads no rate of change.
@@ -124,14 +124,14 @@ class Loop {
   /// The time of the sample that was run last, s; NaN before the first.
   double last_time() const noexcept { return previous_time_; }
 
-  /// Leaves it to the host to find sensors that are frozen, as one that knows the whole flight can.
+  /// Disables the detection of frozen sensors, for hosts that detect them from the whole flight.
   void do_not_watch_sensors() noexcept { frozen_.reset(); }
 
   /// Clears all earlier samples.
   void reset() noexcept { started_ = false; }
 
-  /// True where a sample at `time` would find every functor reset: the first one, one after a gap, and one
-  /// whose time does not advance.
+  /// True if a sample at `time` resets all functors: the first one, one after a gap, and one whose time does
+  /// not increase.
   bool starts_anew(double time) const noexcept {
     const double step = time - previous_time_;
     return !started_ || !(step > 0.0 && step <= max_step_);

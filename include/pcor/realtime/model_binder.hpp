@@ -27,7 +27,7 @@ struct BindingError {
 
   Code code = Code::unknown_effect;
   Quantity quantity = Quantity::count;  ///< missing quantity
-  std::string who{};                    ///< e.g. "effect 'qcf-lag'"; empty where the sentence names it
+  std::string who{};                    ///< e.g. "effect 'qcf-lag'"; empty if the message names it
   std::string what{};                   ///< what is wrong and what to do, e.g. "needs the role ..."
 
   /// Both in one line.
@@ -207,7 +207,7 @@ class ModelBinder {
     bound_.acting_.set(place);
   }
 
-  // Finds the place of a further variable; a new one where the name is new. False where there is no room.
+  // Element of a further variable, added if the name is new. False if the capacity is exhausted.
   bool find_extra(const std::string& name, Quantity& place) {
     std::vector<std::string>& names = bound_.extra_names_;
     const auto found = std::find(names.begin(), names.end(), name);

@@ -131,10 +131,10 @@ class NimbusSystem {
     Host::put(entry, state[Quantity::static_defect]);
   }
 
-  /// The callback of an entry that is another result of the leader's run. NaN where the leader has not run
-  /// since this entry was last put, and for good where the entry, or another of the same result, is called
-  /// before the leader's first run, as its values would be those of the sample before: its dependency line
-  /// lacks the leader.
+  /// Callback of an entry that puts another result of the leader's run. NaN if the leader has not run since
+  /// this entry was last put; permanently NaN if the entry, or another one of the same result, is called
+  /// before the leader's first run, because its values would be those of the previous sample: its dependency
+  /// line lacks the leader.
   template <Quantity quantity>
   static void fetch(Entry* entry) {
     Host::put(entry, has_turn(turns_[index(quantity)], entry) ? latest_->state()[quantity] - zero_of(quantity)
@@ -174,7 +174,8 @@ class NimbusSystem {
     std::size_t samples = 0;
   };
 
-  // The run of which a result was last put, and by which entry first; by none once that entry came again.
+  // Last run of which a result was put, and the first entry that did; no entry after that one is called
+  // again.
   struct Turn {
     std::size_t run = 0;
     const Entry* first = nullptr;
@@ -198,8 +199,8 @@ class NimbusSystem {
     }
   }
 
-  // True where the entry comes after a run of the leader that it has not put yet. Entries of one result are
-  // judged together: once the first of them comes again, the host is at another sample.
+  // True if the entry is called after a run of the leader that it has not put yet. Entries of one result
+  // share this state: when the first of them is called again, the host is at another sample.
   static bool has_turn(Turn& turn, const Entry* entry) {
     if (turn.run < run_) {
       turn = {run_, entry};
@@ -219,8 +220,8 @@ class NimbusSystem {
   static inline std::array<Turn, state_capacity + 1> turns_{};
 };
 
-/// The name in a defaults file of the coefficient number `number` of `effect`: `PCOR.static-alpha.a1`, where
-/// `prefix` is PCOR. The prefix keeps the systems of one aircraft apart.
+/// Name of coefficient number `number` of `effect` in a defaults file: `PCOR.static-alpha.a1` for the
+/// `prefix` PCOR. The prefix distinguishes the systems of one aircraft.
 inline std::string default_key(const std::string& prefix, const ModelEffect& effect, std::size_t number) {
   std::string name = std::to_string(number);
   if (number < effect.parameter_names.size()) {
@@ -301,7 +302,7 @@ inline std::vector<std::string> unread_defaults(const Model& model, const std::s
   return unread;
 }
 
-/// Whether a defaults file may leave coefficients of a model to the model.
+/// True if a defaults file may leave coefficients of a model to the model.
 enum class Overrides { some, all };
 
 /// False if one of the names `keys` of a defaults file that begin with `prefix` and a point does not match a

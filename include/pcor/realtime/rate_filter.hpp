@@ -48,7 +48,7 @@ class RateFilter {
     const double width = std::round(zeros / band_);
     const double late = shift_ == 0.0 ? little : 0.0;
     const double early = shift_ == 0.0 ? -little : -shift_;
-    // Where the window ends, on both sides of both places.
+    // Ends of the window, on both sides of both positions.
     const double first = std::floor(std::min(0.0, -shift_) - width - 1.0) + 1.0;
     const double last = std::ceil(std::max(0.0, -shift_) + width + 1.0) - 1.0;
     before_ = static_cast<std::size_t>(-first);
@@ -96,7 +96,7 @@ class RateFilter {
     const auto at = [&](std::size_t place) {
       return sample[static_cast<std::ptrdiff_t>(place) - static_cast<std::ptrdiff_t>(before_)];
     };
-    // The samples at or next to the one in question, then all on either side up to a long gap.
+    // Samples at or next to the central one, then all on either side up to a long gap.
     const std::size_t begin = before_ - std::min(before_, earlier);
     const std::size_t end = before_ + std::min(after(), later);
     std::size_t first = before_;
@@ -134,7 +134,7 @@ class RateFilter {
     return true;
   }
 
-  /// Adds `scale` times the weights of the value at `place`, in samples from the one in question.
+  /// Adds `scale` times the weights of the value at `place`, in samples from the central one.
   void add_value(double place, double width, double scale) {
     constexpr double pi = 180.0 * constants::radians_per_degree;
     std::vector<double> taper(weights_.size());

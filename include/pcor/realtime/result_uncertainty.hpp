@@ -73,7 +73,7 @@ class ResultUncertainty final : public Functor {
 
   void compute(State<double>& state, QualityFlags&) noexcept override {
     if (!still_holds(state)) find(state);
-    // Zero times a result is missing where the result is.
+    // The product with zero makes the uncertainty missing if the result is missing.
     for (std::size_t i = 0; i < uncertain_results.size(); ++i)
       state[uncertain_results[i].uncertainty] = found_[i] + 0.0 * state[uncertain_results[i].result];
     if (with_ == CorrectWith::lams && !is_missing(state[Quantity::lams_static_defect])) {
@@ -189,7 +189,7 @@ class ResultUncertainty final : public Functor {
   struct Noise {
     Quantity role;
     double size;
-    bool moves_law;  // effects at the ports read it, or what is found from it
+    bool moves_law;  // effects at the ports read it, or a quantity computed from it
   };
 
   ResultUncertainty(std::shared_ptr<const Chain> chain, const ModelUncertainty& uncertainty, CorrectWith with)
@@ -376,7 +376,7 @@ class ResultUncertainty final : public Functor {
   // A tenth of a degree or a hPa, and what that is as a ratio: laws are smooth over it.
   static double step_of(Quantity quantity) { return quantity == Quantity::attack_ratio ? 0.005 : 0.1; }
 
-  // An uncertainty of the last two seconds holds where the pressures that it was found at do.
+  // Uncertainties are reused for two seconds if the pressures have not changed significantly.
   bool still_holds(const State<double>& state) const noexcept {
     const double age = state[Quantity::time] - time_;
     if (!(is_complete_ && age >= 0.0 && age < 2.0)) return false;

@@ -4,7 +4,7 @@
 
 namespace pcor {
 
-/// Whether samples come at the intervals of a rate.
+/// True if samples come at the intervals of a rate.
 ///
 /// Deviations of samples from an even clock are accumulated, with a decay time of five samples. Times that
 /// jitter by less than a tenth of a sample are even, and so is a rate error below 2 %; a larger rate error is

@@ -97,7 +97,7 @@ struct MeasuredQuantities {
     correction.chain.measure(state, parameters, flags);
   }
 
-  /// The recorded quantities that `quantity`, recorded or derived, is found from.
+  /// Recorded quantities from which `quantity`, recorded or derived, is computed.
   static Quantities sources(const Chain& chain, Quantity quantity) {
     const auto of = [&chain](Quantity other) { return sources(chain, other); };
     if (chain.recorded(quantity)) return {quantity};
@@ -250,7 +250,7 @@ struct StageList {
   }
 };
 
-/// All stages, in an order in which each finds what it reads.
+/// All stages, in an order in which the inputs of each precede it.
 using Stages =
     StageList<MeasuredQuantities, StaticDefect, LamsStaticDefect, CorrectedPressures, AirState, LamsAir>;
 

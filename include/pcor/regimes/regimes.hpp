@@ -64,7 +64,7 @@ constexpr bool is_manoeuvre(Regime regime) {
   return regime >= Regime::pitch_manoeuvre && regime <= Regime::circle;
 }
 
-/// Input series of the search at one rate, one value for each sample, NaN where missing. Empty: not recorded;
+/// Input series of the search at one rate, one value for each sample, NaN if missing. Empty: not recorded;
 /// regimes that depend on it are not found.
 struct FlightMotion {
   std::vector<double> time;            ///< s since 1970 UTC, strictly increasing, gaps possible

@@ -99,7 +99,7 @@ class Residuals {
                            const std::vector<Direction>& directions, double* derivatives) const;
 
   /// Model column measured by the sensor of the reference, and its noise-free prediction at every sample from
-  /// the air data of the model: for LAMS the speed along the beam, m/s. NaN where missing. Empty for a
+  /// the air data of the model: for LAMS the speed along the beam, m/s. NaN if missing. Empty for a
   /// reference whose noise is added directly to the residual.
   std::optional<std::pair<Quantity, std::vector<double>>> predicted_sensor(const double* parameters) const;
 
@@ -115,7 +115,7 @@ class Residuals {
   /// radome, if it is recorded.
   std::shared_ptr<const FlightSamples> at_common_pressures() const;
 
-  /// Delta-p required by the reference, p(reference) - p at the port, hPa; NaN where missing.
+  /// Delta-p required by the reference, p(reference) - p at the port, hPa; NaN if missing.
   std::vector<double> target_defect(const double* parameters) const;
 
   /// Quantity of the model's chain, for figures and bands: e.g. mach, attack. NaN everywhere if the chain
