@@ -53,8 +53,8 @@ struct HeightBlock {
 /// Source of the horizontal displacement of a flight.
 enum class WayKnown {
   over_ground,
-  through_air,  ///< from airspeed and heading
-  length        ///< without a heading: all displacement counts as one direction
+  through_air,  ///< airspeed and heading
+  length        ///< unknown heading: all displacement counts as one direction
 };
 
 /// A flight as the fit of temperature sees it.

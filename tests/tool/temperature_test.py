@@ -799,7 +799,7 @@ class BadInput(TemperatureTest):
     def test_neither_way_nor_heading(self):
         flight = self.edited(without("GGSPD"), without("THDG"))
         result, whole = (self.temperature("--pressure-error", "0", flights=(each,)) for each in (flight, ONE))
-        self.assertIn("one direction", " ".join(result["notes"]))
+        self.assertIn("turns", " ".join(result["notes"]))
         # 0.09 K, where the doubt of humidity and law leaves 0.03 K.
         self.assertGreater(result["stderr"]["a0"], 3.0 * whole["stderr"]["a0"])
 

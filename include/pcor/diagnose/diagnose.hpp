@@ -124,7 +124,7 @@ struct Finding {
   double gain = 0.0;
   double gain_error = 0.0;
   double events = 0.0;               ///< number of separate events that support the finding
-  std::vector<Evidence> evidence{};  ///< at most six, sorted by decreasing evidence
+  std::vector<Evidence> evidence{};  ///< up to six, sorted by decreasing evidence
   std::vector<Alias> aliases{};      ///< sorted by decreasing probability
   std::string family{};              ///< family of its alternative shapes and locations, e.g. "lag"
   std::string shape{};               ///< detected shape; empty: the shape of the catalogue

@@ -89,8 +89,8 @@ class ResultUncertainty final : public Functor {
   /// Changes of the inputs of the corrected air.
   struct Changes {
     double static_defect = 0.0;
-    double static_pressure = 0.0;   // at the port, hPa
-    double dynamic_pressure = 0.0;  // at the ports, hPa
+    double static_pressure = 0.0;   // static pressure at the port, hPa
+    double dynamic_pressure = 0.0;  // dynamic pressure at the ports, hPa
     double thermometer = 0.0;
     double recovery = 0.0;
     double ambient = 0.0;  // before its calibration

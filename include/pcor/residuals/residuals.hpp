@@ -127,7 +127,7 @@ class Residuals {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Names of all parameters in the order of `Residuals::parameters`, like "static-qp.a2"; those of the
+/// Names of all parameters in the order of `Residuals::parameters`, like "static-qp.a2"; parameters of the
 /// reference's model begin with "reference:".
 std::vector<std::string> residual_parameter_names(const ModelDefinition& model, const Reference& reference);
 
