@@ -10,8 +10,8 @@
 
 namespace pcor::internal {
 
-/// Powers, exponential and logarithm of a vector register. xsimd has the last two, too, but they take twice
-/// the time where a processor cannot convert between numbers and 64-bit integers, as with AVX2.
+/// Power, exponential and logarithm of a vector register. xsimd provides the last two, but they take twice
+/// the time on processors that cannot convert between numbers and 64-bit integers, as with AVX2.
 
 namespace detail {
 
@@ -68,8 +68,7 @@ template <class Arch>
                        xsimd::select(x > Register(709.0), infinity, result));
 }
 
-/// ln x within 2 units in the last place; minus infinity at zero and where x is too small for a normal
-/// number.
+/// ln x within 2 units in the last place; minus infinity at zero and for x too small for a normal number.
 template <class Arch>
 [[gnu::always_inline]] inline xsimd::batch<double, Arch> logarithm(const xsimd::batch<double, Arch>& x) {
   using Register = xsimd::batch<double, Arch>;

@@ -29,7 +29,7 @@ class DelayLine {
   void add(Output output) { outputs_.push_back(std::move(output)); }
   void set_flags(std::size_t number) { flags_ = Output{Quantity::count, 0.0, number, {}}; }
 
-  /// Samples that have entered since the last gap and not left yet.
+  /// Samples since the last gap without results yet.
   std::size_t inside() const { return entered_ - left_; }
 
   /// A sample enters the loop, which is then run.
@@ -37,7 +37,7 @@ class DelayLine {
 
   /// The quality bits, as a number, of the next sample of which they are known; it may leave later.
   void enter_flags(double bits) { flags_->values.push_back(bits); }
-  /// Adds a bit of the sample that left last.
+  /// Adds a bit of the sample with the latest results.
   void add_flag(double bit) { flags_->values[finished_ - 1] += bit; }
 
   /// Takes the results of the last run of the loop. False if they belong to no sample.
@@ -56,7 +56,7 @@ class DelayLine {
   std::size_t runs_ = 0;  // since the last gap
   std::size_t entered_ = 0;
   std::size_t left_ = 0;
-  std::size_t finished_ = 0;  // samples that left and are not written yet
+  std::size_t finished_ = 0;  // samples with results that are not written yet
   std::size_t written_records_ = 0;
 };
 

@@ -128,7 +128,7 @@ class Processing {
   std::optional<DelayLine> filtered_;  // later still; and the quality bits, one of which is the filter's
   double sample_step_ = 1.0;           // s
   std::vector<bool> frozen_;           // records in which any sensor is frozen; empty: none
-  std::size_t noted_ = 0;              // samples that have left the loop
+  std::size_t noted_ = 0;              // samples of which results are available
   std::map<Quantity, std::string> output_names_;
   ProcessSummary summary_;
 };
@@ -257,9 +257,8 @@ void Processing::leave_out_noise(Quantity rate, const SignalBand& band) {
     if (!reads || time == info.parameters[0].neutral) continue;
     const std::string_view unit = info_of(info.location).unit;
     note(
-        "{} of {:g} s is not applied: on this flight it would add noise of {:.2g} {} and take an error of "
-        "{:.2g} "
-        "{} away",
+        "{} of {:g} s is not applied: on this flight it would add noise of {:.2g} {} and remove an error of "
+        "{:.2g} {}",
         effect.id, time, std::abs(time) * std::sqrt(band.rate_noise), unit,
         std::abs(time) * std::sqrt(std::max(0.0, signal)), unit);
     time = info.parameters[0].neutral;
@@ -319,8 +318,8 @@ void Processing::note_uncertainty() {
                EffectLocation::pitot},
               {Q::dynamic_pressure})) {
     note(
-        "the uncertainties leave out the pressure transducers, since the model does not state those of both; "
-        "its table [uncertainty] takes static_pressure and dynamic_pressure");
+        "the uncertainties exclude the pressure transducers, because the model does not state both; set "
+        "static_pressure and dynamic_pressure in its table [uncertainty]");
   }
   for (const SensorDoubt& doubt : doubts_of(file_, thermometer_calibration)) {
     if (chain_->effect_count() == file_.model.effects.size()) break;  // none was added
@@ -363,7 +362,7 @@ void Processing::copy_variables(FlightWriter& writer, const FileDescription& des
     if (!options_.copy_all || writer.can_copy(name)) {
       writer.copy(name);
     } else if (name != flight_.time_variable()) {
-      note("{} is of a kind that cannot be copied, and left out", name);
+      note("{} has a type that cannot be copied and is omitted", name);
     }
   }
 }

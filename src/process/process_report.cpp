@@ -106,14 +106,11 @@ void add_pictures(Report& report) {
       report.items.emplace_back(BinnedPanel{
           "Delta-p by the state of flight", "The samples, and their mean in each bin.", {"PCOR"}, states});
   }
-  add_if_present(
-      report,
-      TimePanel{
-          "Difference from the flight's own processing",
-          "The corrected static pressure less the one that the input holds already: 1 hPa is about 8 m of "
-          "height at the ground.",
-          {own_difference},
-          "difference of static pressure"});
+  add_if_present(report, TimePanel{"Difference from the flight's own processing",
+                                   "Corrected static pressure minus the corrected static pressure of the "
+                                   "input: 1 hPa is about 8 m of height at the ground.",
+                                   {own_difference},
+                                   "difference of static pressure"});
   add_if_present(report, TimePanel{"True airspeed", "Computed from the corrected pressures.", {"TASX"}});
   add_if_present(report, TimePanel{"Ambient temperature",
                                    "Computed from the recovery temperature and the corrected Mach number.",

@@ -24,8 +24,8 @@ double density(const Air& air);
 /// Speed of sound, m/s: (c_p/c_v R T)^(1/2).
 double speed_of_sound(const Air& air);
 
-/// The pressure, hPa, where the air that flows at `speed` (m/s) is brought to rest without losses:
-/// p (T*/T)^(c_p/R) with T* = T + v^2/(2 c_p).
+/// Total pressure, hPa, of air with the speed `speed` (m/s), without losses: p (T*/T)^(c_p/R) with T* = T +
+/// v^2/(2 c_p).
 double total_pressure(const Air& air, double speed);
 
 /// Temperature, K, of the air brought to rest with the part `recovery` of its heating.

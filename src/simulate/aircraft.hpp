@@ -72,8 +72,8 @@ const AircraftInfo& info_of(Scenario::Aircraft aircraft);
 double lift_attack(const AircraftInfo& aircraft, double weight, double load_factor, double dynamic_pressure,
                    double mach, double flaps);
 
-/// The part of full power, %, that it takes to fly at `speed` m/s with lift coefficient `lift`, while the
-/// aircraft gains `energy_rate` (W) of height and speed; not below 5 (idle) nor above 100.
+/// Fraction of full power, %, required to fly at `speed` m/s with lift coefficient `lift`, while the aircraft
+/// gains `energy_rate` (W) of height and speed; limited to 5 (idle) to 100.
 double torque(const AircraftInfo& aircraft, double lift, double dynamic_pressure, double speed,
               double energy_rate);
 

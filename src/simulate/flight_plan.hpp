@@ -10,7 +10,7 @@
 
 namespace pcor::internal::simulate {
 
-/// A number that a leg takes.
+/// Number used by a leg.
 struct LegNumber {
   std::string_view key;
   double Scenario::Leg::*value;
@@ -32,7 +32,7 @@ inline constexpr std::array<LegNumber, 12> leg_numbers{{
     {"flaps", &Scenario::Leg::flaps},
 }};
 
-/// A kind of leg: its name in scenarios and the numbers it takes.
+/// Kind of leg: its name in scenarios and the numbers it uses.
 struct LegInfo {
   Scenario::Leg::Kind kind;
   std::string_view name;

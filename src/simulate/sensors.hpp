@@ -74,8 +74,8 @@ class Recorder {
  public:
   Recorder(const Scenario& scenario, const Faults& faults) : scenario_(scenario), faults_(faults) {}
 
-  /// Adds response, clock, noise and resolution of `variable`, takes means over the intervals of `rate`
-  /// samples a second (NaN if fewer than half of the steps have a value), then outliers and gaps.
+  /// Applies response, clock, noise and resolution of `variable`, averages over the intervals of `rate`
+  /// samples per second (NaN if fewer than half of the steps have a value), then adds outliers and gaps.
   std::vector<double> record(const std::string& variable, Series series, int rate) const;
 
   /// Means over the intervals alone.

@@ -7,9 +7,9 @@
 
 namespace pcor::internal {
 
-/// Least squares on height (memo eq. 23 and 24): the coefficients with which the integral keeps closest to
-/// the height by GPS, from the mean height of each stretch. Errors take every sample for independent, as the
-/// memo does.
+/// Least squares on height (memo eq. 23 and 24): coefficients that minimise the distance of the integral from
+/// the GPS height, about the mean height of each segment. Errors assume independent samples, as the memo
+/// does.
 TemperatureFit fit_height_by_least_squares(const std::vector<HeightRecord>& records, std::size_t terms);
 
 /// Integrated autocorrelation time, in samples, of the least-squares height residuals: standard errors for

@@ -227,7 +227,8 @@ class AroundLikeliest {
     return point;
   }
 
-  /// Along `direction`, where -2 ln L is 1 above its least, to a fifth in `trials`; or at a bound.
+  /// Distance along `direction` at which -2 ln L is 1 above its minimum, to 20 %, in `trials`; or the
+  /// distance to a bound.
   Point rise_by_one(const Logarithms& direction, double reach, int trials) const {
     constexpr double min_rise = 1e-3;
     Point point = at(centre_ + reach * direction);

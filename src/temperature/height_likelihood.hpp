@@ -83,8 +83,8 @@ struct HeightEquations {
 HeightEquations height_equations(const HeightRecord& record, const HeightNoise& noise,
                                  const HeightPrior& prior);
 
-/// The innovations of that filter at given coefficients, in standard deviations: white with variance 1 where
-/// the noise is as described. NaN at the start of a stretch.
+/// Innovations of that filter at given coefficients, in standard deviations: white with variance 1 for a
+/// correct noise model. NaN at the start of a segment.
 std::vector<double> height_innovations(const HeightRecord& record, const HeightNoise& noise,
                                        const HeightPrior& prior, const HeightEquations::Vector& unknowns);
 

@@ -124,7 +124,8 @@ class Integration {
   void add_errors(const Errors& shares, double step, double temperature, double scale_height) {
     for (std::size_t k = 0; k < height_errors; ++k)
       errors_[k] += scale_height * (shares[k] - last_shares_[k]);
-    // A law takes from the dynamic pressure what it adds to the static one, and with it from the heating.
+    // The static correction is subtracted from the dynamic pressure, and therefore changes the dynamic
+    // heating.
     if (options_.recovers) {
       for (const HeightError k : {with_static, with_dynamic, with_attack})
         errors_[k] -= step * temperature * kappa * 0.5 * (shares[k] + last_shares_[k]);

@@ -25,7 +25,7 @@ struct HeightBlock {
   bool starts_segment = false;  ///< the integral restarts: its height is unknown
   double time = 0.0;            ///< middle, s since 1970 UTC
   double length = 0.0;          ///< averaging time, s
-  double excess = 0.0;  ///< geopotential height by GPS less the integral with the uncorrected temperature, m
+  double excess = 0.0;  ///< GPS geopotential height minus integral with the uncorrected temperature, m
   /// Change of the integral for one unit of a0 (K), a1 (1), a2 (1/K), m.
   std::array<double, calibration_terms> columns{};
   double east = 0.0;            ///< way flown, m (`WayKnown`)
@@ -64,7 +64,7 @@ struct HeightRecord {
   std::size_t segments = 0;
   std::size_t samples = 0;          ///< those that are in blocks
   std::size_t height_steps = 0;     ///< steps of the GPS height, at which the integral restarts
-  std::size_t height_spikes = 0;    ///< samples whose GPS height is left out
+  std::size_t height_spikes = 0;    ///< samples with excluded GPS height
   std::size_t missing_heights = 0;  ///< samples in the air without GPS height
   std::size_t unknown_ways = 0;     ///< samples without velocity over the ground in a flight that has it
   WayKnown way = WayKnown::over_ground;
@@ -89,7 +89,7 @@ struct HeightRecord {
 
 struct HeightRecordOptions {
   double block = 10.0;          ///< s
-  double min_climb_rate = 0.0;  ///< m/s; slower blocks are left out, and each climb is a stretch
+  double min_climb_rate = 0.0;  ///< m/s; slower blocks are excluded, and each climb is a segment
   /// The temperature is that of a thermometer less the heating by the flow, for which it has to know the Mach
   /// number: where delta-p is too large by a part x of the pressure, that is x R/cp of the temperature too
   /// much, (p/(p + q))^(R/cp) being their ratio where all of the heating is recovered.

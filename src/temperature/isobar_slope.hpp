@@ -5,7 +5,7 @@
 
 namespace pcor::internal {
 
-/// The slope of isobaric surfaces over a flight, and how it was found.
+/// Slope of isobaric surfaces over a flight, with its source.
 struct IsobarSlopeEstimate {
   double east = 0.0;       ///< rise per distance, 1
   double north = 0.0;      ///< 1

@@ -122,7 +122,7 @@ class TemperatureCalibration {
           throw Error(part.dry + "; --force continues with dry air");
         if (options_.skip_returning && part.record->returns) {
           part.record.reset();
-          part.left_out = "it ends where it began (--skip-returning)";
+          part.left_out = "it ends at its start point (--skip-returning)";
         }
       } catch (const Error& error) {
         part.record.reset();
@@ -408,8 +408,8 @@ class TemperatureCalibration {
     result_.humidity_error = std::sqrt(likeliest_.equations.covariance_of_unknowns(n)(at, at));
   }
 
-  /// Where -2 ln L, with the noise and the other coefficients at their best, is 1 above its least,
-  /// below and above; and the variance that the likelihood cannot see.
+  /// Values below and above at which -2 ln L, with the noise and the other coefficients optimised, is 1 above
+  /// its minimum, including the variance that the likelihood cannot detect.
   std::array<double, 2> profile_interval(Eigen::Index term, double error, double unseen) const {
     const double best = result_.likelihood.coefficients[static_cast<std::size_t>(term)];
     const auto deviance_at = [&](double value) {
@@ -522,7 +522,7 @@ class TemperatureCalibration {
     return std::sqrt(squares / static_cast<double>(values.size()));
   }
 
-  /// Where the correction is furthest from none, in its errors.
+  /// Correction with the largest ratio to its standard error.
   const TemperatureCorrection& surest() const {
     return *std::max_element(result_.corrections.begin(), result_.corrections.end(),
                              [](const TemperatureCorrection& one, const TemperatureCorrection& other) {
@@ -658,8 +658,8 @@ class TemperatureCalibration {
     }
     if (options_.slope == IsobarSlope::geostrophic) {
       notes.emplace_back(
-          "the slope of isobars is that of a wind in balance: friction, curved ways of the air and changes "
-          "of the wind put it out of balance, and the coefficients are as good as the balance is");
+          "the slope of isobars assumes geostrophic balance: friction, curvature and changes of the wind "
+          "violate it, which limits the accuracy of the coefficients");
     }
     std::size_t steps = 0;
     std::size_t spikes = 0;

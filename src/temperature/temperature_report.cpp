@@ -25,10 +25,9 @@ ReportTable coefficient_table(const TemperatureResult& result) {
   table.title = "Coefficients";
   table.caption =
       "T corrected = T + a0 + a1 t + a2 t², t in °C. The standard error comes from the curvature of the "
-      "likelihood, averaged over the noises that are likely; the interval is where the likelihood has fallen "
-      "by e^(-1/2), with the noise at its best for each value. Least squares on height, as in "
-      "Cooper (2012), takes heights for independent and isobars for level or known: its errors are too "
-      "small. " +
+      "likelihood, averaged over likely noise models; the interval is the profile likelihood at e^(-1/2), "
+      "with the noise re-optimised for each value. Least squares on height, as in Cooper (2012), assumes "
+      "independent heights and level or known isobars: its errors are too small. " +
       pressure_error_text(result) + ".";
   table.headers = {"",
                    "likelihood",
@@ -68,8 +67,8 @@ ReportTable flight_table(const TemperatureResult& result) {
   ReportTable table;
   table.title = "Flights";
   table.caption =
-      "Rms of the height by GPS less the integral, about its mean in each stretch and an estimate of the "
-      "slope of isobars: what remains with the correction is noise and the drift of the integral.";
+      "Rms of GPS height minus integral, about its mean in each segment and an estimate of the slope of "
+      "isobars: the remainder with the correction is noise and the drift of the integral.";
   table.headers = {"flight",      "samples",       "stretches",    "coldest, °C",
                    "warmest, °C", "rms before, m", "rms after, m", ""};
   for (const FlightHeights& flight : result.flights) {
@@ -160,8 +159,8 @@ std::string pressure_error_text(const TemperatureResult& result) {
                          k == 1 ? "" : " " + coefficient_unit(k));
   }
   return fmt::format(
-      "Errors are those of the noise only: one of the static pressure of {:g} hPa in all flights, as the "
-      "fits of laws have, would move {}; --pressure-error {:g} takes it into the errors",
+      "Errors include noise only: a constant static-pressure bias of {:g} hPa in all flights would change "
+      "{}; --pressure-error {:g} includes it",
       usual, moved, usual);
 }
 
@@ -187,7 +186,7 @@ Report temperature_report(const TemperatureResult& result) {
       {"Noise of the GPS height", fmt::format("{:.2f} m in a sample, {:.2f} m correlated over {:.0f} s",
                                               result.gps_noise, result.gps_wander, result.gps_wander_time)},
       {"Drift of the hydrostatic height", fmt::format("{:.3f} m in a minute", result.drift)},
-      {"Innovations", fmt::format("variance {:.2f} (1 where the noise is as described), correlation {:+.2f}",
+      {"Innovations", fmt::format("variance {:.2f} (1 for a correct noise model), correlation {:+.2f}",
                                   result.innovation_variance, result.innovation_correlation)}};
 
   for (const FlightHeights& flight : result.flights) {

@@ -533,7 +533,7 @@ TEST_F(Temperature, StatedErrorsKnowWhatAnEstimateOfTheSlopeLeaves) {
     const double score =
         (result.likelihood.coefficients[0] - truth(flight)[0]) / result.likelihood.standard_errors[0];
     squares += score * score;
-    EXPECT_THAT(result.notes, testing::Contains(HasSubstr("wind in balance")));
+    EXPECT_THAT(result.notes, testing::Contains(HasSubstr("geostrophic")));
     fs::remove(flight);
   }
   EXPECT_LT(std::sqrt(squares / static_cast<double>(flights)), 1.7);

@@ -62,7 +62,7 @@ struct CheckOptions {
   /// second pair of pressures, found by its usual names, as measured.
   std::optional<ModelDefinition> second{};
   std::function<void(std::size_t done, std::size_t total)>
-      progress{};  ///< Callback after every flight of this rank
+      progress{};  ///< callback after every flight of this rank
 };
 
 /// Results of all checks.

@@ -134,7 +134,7 @@ struct RefitResult {
   std::vector<Omission> omissions{};
   std::vector<FlightFit> flights{};
   std::vector<FlightFit> further{};  ///< fit statistics with each further reference, by flight
-  Statistics flaps_out;  ///< Residuals, with the fitted coefficients, of samples excluded because of flaps
+  Statistics flaps_out;  ///< residuals, with the fitted coefficients, of samples excluded because of flaps
   /// Standard error of delta-p due to all fitted coefficients, hPa, rms over the flights; zero without the
   /// references wind and height.
   double defect_error = 0.0;

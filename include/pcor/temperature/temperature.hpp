@@ -54,7 +54,7 @@ struct TemperatureOptions {
   bool dry_air = false;
   std::size_t threads = 0;  ///< 0: number of processors, or one if there are several ranks
   std::function<void(std::size_t done, std::size_t total)>
-      progress{};  ///< Callback after every flight of this rank
+      progress{};  ///< callback after every flight of this rank
 };
 
 /// Temperature correction by one method: T_corrected = T + a0 + a1 t + a2 t^2, t in degC.
