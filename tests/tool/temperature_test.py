@@ -687,7 +687,7 @@ class Options(TemperatureTest):
         self.assertEqual([flight["used"] for flight in result["flights"]], [True, False])
         self.assertIn("--skip-returning", result["flights"][1]["left_out"])
         self.assertEqual(result["coefficients"], self.temperature()["coefficients"])
-        self.refuse("--skip-returning", flights=(back,), words=["--skip-returning", "--skip-returning"])
+        self.refuse("--skip-returning", flights=(back,), words=["--skip-returning"])
 
     def test_an_excluded_hour_takes_no_part(self):
         intervals = self.write("intervals.toml", 'format = "pcor-intervals/1"\n[[exclude]]\nbegin = "20:30:00"\n'
