@@ -42,9 +42,9 @@ std::vector<NamedDoubt> second_doubts(const ModelFile& system, const Reference& 
   if (!reference.sees_static_defect()) return doubts;
   const StatedUncertainty& stated = system.uncertainty;
   if (stated.static_defect.value_or(0.0) > 0.0)
-    doubts.push_back({{"psfd-bias", 0, *stated.static_defect}, prefix + "static_defect"});
+    doubts.push_back({SensorDoubt{"psfd-bias", 0, *stated.static_defect}, prefix + "static_defect"});
   if (stated.static_defect_ratio.value_or(0.0) > 0.0)
-    doubts.push_back({{"psfd-gain", 0, *stated.static_defect_ratio}, prefix + "static_defect_ratio"});
+    doubts.push_back({SensorDoubt{"psfd-gain", 0, *stated.static_defect_ratio}, prefix + "static_defect_ratio"});
   return doubts;
 }
 

@@ -7,6 +7,7 @@
 #include <cctype>
 
 #include <pcor/units/units.hpp>
+#include <pcor/words/shell_word.hpp>
 #include <pcor/words/suggest.hpp>
 
 #include "words/quoting.hpp"
@@ -62,7 +63,7 @@ Error absent_variable(const std::string& path, const std::vector<VariableInfo>& 
         Error::Code::variable,
         fmt::format("{}; it has no time series in {} or a unit that converts to it, see ncdump -h {}; change "
                     "[variables] of the model",
-                    absent, wanted, path)};
+                    absent, wanted, shell_path(path))};
 
   constexpr std::size_t most_named = 6;
   // What a probe recovers files call total.

@@ -529,7 +529,10 @@ std::vector<bool> told_frozen(Quantity role, double noise, double resolution, st
                               std::size_t to) {
   const Sample flown{{Quantity::static_pressure, 700.0},
                      {Quantity::dynamic_pressure, 60.0},
-                     {Quantity::recovery_temperature, 280.0}};
+                     {Quantity::recovery_temperature, 280.0},
+                     {Quantity::attack, 3.0},
+                     {Quantity::sideslip, 0.5},
+                     {Quantity::lams_airspeed, 120.0}};
   Model model;
   model.effects = {{"static-constant", {0.004}}};
   Loop loop = build(model, flown, 25.0);
@@ -554,7 +557,8 @@ std::vector<bool> told_frozen(Quantity role, double noise, double resolution, st
 
 TEST(LoopFrozen, ASensorThatStandsStillSetsABit) {
   for (const Quantity role :
-       {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::recovery_temperature}) {
+       {Quantity::static_pressure, Quantity::dynamic_pressure, Quantity::recovery_temperature,
+        Quantity::attack, Quantity::sideslip, Quantity::lams_airspeed}) {
     const std::vector<bool> told = told_frozen(role, 0.05, 0.001, 5000, 9000);
     for (std::size_t i = 0; i < told.size(); ++i)
       ASSERT_EQ(told[i], i >= 5000 + 19 && i < 9000) << i << " of " << pcor::facts_of(role).name;

@@ -97,6 +97,25 @@ class Pasting(Changed):
                     commands += self.paste_all(result.stdout)
         self.assertGreater(commands, 15)
 
+    def test_names_of_results(self):
+        shutil.copy(ONE, self.work / "one.nc")
+        result = self.here("process", "one.nc", "-m", PUBLISHED, "-o", "out.nc", "--suffix", "_X;touch pwned")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.paste(re.search(r": (ncdump .*) \| less$", result.stdout, flags=re.M).group(1))
+        self.assertEqual(self.log.read_text().splitlines(), ["-v", "PCOR_X;touch pwned", "out.nc"])
+
+    def test_a_name_beside_one_that_is_absent(self):
+        name = "x;touch pwned.nc"
+        def change(flight):
+            flight.renameVariable("PSFD", "ABSENT")
+            for variable in flight.variables.values():
+                if getattr(variable, "units", "") in ("hPa", "mbar"):
+                    variable.units = "m"
+        self.changed(change).rename(self.work / name)
+        result = self.here("process", name, "-m", PUBLISHED, "-o", "out.nc")
+        self.assertEqual(result.returncode, 1)
+        self.paste(re.search(r"ncdump -h .*?(?=; )|$", result.stderr).group())
+
     def test_commands_that_are_a_result(self):
         for name in HOSTILE[:4]:
             shutil.copy(ONE, self.work / name)
@@ -131,18 +150,27 @@ class Times(Changed):
     def test_impossible_ones_are_refused(self):
         with netCDF4.Dataset(ONE) as flight:
             day = flight["Time"].units.split("since ")[1][:10]
-        for of_day in ("00:00:00 +25:00", "00:00:00 -99", "00:00:00 +9999", "00:60:00", "25:00:00", "00:00:00 +05:75"):
+        for of_day in (" 00:00:00 +25:00", " 00:00:00 -99", " 00:00:00 +9999", " 00:60:00", " 25:00:00", " 00:00:00 +05:75",
+                       "-99", "-05", "+05:00", " -1:00:00", " +0030"):
             with self.subTest(of_day):
-                flight = self.with_units(f"seconds since {day} {of_day}")
+                flight = self.with_units(f"seconds since {day}{of_day}")
                 self.refused("process", flight, "-m", PUBLISHED, "-o", self.path / "out.nc", words=[of_day, "ncatted"])
                 flight.unlink()
+
+    def test_an_impossible_begin_is_not_taken(self):
+        def change(flight):
+            flight["Time"].units = "seconds since 1850-01-01"
+            flight["Time"][:] = flight["Time"][:] - flight["Time"][0]
+            flight.TimeInterval = "99:99:99-99:99:99"
+        self.refused("process", self.changed(change), "-m", PUBLISHED, "-o", self.path / "out.nc", words=["ncatted"])
 
     def test_possible_ones_are_what_they_say(self):
         with netCDF4.Dataset(ONE) as flight:
             units = flight["Time"].units
         day = units.split("since ")[1][:10]
         for of_day, hours in (("00:00:00", 0), ("00:00:00 +0000", 0), ("00:00:00 UTC", 0), ("00:00", 0), ("", 0),
-                              ("T00:00:00Z", 0), ("00:00:00.0", 0), ("00:00:00 +01:00", -1), ("01:00:00 +0", 1)):
+                              ("T00:00:00Z", 0), ("00:00:00.0", 0), ("00:00:00 +01:00", -1), ("01:00:00 +0", 1), ("+0000", 0),
+                              ("00:00:00,0 UTC", 0), (", 00:00:00 UTC", 0)):
             with self.subTest(of_day):
                 flight = self.with_units(f"seconds since {day} {of_day}".replace(" T", "T"))
                 begins = self.json_of("inspect", flight)["flights"][0]["begin"]
@@ -212,6 +240,28 @@ class Attributes(Changed):
                                 preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (600 << 20, 600 << 20)))
         self.assertEqual(result.returncode, 1)
         self.assertRegex(result.stderr, r"3000000 records in \d+ bytes")
+
+
+    def test_few_bytes_are_not_many_samples(self):
+        path = self.path / "large.nc"
+        with netCDF4.Dataset(path, "w") as flight:
+            flight.createDimension("Time", 190000)
+            flight.createDimension("sps1000", 1000)
+            seconds = flight.createVariable("Time", "i4", ("Time",), zlib=True, complevel=9, shuffle=True)
+            seconds.units = "seconds since 2011-11-17 00:00:00 +0000"
+            seconds[:] = numpy.arange(190000)
+            for name, unit, value in (("PSFD", "hPa", 700), ("QCF", "hPa", 60), ("QCR", "hPa", 60), ("ADIFR", "hPa", 5),
+                                      ("TTRR", "degC", 5), ("EDPC", "hPa", 5)):
+                variable = flight.createVariable(name, "f4", ("Time", "sps1000"), zlib=True)
+                variable.units = unit
+                variable[:100] = value
+        self.assertLess(path.stat().st_size, 1000000)
+        for arguments in (("process", path, "-m", PUBLISHED, "-o", self.path / "out.nc"), ("check", path)):
+            with self.subTest(arguments[0]):
+                result = subprocess.run([TOOL, *arguments], capture_output=True, text=True,
+                                        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (600 << 20, 600 << 20)))
+                self.assertEqual(result.returncode, 1)
+                self.assertRegex(result.stderr, r"190000000 samples in a file of \d+ bytes")
 
 
 class Reports(Changed):
