@@ -40,6 +40,9 @@ struct ModelComparison {
   /// 1 - sum of squared residuals / sum of squared departures of the reference's delta-p from its mean; NaN
   /// for a reference that is no static pressure.
   double r_squared = 0.0;
+  /// The corrected static pressures, of the reference against that of the model, as distances from the line
+  /// (memo, figure 2). Where the reference is a static pressure.
+  LineFit static_pressure{};
   double samples_per_independent = 1.0;
   /// By how much the calibration of the reference and of the thermometer may shift the bias of all samples,
   /// hPa, beside `Statistics::bias_error`: usual sizes (`ParameterFacts::doubt`), or what `[uncertainty]` of
@@ -52,20 +55,21 @@ struct ModelComparison {
   Statistics flaps_out;              ///< of the samples that take no part because flaps are out
 };
 
-/// The residuals of one flight, one value for each record.
+/// The residuals of one flight, one value for each record. What is one for all models is that of the first of
+/// them by name, whatever the order in which they are given.
 struct FlightResiduals {
   std::shared_ptr<const FlightSamples> samples;
-  std::vector<Mask> mask;                   ///< of the first model; the samples used are those of all models
-  std::vector<std::vector<double>> values;  ///< of each model, hPa; NaN where the sample is not used
+  std::vector<Mask> mask;                      ///< the samples used are those of all models
+  std::vector<std::vector<double>> values;     ///< of each model, hPa; NaN where the sample is not used
   std::vector<std::vector<double>> flaps_out;  ///< the same at samples left out for nothing but their flaps
   std::vector<std::vector<double>> reference_defects;  ///< delta-p that the reference asks of each model, hPa
   std::vector<std::vector<double>> model_defects;      ///< delta-p of each model, hPa
-  std::vector<double> static_pressure;                 ///< as measured, hPa
-  std::vector<double> corrected_pressure;              ///< static pressure of the first model, hPa
-  std::vector<double> total_pressure;                  ///< p_m + q_m of the first model, hPa
+  std::vector<std::vector<double>> corrected_pressures;  ///< static pressure of each model, hPa
+  std::vector<double> static_pressure;                   ///< as measured, hPa
+  std::vector<double> total_pressure;                    ///< p_m + q_m of the model, hPa
   /// p_m + q_m of the reference, hPa, where that is a static system; else empty.
   std::vector<double> reference_total_pressure;
-  std::vector<double> mach;           ///< of the first model's corrected pressures
+  std::vector<double> mach;           ///< of the corrected pressures
   std::vector<double> dynamic_ratio;  ///< q_m/p_m
 };
 
@@ -78,11 +82,8 @@ struct Comparison {
   std::vector<FlightResiduals> flights;
   std::vector<std::pair<std::string, Interval>> intervals;  ///< of all flights, with the flight's name
   /// The total pressures of two systems, of the reference against that of the model: static defects cancel in
-  /// it (memo, figure 1). Where the reference is a static system.
+  /// it (memo, figure 1). Of the first model by name. Where the reference is a static system.
   std::optional<LineFit> total_pressure{};
-  /// The corrected static pressures, of the reference against that of the first model, as distances from the
-  /// line (memo, figure 2). Where the reference is a static pressure.
-  LineFit static_pressure;
   std::array<std::size_t, mask_count> masks{};  ///< samples with each reason, over all flights
   std::vector<std::string> notes;               ///< what a user should know, a sentence each
   std::vector<Comparison> further{};  ///< with each of the further references, of the models that have it
@@ -104,10 +105,11 @@ struct Contender {
   References references;
 };
 
-/// Holds the contenders against the first reference of the first of them over the flights, then against each
-/// of the further ones that any has. References are the same where they have one name; a contender without a
-/// reference of that name takes no part there. A sample counts where all models that do have a residual, so
-/// the figures of models can be compared. A further reference that leaves no sample is only noted.
+/// Holds the contenders against the first reference of the first of them by name over the flights, then
+/// against each of the further ones that any has. References are the same where they have one name; a
+/// contender without a reference of that name takes no part there. A sample counts where all models that do
+/// have a residual, so the figures of models can be compared. A further reference that leaves no sample is
+/// only noted.
 ///
 /// @throws Error if a flight cannot be read, a variable is absent, the flights are of different aircraft, or
 /// no sample is left: the message says which mask took how many.
