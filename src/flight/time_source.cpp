@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 #include <strings.h>
+#include <pcor/base/error.hpp>
+#include <pcor/base/shell_quote.hpp>
+#include <pcor/base/utc.hpp>
 #include <pcor/units/units.hpp>
-#include <pcor/words/error.hpp>
-#include <pcor/words/shell_word.hpp>
-#include <pcor/words/utc.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -87,8 +87,8 @@ Counting counting_of(const FlightFile& file, int variable) {
   const std::optional<double> date = flight_date(file);
   const std::string day_of_flight = date ? utc_text(*date, "%Y-%m-%d") : "DAY";
   return {path + ": " + name,
-          "state the unit it is in with ncatted -a " + shell_word("units," + name + ",o,c,") +
-              shell_word("seconds since " + day_of_flight + " 00:00:00 +0000") + " " + shell_path(path) +
+          "state the unit it is in with ncatted -a " + shell_quote("units," + name + ",o,c,") +
+              shell_quote("seconds since " + day_of_flight + " 00:00:00 +0000") + " " + shell_path(path) +
               (date ? "" : ", where DAY is the one that it counts from, as year-month-day"),
           usual_spelling(file.text_attribute(variable, "units")), file.text_attribute(variable, "calendar")};
 }
@@ -120,7 +120,7 @@ bool take(std::string_view& text, char letter) {
 // to it, but for an offset without a time of day, which it takes for the time of day.
 bool is_time_of_day(std::string_view text) {
   constexpr int day_hours = 25;  // 24:00:00
-  constexpr int most_offset = 15;
+  constexpr int max_offset = 15;
   if (!text.empty() && text.front() != ' ' && text.front() != 'T') return false;
   while (!text.empty() && (text.front() == ' ' || text.front() == 'T')) text.remove_prefix(1);
   const bool has_time = !text.empty() && std::isdigit(static_cast<unsigned char>(text.front())) != 0;
@@ -137,7 +137,7 @@ bool is_time_of_day(std::string_view text) {
   if (!take(text, '+') && !take(text, '-')) {
     if (text.empty() || std::isdigit(static_cast<unsigned char>(text.front())) == 0) return true;
   }
-  if (!take_number(text, has_time ? most_offset : 1)) return false;
+  if (!take_number(text, has_time ? max_offset : 1)) return false;
   take(text, ':');
   return text.empty() || std::isdigit(static_cast<unsigned char>(text.front())) == 0 ||
          take_number(text, has_time ? 60 : 1);
@@ -206,8 +206,8 @@ std::optional<double> offset_of_seconds(double first_raw, double start) {
 }
 
 // The most seconds that the variable can count.
-double most_seconds(const FlightFile& file, int variable, const std::optional<UnitConversion>& epoch) {
-  return file.greatest_number(variable) * (epoch ? epoch->scale() : 1);
+double max_seconds(const FlightFile& file, int variable, const std::optional<UnitConversion>& epoch) {
+  return file.max_number(variable) * (epoch ? epoch->scale() : 1);
 }
 
 std::optional<int> find_time_variable(const FlightFile& file) {
@@ -268,11 +268,11 @@ TimeSource find_time(const FlightFile& file) {
   if (epoch && !is_of_aviation(first))
     throw Error(fmt::format("{} counts in \"{}\" and begins with {}, which is the {}; {}", counting.of, units,
                             *raw, utc_text(first), counting.how_to_state));
-  if (most_seconds(file, source.variable, epoch) < day)
+  if (max_seconds(file, source.variable, epoch) < day)
     throw Error(
         fmt::format("{} is stored in integers that go up to {}, too few for the seconds of a day: who "
                     "wrote it may have begun again there; have it written in 32 bits",
-                    counting.of, file.greatest_number(source.variable)));
+                    counting.of, file.max_number(source.variable)));
   if (units_hold) {
     constexpr double week = 7 * day;
     if (epoch->scale() > week)

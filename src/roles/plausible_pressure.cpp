@@ -8,31 +8,31 @@
 #include <utility>
 #include <vector>
 
+#include <pcor/base/error.hpp>
 #include <pcor/physics/standard_atmosphere.hpp>
-#include <pcor/words/error.hpp>
+#include "base/quoting.hpp"
 #include "numerics/median.hpp"
 #include "numerics/missing.hpp"
 #include "roles/recorded_series.hpp"
-#include "words/quoting.hpp"
 
 namespace pcor::internal {
 namespace {
 
 constexpr std::size_t fewest = 20;  // values that tell
 
-std::string stated_unit(const Flight& flight, const AircraftFamily& family, const std::string& variable) {
+std::string stated_unit(const Flight& flight, const VariableNaming& family, const std::string& variable) {
   const std::string stated = family.unit_of(variable);
   return stated.empty() ? flight.variable(variable).units : stated;
 }
 
 /// Some thousand values from the begin, the middle and the end, in the unit of the role; empty where it
 /// cannot be read.
-std::vector<double> some_values(const Flight& flight, const AircraftFamily& family,
+std::vector<double> some_values(const Flight& flight, const VariableNaming& family,
                                 const std::string& variable, Quantity role, const std::string& stated = {}) {
   std::vector<double> values;
   const std::string unit = stated.empty() ? family.unit_of(variable) : stated;
-  if (!has_values(flight, variable, std::string(facts_of(role).unit), unit)) return values;
-  const UnitConversion conversion = flight.conversion(variable, std::string(facts_of(role).unit), "", unit);
+  if (!has_values(flight, variable, std::string(info_of(role).unit), unit)) return values;
+  const UnitConversion conversion = flight.conversion(variable, std::string(info_of(role).unit), "", unit);
   const std::vector<RecordBlock> blocks = flight.blocks();
   for (const std::size_t k : std::set<std::size_t>{0, blocks.size() / 2, blocks.size() - 1}) {
     values.resize(values.size() + blocks[k].count);
@@ -80,7 +80,7 @@ std::string unit_that_fits(const std::string& own, double ratio) {
 }
 
 /// A height of GPS; that of the pressure says what the pressure does.
-std::string height_of(const Flight& flight, const ModelFile& model, const AircraftFamily& family) {
+std::string height_of(const Flight& flight, const ModelDefinition& model, const VariableNaming& family) {
   const auto named = model.variables.find(Quantity::altitude);
   if (named != model.variables.end()) return named->second;
   for (const std::string& name : family.names_of("altitude")) {
@@ -92,7 +92,7 @@ std::string height_of(const Flight& flight, const ModelFile& model, const Aircra
 /// Holds the pressures of a model against each other, the height and other systems.
 class PressureCheck {
  public:
-  PressureCheck(const Flight& flight, const ModelFile& model)
+  PressureCheck(const Flight& flight, const ModelDefinition& model)
       : flight_(flight),
         model_(model),
         family_(family_of(model, flight)),
@@ -102,8 +102,8 @@ class PressureCheck {
   std::optional<ImpossiblePressure> dynamic_pressure() const;
 
  private:
-  static constexpr double most_of_other = 0.05;
-  static constexpr double most_of_dynamic = 0.1;  // with the errors of two static pressures
+  static constexpr double max_of_other = 0.05;
+  static constexpr double max_of_dynamic = 0.1;  // with the errors of two static pressures
 
   std::string variable_of(Quantity role) const {
     const auto named = model_.variables.find(role);
@@ -139,19 +139,19 @@ class PressureCheck {
   }
 
   const Flight& flight_;
-  const ModelFile& model_;
-  const AircraftFamily& family_;
+  const ModelDefinition& model_;
+  const VariableNaming& family_;
   std::vector<double> static_pressure_;
 };
 
 std::optional<ImpossiblePressure> PressureCheck::static_pressure() const {
   if (!is_in_doubt(Quantity::static_pressure) || static_pressure_.empty()) return std::nullopt;
   double of_height = nan;
-  double most_of_height = 0.1;
+  double max_of_height = 0.1;
   const std::string height = height_of(flight_, model_, family_);
   if (!height.empty() && model_.units.count(Quantity::altitude) == 0) {
     std::vector<double> expected = some_values(flight_, family_, height, Quantity::altitude);
-    if (const double middle = median(expected); middle > 11000.0) most_of_height += 1e-5 * (middle - 11000.0);
+    if (const double middle = median(expected); middle > 11000.0) max_of_height += 1e-5 * (middle - 11000.0);
     if (!are_feet(static_pressure_, expected)) {
       std::transform(expected.begin(), expected.end(), expected.begin(), standard_pressure);
       of_height = ratio_of(static_pressure_, expected);
@@ -162,14 +162,14 @@ std::optional<ImpossiblePressure> PressureCheck::static_pressure() const {
   const auto compare = [&](const PressurePair& pair, bool is_measured) {
     const double ratio = ratio_of(
         static_pressure_, some_values(flight_, family_, pair.static_pressure, Quantity::static_pressure));
-    is_confirmed = is_confirmed || (is_measured && std::abs(ratio - 1.0) <= most_of_other);
+    is_confirmed = is_confirmed || (is_measured && std::abs(ratio - 1.0) <= max_of_other);
     const bool other_is_wrong =
-        std::abs(of_height - 1.0) <= most_of_height && std::abs(of_height / ratio - 1.0) > most_of_height;
-    if (!contradicted && std::abs(ratio - 1.0) > most_of_other && !other_is_wrong)
+        std::abs(of_height - 1.0) <= max_of_height && std::abs(of_height / ratio - 1.0) > max_of_height;
+    if (!contradicted && std::abs(ratio - 1.0) > max_of_other && !other_is_wrong)
       contradicted = finding(Quantity::static_pressure, ratio, pair.static_pressure);
   };
   each_other_system(&PressurePair::static_pressure, Quantity::static_pressure, compare);
-  if (std::abs(of_height - 1.0) > most_of_height) {
+  if (std::abs(of_height - 1.0) > max_of_height) {
     const ImpossiblePressure wrong = finding(Quantity::static_pressure, of_height, "the height " + height);
     // Two systems may be wrong by the same unit; by other amounts the height is.
     if (!is_confirmed || !wrong.unit.empty()) return wrong;
@@ -188,12 +188,12 @@ std::optional<ImpossiblePressure> PressureCheck::dynamic_pressure() const {
         some_values(flight_, family_, pair.static_pressure, Quantity::static_pressure);
     std::vector<double> expected =
         some_values(flight_, family_, pair.dynamic_pressure, Quantity::dynamic_pressure);
-    if (!(std::abs(ratio_of(static_pressure_, other) - 1.0) <= most_of_other)) return;
+    if (!(std::abs(ratio_of(static_pressure_, other) - 1.0) <= max_of_other)) return;
     for (std::size_t i = 0; i < expected.size(); ++i)
       expected[i] = expected[i] > flown ? other[i] + expected[i] - static_pressure_[i] : nan;
     const double ratio = ratio_of(recorded, expected);
-    is_confirmed = is_confirmed || (is_measured && std::abs(ratio - 1.0) <= most_of_dynamic);
-    if (!contradicted && std::abs(ratio - 1.0) > most_of_dynamic)
+    is_confirmed = is_confirmed || (is_measured && std::abs(ratio - 1.0) <= max_of_dynamic);
+    if (!contradicted && std::abs(ratio - 1.0) > max_of_dynamic)
       contradicted = finding(Quantity::dynamic_pressure, ratio, pair.name());
   };
   each_other_system(&PressurePair::dynamic_pressure, Quantity::dynamic_pressure, compare);
@@ -202,13 +202,13 @@ std::optional<ImpossiblePressure> PressureCheck::dynamic_pressure() const {
 
 }  // namespace
 
-std::optional<ImpossiblePressure> impossible_pressure(const Flight& flight, const ModelFile& model) {
+std::optional<ImpossiblePressure> impossible_pressure(const Flight& flight, const ModelDefinition& model) {
   const PressureCheck check(flight, model);
   const std::optional<ImpossiblePressure> wrong = check.static_pressure();
   return wrong ? wrong : check.dynamic_pressure();
 }
 
-void require_possible_pressure(const Flight& flight, const ModelFile& model) {
+void require_possible_pressure(const Flight& flight, const ModelDefinition& model) {
   const std::optional<ImpossiblePressure> wrong = impossible_pressure(flight, model);
   if (!wrong) return;
   const std::string& variable = model.variables.at(wrong->role);
@@ -217,10 +217,10 @@ void require_possible_pressure(const Flight& flight, const ModelFile& model) {
       Error::Code::unit,
       fmt::format("{}: {} in {} is {:.3g} times what {} says{}; state the right unit in the [units] of the "
                   "model, {} = {}, or name another variable there; the unit that a model states is believed",
-                  flight.path().string(), variable, in_quotes(unit), wrong->ratio, wrong->against,
+                  flight.path().string(), variable, quote(unit), wrong->ratio, wrong->against,
                   wrong->unit.empty() ? "" : fmt::format(", as if it were in {}", wrong->unit),
-                  facts_of(wrong->role).name,
-                  wrong->unit.empty() ? in_quotes(unit) : fmt::format("\"{}\"", wrong->unit)));
+                  info_of(wrong->role).name,
+                  wrong->unit.empty() ? quote(unit) : fmt::format("\"{}\"", wrong->unit)));
 }
 
 }  // namespace pcor::internal

@@ -4,7 +4,7 @@
 #include <string>
 
 #include <pcor/flight/flight.hpp>
-#include <pcor/laws/model_file.hpp>
+#include <pcor/model_io/model_definition.hpp>
 
 namespace pcor::internal {
 
@@ -22,9 +22,9 @@ struct ImpossiblePressure {
 /// unless the height says that all are in a wrong unit; where the height says that the other system is the
 /// one that is wrong; where the flight has neither; or where the model states the unit itself: that is
 /// believed.
-std::optional<ImpossiblePressure> impossible_pressure(const Flight& flight, const ModelFile& model);
+std::optional<ImpossiblePressure> impossible_pressure(const Flight& flight, const ModelDefinition& model);
 
 /// @throws Error that names the variable, its unit, what speaks against it, and what to write into the model
-void require_possible_pressure(const Flight& flight, const ModelFile& model);
+void require_possible_pressure(const Flight& flight, const ModelDefinition& model);
 
 }  // namespace pcor::internal

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <pcor/words/error.hpp>
+#include <pcor/base/error.hpp>
 #include "support/netcdf_file.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -46,14 +46,14 @@ class PlausiblePressure : public testing::Test {
     return Flight(path);
   }
 
-  static ModelFile model_of_pair() {
-    ModelFile model = PlausiblePressure::model();
+  static ModelDefinition model_of_pair() {
+    ModelDefinition model = PlausiblePressure::model();
     model.variables[Quantity::dynamic_pressure] = "QCF";
     return model;
   }
 
-  static ModelFile model() {
-    ModelFile model;
+  static ModelDefinition model() {
+    ModelDefinition model;
     model.variables[Quantity::static_pressure] = "PSFD";
     return model;
   }
@@ -66,7 +66,7 @@ TEST_F(PlausiblePressure, HectopascalsThatAreCalledPascalsAreRefusedWithTheirUni
   EXPECT_THAT(test::message_of<Error>([&] { require_possible_pressure(wrong, model()); }),
               AllOf(HasSubstr("PSFD in 'Pa'"), HasSubstr("the height GGALT"),
                     HasSubstr("static_pressure = \"hPa\"")));
-  ModelFile stated = model();
+  ModelDefinition stated = model();
   stated.units[Quantity::static_pressure] = "Pa";
   EXPECT_FALSE(impossible_pressure(wrong, stated)) << "what a model states is believed";
 }
@@ -119,7 +119,7 @@ TEST_F(PlausiblePressure, DynamicPressureIsHeldAgainstTotalPressures) {
       << "two against one";
   EXPECT_FALSE(impossible_pressure(flight_of({{700.0, 60.0}, {700.0, 0.5}}), model_of_pair()))
       << "a pitot that is closed";
-  ModelFile stated = model_of_pair();
+  ModelDefinition stated = model_of_pair();
   stated.units[Quantity::dynamic_pressure] = "hPa";
   EXPECT_FALSE(impossible_pressure(flight_of({{700.0, 45.0}, {698.0, 62.0}}), stated));
 }
