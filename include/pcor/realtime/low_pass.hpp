@@ -33,7 +33,8 @@ namespace pcor {
 /// lines still pass exactly. Where the weights that count sum up to less than half, the value is
 /// missing, and the bit `filter_window_incomplete` says so: of that earlier sample, not of the one that is
 /// being run. With part of its window the filter takes away less. Where it overshoots beyond what is
-/// believed of the result, that is missing too. After a reset all earlier samples are missing.
+/// believed of the result, that is missing too. After a reset all earlier samples are missing; until the
+/// first since then leaves the filter the bit stands.
 ///
 /// Source: memo, recommendation 6; window: Oppenheim and Schafer, Discrete-Time Signal Processing, ch. 7.
 class LowPass final : public Functor {
@@ -62,14 +63,7 @@ class LowPass final : public Functor {
 
   void reset() noexcept override {
     std::fill(samples_.begin(), samples_.end(), missing<double>());
-    broken_ = 0;
-  }
-
-  /// Forgets the samples, as after a step of another length. Values that are missing for it have the bit
-  /// `filter_window_incomplete`.
-  void break_window() noexcept {
-    reset();
-    broken_ = delay();
+    young_ = delay();
   }
 
   void compute(State<double>& state, QualityFlags& flags) noexcept override {
@@ -78,8 +72,8 @@ class LowPass final : public Functor {
     next_ = (next_ + 1) % length_;
     const double* const centre = samples_.data() + next_ + delay();
     const double value = plausible_or_missing(filtered_, filtered(centre));
-    flags.set(is_missing(value) && (broken_ > 0 || !is_missing(*centre)), Quality::filter_window_incomplete);
-    if (broken_ > 0) --broken_;
+    flags.set(is_missing(value) && (young_ > 0 || !is_missing(*centre)), Quality::filter_window_incomplete);
+    if (young_ > 0) --young_;
     state[filtered_] = value;
   }
 
@@ -120,7 +114,7 @@ class LowPass final : public Functor {
   std::size_t length_;
   std::vector<double> samples_;
   std::size_t next_ = 0;
-  std::size_t broken_ = 0;  // samples until the window holds no step of another length
+  std::size_t young_ = delay();  // samples until there is one in the middle of the window
 };
 
 }  // namespace pcor
