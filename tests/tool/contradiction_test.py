@@ -97,6 +97,26 @@ class Pasting(Changed):
                     commands += self.paste_all(result.stdout)
         self.assertGreater(commands, 15)
 
+    def test_commands_of_studies(self):
+        name, model = "-$(touch pwned) 'x'; touch pwned.nc", "-`touch pwned`; touch pwned.toml"
+        shutil.copy(ONE, self.work / name)
+        biased = comparison_test.with_a0(0.03)(comparison_test.MODEL)
+        (self.work / model).write_text(biased)
+        scenario = "-;touch pwned.toml"
+        (self.work / scenario).write_text(comparison_test.SCENARIO)
+        commands = {}
+        for arguments in (("check", f"--model={model}", "--", name),
+                          ("diagnose", f"--model={model}", "--try=k * ENGTRQ / 100", "--", name),
+                          ("improve", f"--model={model}", "--output=-best;touch pwned.toml", "--force", "--", name),
+                          ("add", f"--model={model}", "--output=-more;touch pwned.toml", f"--flight={name}", "static-lag"),
+                          ("simulate", "--output=-made;touch pwned.nc", "--", scenario)):
+            with self.subTest(arguments[0]):
+                result = self.here(*arguments)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                text = result.stdout.replace("MODEL.toml", f"'./{model}'").replace("FLIGHT.nc", "'./-made;touch pwned.nc'")
+                commands[arguments[0]] = self.paste_all(text)
+        self.assertEqual([command for command, count in commands.items() if count == 0], [])
+
     def test_names_of_results(self):
         shutil.copy(ONE, self.work / "one.nc")
         result = self.here("process", "one.nc", "-m", PUBLISHED, "-o", "out.nc", "--suffix", "_X;touch pwned")
