@@ -292,6 +292,10 @@ class Reports(Changed):
 
         def change(flight):
             flight.setncattr("ProjectName", f"project {signs}")
+        table = self.path / "table.csv"
+        self.done("compare", ONE, "-m", model, "--table", table)
+        self.assertEqual([sign for sign in signs[:2] + "\u202e\u2066\u2028\ufeff"
+                          if sign in table.read_text(encoding="utf-8") and sign != "["], [])
         for arguments in (("compare", self.changed(change), "-m", model), ("inspect", self.changed(change))):
             page = self.path / "page.html"
             self.done(*arguments, "--report", page)
