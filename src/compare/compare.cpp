@@ -90,7 +90,7 @@ struct ModelSums {
   ResidualSums flaps_out{};
   double wanted = 0.0;  // delta-p of the reference
   double wanted_squares = 0.0;
-  PairMoments pressures{};  // of the model and of the reference
+  PairMoments pressures{};  // model and reference
   Eigen::VectorXd doubt{};  // what each doubt of the reference does to the residuals
   std::array<ResidualSums, regime_count> regimes{};
   std::array<std::map<long, ResidualSums>, bandings.size()> bands{};
@@ -262,7 +262,7 @@ NoiseFloor min_noise(const FlightResiduals& flight) {
 struct Pairing {
   const ComparedModel& contender;
   const Reference& reference;
-  std::size_t rank = 0;  // of the contender, whatever the order in which they are given
+  std::size_t rank = 0;  // place of the model by name
 };
 
 /// All contenders that have one reference, in the order in which they are given.
@@ -283,7 +283,7 @@ std::vector<std::size_t> by_name(const std::vector<ComparedModel>& contenders) {
   return order;
 }
 
-/// Calls with the name of each reference, its number among those of that name, and the reference.
+/// Calls `visit` for each reference with its name, its number among equal names, and itself.
 template <class Visit>
 void each_reference(const ComparedModel& contender, const Visit& visit) {
   std::map<std::string, std::size_t> met;
@@ -316,7 +316,8 @@ std::vector<Field> fields_of(const std::vector<ComparedModel>& contenders) {
   return fields;
 }
 
-/// The pairings by rank: the first of them is held for what is one for all, as the Mach number of a band is.
+/// The pairings by rank. The first one gives the quantities with a single value for all, like the Mach number
+/// of a band.
 std::vector<std::size_t> by_rank(const std::vector<Pairing>& pairings) {
   std::vector<std::size_t> order(pairings.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -325,7 +326,7 @@ std::vector<std::size_t> by_rank(const std::vector<Pairing>& pairings) {
   return order;
 }
 
-/// The residuals of models to one reference on one flight, where all of them have one.
+/// The residuals of models to one reference on one flight, at samples at which all models have one.
 /// @param samples_of each pairing
 FlightResiduals residuals_on(const std::vector<std::shared_ptr<const FlightSamples>>& samples_of,
                              const std::vector<Pairing>& pairings, const MaskOptions& options,
@@ -374,7 +375,7 @@ struct FlightPart {
   std::vector<Interval> intervals{};
   std::vector<ModelSums> models{};
   std::array<std::size_t, mask_count> masks{};
-  PairMoments total_pressures{};  // of the first model by name and of the reference
+  PairMoments total_pressures{};  // first model by name, and reference
   std::vector<std::string> notes{};
   std::optional<FlightResiduals> series{};
 

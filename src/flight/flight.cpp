@@ -40,7 +40,7 @@ constexpr std::size_t min_doubted = 200'000;            // records of which the 
 constexpr std::size_t min_samples_doubted = 2'000'000;  // likewise
 constexpr std::size_t max_records = 100'000'000;        // more than a day has thousandths of a second
 
-/// In bytes; the most there are where nothing tells.
+/// Size in bytes; the maximum of the type if it is unknown.
 std::uintmax_t size_of(const std::filesystem::path& path) {
   std::error_code code;
   return std::filesystem::file_size(path, code);
@@ -286,12 +286,11 @@ struct Flight::Implementation {
   void check_size(const VariableInfo& info) const {
     const std::size_t samples = records * static_cast<std::size_t>(info.rate);
     if (samples > min_samples_doubted && samples > bytes)
-      throw Error(
-          Error::Code::variable,
-          fmt::format("{}: {} has {} samples in a file of {} bytes, and of a flight at most one sample "
-                      "a byte is believed: hardly any of them is there; cut it with ncks -d {}",
-                      path(), info.name, samples, bytes,
-                      shell_quote(file->dimension_name(source.dimension) + ",FIRST,LAST")));
+      throw Error(Error::Code::variable,
+                  fmt::format("{}: {} has {} samples in a file of {} bytes (expected: at most one sample a "
+                              "byte); cut it with ncks -d {}",
+                              path(), info.name, samples, bytes,
+                              shell_quote(file->dimension_name(source.dimension) + ",FIRST,LAST")));
     const double rate = info.rate / axis.step;
     if (rate <= max_samples_a_second * (1 + rounding)) return;
     throw Error(Error::Code::variable,

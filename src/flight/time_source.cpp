@@ -116,8 +116,8 @@ bool take(std::string_view& text, char letter) {
 }
 
 // Whether what follows a date is a time of day and an offset that are possible: UDUNITS takes minutes of 60,
-// an offset of 25 hours, and what follows without a blank, without a word. How they are to be written is left
-// to it, but for an offset without a time of day, which it takes for the time of day.
+// an offset of 25 hours, and what follows without a blank, without a word. UDUNITS checks
+// the rest of the notation, except an offset without a time of day, which it reads as the time of day.
 bool is_time_of_day(std::string_view text) {
   constexpr int day_hours = 25;  // 24:00:00
   constexpr int max_offset = 15;

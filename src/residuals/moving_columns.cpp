@@ -21,7 +21,7 @@ std::vector<double> wetness_of(const std::vector<double>& liquid_water, const st
   std::vector<double> values(liquid_water.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double since_last = i > 0 ? time[i] - time[i - 1] : step;
-    if (since_last > 1.5 * step) wetness.reset();  // as the sample loop does
+    if (since_last > 1.5 * step) wetness.reset();  // a gap, the same as in the sample loop
     values[i] = wetness(liquid_water[i], since_last > 1.5 * step ? step : since_last);
   }
   return values;

@@ -12,8 +12,9 @@
 namespace pcor::internal {
 namespace {
 
-/// Calls `use` with the number and the rate of every `stride`-th sample. At records of another interval it
-/// begins anew, as after a gap; what is between two of them and shorter than the window has no rate.
+/// Calls `use` with the number and the rate of every `stride`-th sample. A record at another interval
+/// starts a new segment, the same as a gap. A segment between two such records has no rate if it is shorter
+/// than the window.
 template <class Use>
 void each_rate(RateFilter filter, const FastSeries& series, const std::vector<double>& time, double step,
                std::size_t stride, const Use& use) {

@@ -63,8 +63,8 @@ bool are_feet(const std::vector<double>& pressure, std::vector<double> heights) 
   return std::abs(ratio_of(pressure, heights) - 1.0) < 0.1;
 }
 
-/// The unit in which a pressure that is `ratio` of what it should be would be right; empty where none is, or
-/// its own.
+/// The unit that explains a pressure of `ratio` times the expected one. Empty if no unit does, or only its
+/// own.
 std::string unit_that_fits(const std::string& own, double ratio) {
   struct Candidate {
     const char* unit;
@@ -103,7 +103,7 @@ class PressureCheck {
 
  private:
   static constexpr double max_of_other = 0.05;
-  static constexpr double max_of_dynamic = 0.1;  // with the errors of two static pressures
+  static constexpr double max_of_dynamic = 0.1;  // includes the errors of two static pressures
 
   std::string variable_of(Quantity role) const {
     const auto named = model_.variables.find(role);

@@ -18,10 +18,10 @@ struct ImpossiblePressure {
 
 /// Holds the static pressure of a model against the height, within 10 % of the standard atmosphere, more
 /// above the tropopause, and against the static pressures of other systems, within 5 %; and the dynamic
-/// pressure against the total pressures of other systems, within 10 %. Nothing where one of them agrees,
-/// unless the height says that all are in a wrong unit; where the height says that the other system is the
-/// one that is wrong; where the flight has neither; or where the model states the unit itself: that is
-/// believed.
+/// pressure against the total pressures of other systems, within 10 %. Empty if
+/// one of them agrees, unless the height shows that all are in a wrong unit; if the height shows that the
+/// other system is wrong; if the flight has neither; or if the model states the unit itself, which is
+/// accepted.
 std::optional<ImpossiblePressure> impossible_pressure(const Flight& flight, const ModelDefinition& model);
 
 /// @throws Error that names the variable, its unit, what speaks against it, and what to write into the model

@@ -260,7 +260,7 @@ class Soak {
   void judge() {
     constexpr Quantity filtered = Quantity::filtered_lams_temperature;
     const double of_earlier = loop_.state()[filtered];
-    // Where that sample is missing this was told when it was run.
+    // If that sample is missing the bit was set when it was run.
     const bool is_told =
         since_gap_ > loop_.delay() + pcor::LowPass::delay(rate) || says_why(loop_.quality(), filtered);
     if (std::isnan(of_earlier) ? !is_told : !(of_earlier >= 100.0 && of_earlier <= 400.0))

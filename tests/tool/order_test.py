@@ -69,7 +69,7 @@ tearDownModule = comparison_test.tearDownModule
 
 
 def without_run(value):
-    """A result without what tells of its run, and models and flights in one order."""
+    """The result without date and command, and with its models and flights sorted."""
     if isinstance(value, dict):
         return {key: without_run(each) for key, each in value.items() if key not in OF_THE_RUN}
     if isinstance(value, list):
@@ -93,7 +93,7 @@ class OrderTest(ComparisonTest):
             self.assert_same(results[0], result)
 
     def assert_same(self, one, other, place=""):
-        """But for the rounding of sums: flights that are held out are added up in the order of the command."""
+        """Equal except for rounding: sums over held-out flights follow the order of the command."""
         self.assertEqual(type(one), type(other), place)
         if isinstance(one, dict):
             self.assertEqual(list(one), list(other), place)

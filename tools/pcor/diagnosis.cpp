@@ -138,7 +138,7 @@ void add_candidate_options(CLI::App& command, CandidateOptions& options) {
       command, "--try", options.formulas,
       "test an effect of your own too: its formula, hPa at the static ports, with a coefficient k and "
       "variables by netCDF name or by role: 'k * ENGTRQ / 100'; they are called try-1, try-2 ... "
-      "in the order of their letters")
+      "in alphabetical order")
       ->type_name("FORMULA");
   command
       .add_option("--candidates", options.file,

@@ -55,8 +55,8 @@ struct ModelComparison {
   Statistics flaps_out;              ///< of the samples that take no part because flaps are out
 };
 
-/// The residuals of one flight, one value for each record. What is one for all models is that of the first of
-/// them by name, whatever the order in which they are given.
+/// The residuals of one flight, one value for each record. Quantities with a single value for
+/// all models come from the first model by name, regardless of the order on the command line.
 struct FlightResiduals {
   std::shared_ptr<const FlightSamples> samples;
   std::vector<Mask> mask;                      ///< the samples used are those of all models
@@ -69,7 +69,7 @@ struct FlightResiduals {
   std::vector<double> total_pressure;                    ///< p_m + q_m of the model, hPa
   /// p_m + q_m of the reference, hPa, where that is a static system; else empty.
   std::vector<double> reference_total_pressure;
-  std::vector<double> mach;           ///< of the corrected pressures
+  std::vector<double> mach;           ///< Mach number of the corrected pressures
   std::vector<double> dynamic_ratio;  ///< q_m/p_m
 };
 
@@ -82,7 +82,7 @@ struct Comparison {
   std::vector<FlightResiduals> flights;
   std::vector<std::pair<std::string, Interval>> intervals;  ///< of all flights, with the flight's name
   /// The total pressures of two systems, of the reference against that of the model: static defects cancel in
-  /// it (memo, figure 1). Of the first model by name. Where the reference is a static system.
+  /// it (memo, figure 1). The model is the first by name. Absent unless the reference is a static system.
   std::optional<LineFit> total_pressure{};
   std::array<std::size_t, mask_count> masks{};  ///< samples with each reason, over all flights
   std::vector<std::string> notes;               ///< what a user should know, a sentence each

@@ -33,8 +33,8 @@ namespace pcor {
 /// lines still pass exactly. Where the weights that count sum up to less than half, the value is
 /// missing, and the bit `filter_window_incomplete` says so: of that earlier sample, not of the one that is
 /// being run. With part of its window the filter takes away less. Where it overshoots beyond what is
-/// believed of the result, that is missing too. After a reset all earlier samples are missing; until the
-/// first since then leaves the filter the bit stands.
+/// believed of the result, that is missing too. After a reset all earlier samples are missing; the bit is set
+/// until the first sample after it leaves the filter.
 ///
 /// Source: memo, recommendation 6; window: Oppenheim and Schafer, Discrete-Time Signal Processing, ch. 7.
 class LowPass final : public Functor {
