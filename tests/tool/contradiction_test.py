@@ -166,6 +166,45 @@ class Pasting(Changed):
                     self.assertEqual(len(words), 3, words)
 
 
+class Frozen(Changed):
+    """GOTEX rf06, in which a minute of one variable is held at one value."""
+
+    HELD = {"PSFD": slice(1500, 1560), "ATTACK": slice(2000, 2060)}
+
+    def setUp(self):
+        super().setUp()
+        folder = os.environ.get("PCOR_FLIGHTS", "")
+        self.original = os.path.join(folder, "GOTEX-rf06-C130-2004.nc")
+        if not folder or not os.path.exists(self.original):
+            self.skipTest("no GOTEX-rf06-C130-2004.nc in $PCOR_FLIGHTS")
+
+    def test_a_minute_is_missing_and_has_its_bit(self):
+        model = self.write("attack.toml", PUBLISHED.read_text().replace("[variables]", '[variables]\nattack = "ATTACK"', 1)
+                           + '\n[[effect]]\nid = "mine"\nwhere = "static"\nformula = "k * attack"\nunit = "hPa"\n'
+                             'parameters = { k = 0.1 }\n')
+        flight, output = self.path / "flight.nc", self.path / "out.nc"
+        bit = 1 << 18
+        clean = self.processed(self.original, model, output)
+        shutil.copyfile(self.original, flight)
+        with netCDF4.Dataset(flight, "r+") as file:
+            for name, held in self.HELD.items():
+                file[name][held] = file[name][held.start]
+        for options in ((), ("--keep-frozen",)):
+            pressure, flags = self.processed(flight, model, output, *options)
+            frozen = numpy.zeros(len(flags), bool)
+            for held in self.HELD.values():
+                frozen[held] = True
+            numpy.testing.assert_array_equal((flags & bit) != 0, frozen)
+            numpy.testing.assert_array_equal(pressure[~frozen], clean[0][~frozen])
+            self.assertEqual(numpy.isnan(pressure[frozen]).all(), not options)
+        self.assertFalse((clean[1] & bit).any())
+
+    def processed(self, flight, model, output, *options):
+        self.done("process", flight, "-m", model, "-o", output, "--suffix", "_NEW", *options)
+        with netCDF4.Dataset(output) as file:
+            return numpy.ma.filled(file["PSXC_NEW"][:], numpy.nan), file["PCORFLAG_NEW"][:].astype(int)
+
+
 class Times(Changed):
     def test_impossible_ones_are_refused(self):
         with netCDF4.Dataset(ONE) as flight:
