@@ -7,7 +7,9 @@
 #include <cereal/types/map.hpp>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <optional>
+#include <utility>
 
 #include <pcor/base/error.hpp>
 #include <pcor/flight/flight_writer.hpp>
@@ -28,7 +30,7 @@ namespace pcor {
 template <class Archive>
 void serialize(Archive& archive, FlightResiduals& r) {
   archive(r.samples, r.mask, r.values, r.flaps_out, r.reference_defects, r.model_defects, r.static_pressure,
-          r.corrected_pressure, r.total_pressure, r.reference_total_pressure, r.mach, r.dynamic_ratio);
+          r.corrected_pressures, r.total_pressure, r.reference_total_pressure, r.mach, r.dynamic_ratio);
 }
 
 template <class Archive>
@@ -88,6 +90,7 @@ struct ModelSums {
   ResidualSums flaps_out{};
   double wanted = 0.0;  // delta-p of the reference
   double wanted_squares = 0.0;
+  PairMoments pressures{};  // model and reference
   Eigen::VectorXd doubt{};  // what each doubt of the reference does to the residuals
   std::array<ResidualSums, regime_count> regimes{};
   std::array<std::map<long, ResidualSums>, bandings.size()> bands{};
@@ -107,7 +110,7 @@ struct ModelSums {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(all, flaps_out, wanted, wanted_squares, doubt, regimes, bands, worst);
+    archive(all, flaps_out, wanted, wanted_squares, pressures, doubt, regimes, bands, worst);
   }
 };
 
@@ -123,6 +126,7 @@ void ModelSums::add(const ModelSums& other) {
   flaps_out.add(other.flaps_out);
   wanted += other.wanted;
   wanted_squares += other.wanted_squares;
+  pressures.add(other.pressures);
   if (doubt.size() == 0) {
     doubt = other.doubt;
   } else {
@@ -185,6 +189,8 @@ ModelSums sums_of(const FlightResiduals& flight, std::size_t model, const NoiseF
     count(sums.all);
     sums.wanted += wanted[i];
     sums.wanted_squares += wanted[i] * wanted[i];
+    const double pressure = flight.corrected_pressures[model][i];
+    sums.pressures.add(pressure, pressure + values[i]);
     for (std::size_t r = 0; r < regime_count; ++r) {
       if (regimes[i][r]) count(sums.regimes[r]);
     }
@@ -213,6 +219,7 @@ ModelComparison comparison_of(const std::string& name, const Reference& referenc
   const auto count = static_cast<double>(sums.all.samples);
   const double variation = sums.wanted_squares - sums.wanted * sums.wanted / count;
   const bool varies = reference.is_static_pressure() && variation > count * min_variance;
+  if (reference.is_static_pressure()) result.static_pressure = orthogonal_fit(sums.pressures);
   result.r_squared = varies ? 1.0 - sums.all.squares / variation : nan;
   if (sums.all.samples > 0)
     result.reference_error = sums.doubt.norm() / static_cast<double>(sums.all.samples);
@@ -255,54 +262,93 @@ NoiseFloor min_noise(const FlightResiduals& flight) {
 struct Pairing {
   const ComparedModel& contender;
   const Reference& reference;
+  std::size_t rank = 0;  // place of the model by name
 };
 
-/// All contenders that have one reference.
+/// All contenders that have one reference, in the order in which they are given.
 struct Field {
   std::string name;        // of the reference
   std::size_t number = 0;  // among those of that name that a contender has
   std::vector<Pairing> pairings{};
 };
 
-/// The contenders by reference, those with the first reference of the first contender in front.
+/// The places of the contenders by name, so that the order in which they are given decides nothing.
+std::vector<std::size_t> by_name(const std::vector<ComparedModel>& contenders) {
+  std::vector<std::pair<std::string, std::string>> keys;
+  for (const ComparedModel& each : contenders) keys.emplace_back(each.name, write_model(each.model));
+  std::vector<std::size_t> order(contenders.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return keys[a] < keys[b]; });
+  return order;
+}
+
+/// Calls `visit` for each reference with its name, its number among equal names, and itself.
+template <class Visit>
+void each_reference(const ComparedModel& contender, const Visit& visit) {
+  std::map<std::string, std::size_t> met;
+  for (const std::shared_ptr<const Reference>& reference : contender.references)
+    visit(reference->name(), met[reference->name()]++, *reference);
+}
+
+/// The contenders by reference, those with the first reference of the first contender by name in front.
 std::vector<Field> fields_of(const std::vector<ComparedModel>& contenders) {
   std::vector<Field> fields;
-  for (const ComparedModel& contender : contenders) {
-    std::map<std::string, std::size_t> met;
-    for (const std::shared_ptr<const Reference>& reference : contender.references) {
-      const std::string name = reference->name();
-      const std::size_t number = met[name]++;
-      auto field = std::find_if(fields.begin(), fields.end(), [&](const Field& each) {
-        return each.name == name && each.number == number;
-      });
-      if (field == fields.end()) field = fields.insert(field, {name, number});
-      field->pairings.push_back({contender, *reference});
-    }
+  const auto field_of = [&fields](const std::string& name, std::size_t number) -> Field& {
+    const auto field = std::find_if(fields.begin(), fields.end(), [&](const Field& each) {
+      return each.name == name && each.number == number;
+    });
+    return field == fields.end() ? fields.emplace_back(Field{name, number}) : *field;
+  };
+  const std::vector<std::size_t> order = by_name(contenders);
+  std::vector<std::size_t> ranks(contenders.size());
+  for (std::size_t rank = 0; rank < order.size(); ++rank) {
+    ranks[order[rank]] = rank;
+    each_reference(contenders[order[rank]], [&](const std::string& name, std::size_t number,
+                                                const Reference&) { field_of(name, number); });
+  }
+  for (std::size_t i = 0; i < contenders.size(); ++i) {
+    each_reference(contenders[i],
+                   [&](const std::string& name, std::size_t number, const Reference& reference) {
+                     field_of(name, number).pairings.push_back({contenders[i], reference, ranks[i]});
+                   });
   }
   return fields;
 }
 
-/// The residuals of models to one reference on one flight, where all of them have one.
-/// @param samples of each pairing
+/// The pairings by rank. The first one gives the quantities with a single value for all, like the Mach number
+/// of a band.
+std::vector<std::size_t> by_rank(const std::vector<Pairing>& pairings) {
+  std::vector<std::size_t> order(pairings.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return pairings[a].rank < pairings[b].rank; });
+  return order;
+}
+
+/// The residuals of models to one reference on one flight, at samples at which all models have one.
+/// @param samples_of each pairing
 FlightResiduals residuals_on(const std::vector<std::shared_ptr<const FlightSamples>>& samples_of,
                              const std::vector<Pairing>& pairings, const MaskOptions& options,
                              std::vector<std::string>& notes) {
   FlightResiduals result;
-  for (std::size_t k = 0; k < pairings.size(); ++k) {
-    const auto& [contender, reference] = pairings[k];
-    const ModelDefinition& model = contender.model;
+  for (auto* const series :
+       {&result.values, &result.reference_defects, &result.model_defects, &result.corrected_pressures})
+    series->resize(pairings.size());
+  for (const std::size_t k : by_rank(pairings)) {
+    const Reference& reference = pairings[k].reference;
     const std::shared_ptr<const FlightSamples>& samples = samples_of[k];
-    const Residuals residuals(samples, model, reference, options);
+    const Residuals residuals(samples, pairings[k].contender.model, reference, options);
     const double* const parameters = residuals.parameters().data();
-    result.values.push_back(residuals.values(parameters));
-    result.reference_defects.push_back(residuals.target_defect(parameters));
-    result.model_defects.push_back(residuals.quantity(Quantity::static_defect, parameters));
+    result.values[k] = residuals.values(parameters);
+    result.reference_defects[k] = residuals.target_defect(parameters);
+    result.model_defects[k] = residuals.quantity(Quantity::static_defect, parameters);
+    result.corrected_pressures[k] = residuals.quantity(Quantity::corrected_static_pressure, parameters);
     notes.insert(notes.end(), samples->notes.begin(), samples->notes.end());
     if (!result.samples) {
       result.samples = samples;
       result.mask = residuals.mask();
       result.static_pressure = residuals.quantity(Quantity::static_pressure, parameters);
-      result.corrected_pressure = residuals.quantity(Quantity::corrected_static_pressure, parameters);
       result.mach = residuals.quantity(Quantity::corrected_mach, parameters);
       const std::vector<double> q = residuals.quantity(Quantity::dynamic_pressure, parameters);
       result.dynamic_ratio.resize(q.size());
@@ -329,14 +375,13 @@ struct FlightPart {
   std::vector<Interval> intervals{};
   std::vector<ModelSums> models{};
   std::array<std::size_t, mask_count> masks{};
-  PairMoments pressures{};        // of the first model and of the reference
-  PairMoments total_pressures{};  // likewise
+  PairMoments total_pressures{};  // first model by name, and reference
   std::vector<std::string> notes{};
   std::optional<FlightResiduals> series{};
 
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(name, begin, intervals, models, masks, pressures, total_pressures, notes, series);
+    archive(name, begin, intervals, models, masks, total_pressures, notes, series);
   }
 };
 
@@ -353,8 +398,6 @@ FlightPart part_of(FlightResiduals flight, bool with_series, std::vector<SummedR
   for (std::size_t i = 0; i < flight.mask.size(); ++i) {
     ++part.masks[static_cast<std::size_t>(flight.mask[i])];
     if (flight.mask[i] != Mask::none) continue;
-    const double pressure = flight.corrected_pressure[i];
-    part.pressures.add(pressure, pressure + flight.values.front()[i]);
     if (!flight.reference_total_pressure.empty())
       part.total_pressures.add(flight.total_pressure[i], flight.reference_total_pressure[i]);
   }
@@ -430,20 +473,20 @@ void add_variances(std::size_t model, const FlightPartition& share,
 /// Holds contenders against a reference. Without samples there are no models in the result.
 Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& flights,
                         const CompareOptions& options, const std::function<void()>& tell) {
-  const Reference& first = pairings.front().reference;
+  const Reference& first = pairings[by_rank(pairings).front()].reference;
   Comparison result;
   result.reference = first.description();
   result.is_static_pressure = first.is_static_pressure();
   using SamplesOfPairings = std::vector<std::shared_ptr<const FlightSamples>>;
   const auto read = [&](std::size_t number) {
     SamplesOfPairings samples;
-    for (const auto& [contender, reference] : pairings)
-      samples.push_back(flights.samples(number, contender.model, reference, options.mask));
+    for (const Pairing& each : pairings)
+      samples.push_back(flights.samples(number, each.contender.model, each.reference, options.mask));
     return samples;
   };
   std::vector<ReferenceDoubt> doubts;
-  for (const auto& [contender, reference] : pairings)
-    doubts.emplace_back(contender.model, reference, !reference.is_of_one_sample());
+  for (const Pairing& each : pairings)
+    doubts.emplace_back(each.contender.model, each.reference, !each.reference.is_of_one_sample());
   const auto make = [&](const SamplesOfPairings& samples, bool with_series,
                         std::vector<SummedRecords>& records) {
     std::vector<std::string> notes;
@@ -466,13 +509,11 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
         return make(samples, keeps_all, records[number]);
       });
   std::vector<FlightNote> notes;
-  PairMoments pressures;
   PairMoments total_pressures;
   for (FlightPart& part : parts) {
     for (const std::string& note : part.notes) notes.emplace_back(part.name, note);
     for (const Interval& interval : part.intervals) result.intervals.emplace_back(part.name, interval);
     for (std::size_t m = 0; m < mask_count; ++m) result.masks[m] += part.masks[m];
-    pressures.add(part.pressures);
     total_pressures.add(part.total_pressures);
     if (part.series) result.flights.push_back(std::move(*part.series));
   }
@@ -489,7 +530,6 @@ Comparison compare_with(const std::vector<Pairing>& pairings, const FlightSet& f
     result.models.push_back(comparison_of(pairings[m].contender.name, pairings[m].reference, std::move(sums),
                                           std::move(of_flights)));
   }
-  if (result.is_static_pressure) result.static_pressure = orthogonal_fit(pressures);
   if (total_pressures.samples > 0) result.total_pressure = ordinary_fit(total_pressures);
   if (keeps_all) return result;
   const std::vector<std::size_t> shown = to_show(parts, options.max_series);

@@ -217,15 +217,15 @@ void ComparisonPanels::add_pairs() {
   }
   if (!comparison_.is_static_pressure) return;
   column("corrected", "static pressure of the model",
-         [](const F& f) -> const V& { return f.corrected_pressure; });
+         [](const F& f) -> const V& { return f.corrected_pressures.back(); });
   report_.columns.push_back(report_.columns.back());
   ReportColumn& reference = report_.columns.back();
   reference.name = "reference_corrected";
   reference.title = "static pressure of the reference";
-  for (std::size_t i = 0; i < reference.values.size(); ++i)
-    reference.values[i] += report_.columns.front().values[i];
+  const std::vector<double>& residual = report_.columns[comparison_.models.size() - 1].values;
+  for (std::size_t i = 0; i < reference.values.size(); ++i) reference.values[i] += residual[i];
   pair("Corrected static pressures", "The line makes the distances perpendicular to it small. ", "corrected",
-       "reference_corrected", comparison_.static_pressure);
+       "reference_corrected", comparison_.models.back().static_pressure);
 }
 
 void ComparisonPanels::add_tables() {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include <pcor/base/shell_quote.hpp>
 #include <pcor/base/suggest.hpp>
 #include <pcor/units/units.hpp>
 
@@ -62,7 +63,7 @@ Error missing_variable(const std::string& path, const std::vector<VariableInfo>&
         Error::Code::variable,
         fmt::format("{}; it has no time series in {} or a unit that converts to it, see ncdump -h {}; change "
                     "[variables] of the model",
-                    absent, wanted, path)};
+                    absent, wanted, shell_path(path))};
 
   constexpr std::size_t max_named = 6;
   // What a probe recovers files call total.

@@ -36,8 +36,15 @@ constexpr std::size_t max_gaps_listed = 1000;
 // much, in whatever unit.
 constexpr double no_value = 1e30;
 constexpr double max_samples_a_second = 1000, rounding = 1e-3;  // of the times of records
-constexpr std::size_t min_doubted = 200'000;      // records of which the size of the file tells nothing
-constexpr std::size_t max_records = 100'000'000;  // more than a day has thousandths of a second
+constexpr std::size_t min_doubted = 200'000;            // records of which the size of the file tells nothing
+constexpr std::size_t min_samples_doubted = 2'000'000;  // likewise
+constexpr std::size_t max_records = 100'000'000;        // more than a day has thousandths of a second
+
+/// Size in bytes; the maximum of the type if it is unknown.
+std::uintmax_t size_of(const std::filesystem::path& path) {
+  std::error_code code;
+  return std::filesystem::file_size(path, code);
+}
 
 /// A variable of the file, and what turns its stored numbers into values.
 struct Variable {
@@ -180,6 +187,7 @@ struct Flight::Implementation {
   TimestampAlignment timestamp_alignment;
   TimeSource source;
   std::size_t records;
+  std::uintmax_t bytes;
   TimeAxis axis;
   std::vector<std::string> names;
   std::vector<std::optional<Variable>> variables;  // in the order of `names`, those that were asked for
@@ -191,10 +199,9 @@ struct Flight::Implementation {
       : file(std::move(opened)),
         timestamp_alignment(stamp),
         source(find_time(*file)),
-        records(file->dimension_length(source.dimension)) {
-    std::error_code code;
-    const std::uintmax_t bytes = std::filesystem::file_size(file->path(), code);
-    if (!code && records > min_doubted && records > bytes)
+        records(file->dimension_length(source.dimension)),
+        bytes(size_of(file->path())) {
+    if (records > min_doubted && records > bytes)
       throw Error(Error::Code::file,
                   fmt::format("{} has {} records in {} bytes, and of a flight at most one record a byte is "
                               "believed: hardly any of them is there; cut it with ncks -d {}",
@@ -259,7 +266,7 @@ struct Flight::Implementation {
   Variable& find_series(const std::string& name) {
     Variable& variable = find(name);
     if (variable.info.is_series) {
-      check_rate(variable.info);
+      check_size(variable.info);
       return variable;
     }
     std::string dimensions;
@@ -276,7 +283,14 @@ struct Flight::Implementation {
             path(), name, dimensions));
   }
 
-  void check_rate(const VariableInfo& info) const {
+  void check_size(const VariableInfo& info) const {
+    const std::size_t samples = records * static_cast<std::size_t>(info.rate);
+    if (samples > min_samples_doubted && samples > bytes)
+      throw Error(Error::Code::variable,
+                  fmt::format("{}: {} has {} samples in a file of {} bytes (expected: at most one sample a "
+                              "byte); cut it with ncks -d {}",
+                              path(), info.name, samples, bytes,
+                              shell_quote(file->dimension_name(source.dimension) + ",FIRST,LAST")));
     const double rate = info.rate / axis.step;
     if (rate <= max_samples_a_second * (1 + rounding)) return;
     throw Error(Error::Code::variable,

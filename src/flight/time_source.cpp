@@ -57,12 +57,20 @@ std::optional<double> flight_date(const FlightFile& file) {
   return midnight && is_plausible(*midnight) ? midnight : std::nullopt;
 }
 
-// "Seconds since 1970-01-01, 00:00:00 UTC" as UDUNITS spells it: lower case before the date, no comma.
+// "Seconds since 1970-01-01, 00:00:00,5 UTC" as UDUNITS spells it: lower case before the date, a point in
+// place of a comma of a fraction of seconds, and no other comma.
 std::string usual_spelling(std::string units) {
   const std::size_t digit = std::min(units.find_first_of("0123456789"), units.size());
   std::transform(units.begin(), units.begin() + static_cast<std::ptrdiff_t>(digit), units.begin(),
                  [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  std::replace(units.begin(), units.end(), ',', ' ');
+  const auto is_digit_at = [&units](std::size_t i) {
+    return i < units.size() && std::isdigit(static_cast<unsigned char>(units[i])) != 0;
+  };
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    if (units[i] != ',') continue;
+    const bool is_fraction = is_digit_at(i + 1) && units.find(':') < i;
+    units[i] = is_fraction ? '.' : ' ';
+  }
   return units;
 }
 
@@ -90,14 +98,6 @@ std::string unit_before(const std::string& units, std::size_t since) {
   return units.substr(0, last == std::string::npos ? 0 : last + 1);
 }
 
-std::string_view after_date(std::string_view units, std::size_t date) {
-  const std::size_t begin = units.find_first_not_of(' ', date);
-  if (begin == std::string_view::npos) return {};
-  const std::size_t sign = units[begin] == '-' || units[begin] == '+' ? 1 : 0;
-  const std::size_t end = units.find_first_not_of("0123456789-", begin + sign);
-  return end == std::string_view::npos ? std::string_view() : units.substr(end);
-}
-
 // Takes a number of two digits at most, less than `limit`, off the text. Nothing where there is none.
 bool take_number(std::string_view& text, int limit) {
   std::size_t digits = 0;
@@ -115,13 +115,16 @@ bool take(std::string_view& text, char letter) {
   return true;
 }
 
-// Whether numbers of a time of day and of an offset are possible: UDUNITS takes minutes of 60 and an offset
-// of 25 hours without a word. How they are to be written is left to it.
+// Whether what follows a date is a time of day and an offset that are possible: UDUNITS takes minutes of 60,
+// an offset of 25 hours, and what follows without a blank, without a word. UDUNITS checks
+// the rest of the notation, except an offset without a time of day, which it reads as the time of day.
 bool is_time_of_day(std::string_view text) {
   constexpr int day_hours = 25;  // 24:00:00
   constexpr int max_offset = 15;
+  if (!text.empty() && text.front() != ' ' && text.front() != 'T') return false;
   while (!text.empty() && (text.front() == ' ' || text.front() == 'T')) text.remove_prefix(1);
-  if (!text.empty() && std::isdigit(static_cast<unsigned char>(text.front())) != 0) {
+  const bool has_time = !text.empty() && std::isdigit(static_cast<unsigned char>(text.front())) != 0;
+  if (has_time) {
     if (!take_number(text, day_hours)) return false;
     for (int part = 0; part < 2; ++part) {
       const bool follows =
@@ -134,9 +137,10 @@ bool is_time_of_day(std::string_view text) {
   if (!take(text, '+') && !take(text, '-')) {
     if (text.empty() || std::isdigit(static_cast<unsigned char>(text.front())) == 0) return true;
   }
-  if (!take_number(text, max_offset)) return false;
+  if (!take_number(text, has_time ? max_offset : 1)) return false;
   take(text, ':');
-  return text.empty() || std::isdigit(static_cast<unsigned char>(text.front())) == 0 || take_number(text, 60);
+  return text.empty() || std::isdigit(static_cast<unsigned char>(text.front())) == 0 ||
+         take_number(text, has_time ? 60 : 1);
 }
 
 // "seconds since 2004-02-18 00:00:00 +0000" as a conversion to seconds since 1970; nothing if there is no
@@ -144,9 +148,9 @@ bool is_time_of_day(std::string_view text) {
 // calendar whose years have other days.
 std::optional<UnitConversion> epoch_conversion(const Counting& time) {
   const std::size_t since = time.units.find("since ");
-  int year = 0, month = 0, day_of_month = 0;
-  if (since == std::string::npos ||
-      std::sscanf(time.units.c_str() + since + 6, "%5d-%3d-%3d", &year, &month, &day_of_month) != 3)
+  int year = 0, month = 0, day_of_month = 0, letters = 0;
+  if (since == std::string::npos || std::sscanf(time.units.c_str() + since + 6, "%5d-%3d-%3d%n", &year,
+                                                &month, &day_of_month, &letters) != 3)
     return std::nullopt;
   if (!midnight_of(year, month, day_of_month)) return std::nullopt;
   constexpr int first_gregorian_year = 1583;
@@ -164,7 +168,7 @@ std::optional<UnitConversion> epoch_conversion(const Counting& time) {
                     "with an offset in hours; {}",
                     time.of, time.units, time.how_to_state));
   };
-  if (!is_time_of_day(after_date(time.units, since + 6))) refuse_time_of_day();
+  if (!is_time_of_day(time.units.c_str() + since + 6 + letters)) refuse_time_of_day();
   try {
     const UnitConversion epoch =
         UnitConversion::between(time.units, "seconds since 1970-01-01 00:00:00 UTC", {});
@@ -187,7 +191,9 @@ std::optional<double> base_time(const FlightFile& file) {
 std::optional<double> interval_start(const FlightFile& file) {
   const std::string text = file.text_attribute(FlightFile::whole_file, "TimeInterval");
   int hour = 0, minute = 0, second = 0;
-  if (std::sscanf(text.c_str(), "%d:%d:%d", &hour, &minute, &second) != 3) return std::nullopt;
+  if (std::sscanf(text.c_str(), "%2d:%2d:%2d", &hour, &minute, &second) != 3) return std::nullopt;
+  const auto is_within = [](int number, int limit) { return number >= 0 && number < limit; };
+  if (!is_within(hour, 24) || !is_within(minute, 60) || !is_within(second, 61)) return std::nullopt;
   return hour * 3600. + minute * 60. + second;
 }
 

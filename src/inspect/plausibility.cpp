@@ -74,10 +74,13 @@ class Plausibility {
   void pressure() {
     const std::optional<ImpossiblePressure> wrong = impossible_pressure(flight_, model_);
     if (!wrong) return;
-    add(model_.variables.at(Q::static_pressure), "static pressure over that of " + wrong->against,
+    const std::string_view role = info_of(wrong->role).name;
+    add(model_.variables.at(wrong->role),
+        fmt::format("{} pressure over that of {}", wrong->role == Q::static_pressure ? "static" : "dynamic",
+                    wrong->against),
         wrong->ratio, "1",
         fmt::format("refused; state its unit in the [units] of the model{}",
-                    wrong->unit.empty() ? "" : fmt::format(", static_pressure = \"{}\"", wrong->unit)));
+                    wrong->unit.empty() ? "" : fmt::format(", {} = \"{}\"", role, wrong->unit)));
   }
 
   void temperature_against_height() {

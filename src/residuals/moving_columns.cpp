@@ -20,8 +20,9 @@ std::vector<double> wetness_of(const std::vector<double>& liquid_water, const st
   Wetness wetness(1.0 / step, std::max(0.0, drying));
   std::vector<double> values(liquid_water.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i > 0 && time[i] - time[i - 1] > 1.25 * step) wetness.reset();
-    values[i] = wetness(liquid_water[i]);
+    const double since_last = i > 0 ? time[i] - time[i - 1] : step;
+    if (since_last > 1.5 * step) wetness.reset();  // a gap, the same as in the sample loop
+    values[i] = wetness(liquid_water[i], since_last > 1.5 * step ? step : since_last);
   }
   return values;
 }

@@ -5,22 +5,33 @@
 
 #include <pcor/numerics/noise.hpp>
 #include <pcor/realtime/rate_filter.hpp>
+#include <pcor/realtime/sample_clock.hpp>
 #include "numerics/missing.hpp"
 #include "roles/recorded_series.hpp"
 
 namespace pcor::internal {
 namespace {
 
-/// Calls `use` with the number and the rate of every `stride`-th sample.
+/// Calls `use` with the number and the rate of every `stride`-th sample. A record at another interval
+/// starts a new segment, the same as a gap. A segment between two such records has no rate if it is shorter
+/// than the window.
 template <class Use>
 void each_rate(RateFilter filter, const FastSeries& series, const std::vector<double>& time, double step,
                std::size_t stride, const Use& use) {
+  const std::size_t window = filter.before() + 1 + filter.after();
+  const auto is_after_gap = [&](std::size_t record) {
+    return record == 0 || record == time.size() || time[record] - time[record - 1] > 1.5 * step;
+  };
+  SampleClock clock(1.0 / step);
   for (std::size_t record = 0; record < time.size();) {
     std::size_t next = record + 1;
-    while (next < time.size() && time[next] - time[next - 1] <= 1.25 * step) ++next;
+    clock.reset();
+    while (next < time.size() && !clock.is_uneven(time[next] - time[next - 1])) ++next;
+    const bool is_known =
+        (next - record) * series.in_record >= window || (is_after_gap(record) && is_after_gap(next));
     const std::size_t first = record * series.in_record;
     const std::size_t end = next * series.in_record;
-    for (std::size_t i = first; i < end; i += stride)
+    for (std::size_t i = first; is_known && i < end; i += stride)
       use(i, filter(series.values.data() + i, i - first, end - 1 - i));
     record = next;
   }

@@ -28,11 +28,11 @@ std::string stated_unit(const Flight& flight, const VariableNaming& family, cons
 /// Some thousand values from the begin, the middle and the end, in the unit of the role; empty where it
 /// cannot be read.
 std::vector<double> some_values(const Flight& flight, const VariableNaming& family,
-                                const std::string& variable, Quantity role) {
+                                const std::string& variable, Quantity role, const std::string& stated = {}) {
   std::vector<double> values;
-  if (!has_values(flight, variable, std::string(info_of(role).unit), family.unit_of(variable))) return values;
-  const UnitConversion conversion =
-      flight.conversion(variable, std::string(info_of(role).unit), "", family.unit_of(variable));
+  const std::string unit = stated.empty() ? family.unit_of(variable) : stated;
+  if (!has_values(flight, variable, std::string(info_of(role).unit), unit)) return values;
+  const UnitConversion conversion = flight.conversion(variable, std::string(info_of(role).unit), "", unit);
   const std::vector<RecordBlock> blocks = flight.blocks();
   for (const std::size_t k : std::set<std::size_t>{0, blocks.size() / 2, blocks.size() - 1}) {
     values.resize(values.size() + blocks[k].count);
@@ -63,13 +63,18 @@ bool are_feet(const std::vector<double>& pressure, std::vector<double> heights) 
   return std::abs(ratio_of(pressure, heights) - 1.0) < 0.1;
 }
 
-/// The unit in which a pressure that is `ratio` of what it should be would be right.
+/// The unit that explains a pressure of `ratio` times the expected one. Empty if no unit does, or only its
+/// own.
 std::string unit_that_fits(const std::string& own, double ratio) {
-  const auto in_hpa = [](const std::string& unit) {
-    return UnitConversion::between(unit, "hPa", {}).scale();
+  struct Candidate {
+    const char* unit;
+    double within;
   };
-  for (const char* const unit : {"hPa", "Pa", "kPa"}) {
-    if (std::abs(ratio * in_hpa(unit) / in_hpa(own) - 1.0) < 0.1) return unit;
+  for (const auto& [unit, within] :
+       {Candidate{"hPa", 0.1}, Candidate{"Pa", 0.1}, Candidate{"kPa", 0.1}, Candidate{"mmHg", 0.05},
+        Candidate{"inHg", 0.05}, Candidate{"psi", 0.05}}) {
+    const double scale = UnitConversion::between(unit, own, {}).scale();
+    if (std::abs(scale - 1.0) > within && std::abs(ratio * scale - 1.0) < within) return unit;
   }
   return {};
 }
@@ -84,55 +89,138 @@ std::string height_of(const Flight& flight, const ModelDefinition& model, const 
   return {};
 }
 
+/// Holds the pressures of a model against each other, the height and other systems.
+class PressureCheck {
+ public:
+  PressureCheck(const Flight& flight, const ModelDefinition& model)
+      : flight_(flight),
+        model_(model),
+        family_(family_of(model, flight)),
+        static_pressure_(values_of(Quantity::static_pressure)) {}
+
+  std::optional<ImpossiblePressure> static_pressure() const;
+  std::optional<ImpossiblePressure> dynamic_pressure() const;
+
+ private:
+  static constexpr double max_of_other = 0.05;
+  static constexpr double max_of_dynamic = 0.1;  // includes the errors of two static pressures
+
+  std::string variable_of(Quantity role) const {
+    const auto named = model_.variables.find(role);
+    return named == model_.variables.end() ? std::string() : named->second;
+  }
+
+  /// Whether the unit of a role is that of the file, which may be wrong.
+  bool is_in_doubt(Quantity role) const {
+    const std::string variable = variable_of(role);
+    return !variable.empty() && model_.units.count(role) == 0 && family_.unit_of(variable).empty();
+  }
+
+  std::vector<double> values_of(Quantity role) const {
+    const std::string variable = variable_of(role);
+    const auto unit = model_.units.find(role);
+    if (variable.empty()) return {};
+    return some_values(flight_, family_, variable, role, unit == model_.units.end() ? "" : unit->second);
+  }
+
+  ImpossiblePressure finding(Quantity role, double ratio, const std::string& against) const {
+    return {role, ratio, against, unit_that_fits(stated_unit(flight_, family_, variable_of(role)), ratio)};
+  }
+
+  /// Calls with the pairs of other systems, and whether they are as measured: what was processed may come
+  /// from the pressure that is in doubt.
+  template <class Visit>
+  void each_other_system(std::string PressurePair::*pressure, Quantity role, const Visit& visit) const {
+    for (const auto* pairs : {&family_.measured, &family_.processed}) {
+      for (const PressurePair& pair : *pairs) {
+        if (pair.*pressure != variable_of(role)) visit(pair, pairs == &family_.measured);
+      }
+    }
+  }
+
+  const Flight& flight_;
+  const ModelDefinition& model_;
+  const VariableNaming& family_;
+  std::vector<double> static_pressure_;
+};
+
+std::optional<ImpossiblePressure> PressureCheck::static_pressure() const {
+  if (!is_in_doubt(Quantity::static_pressure) || static_pressure_.empty()) return std::nullopt;
+  double of_height = nan;
+  double max_of_height = 0.1;
+  const std::string height = height_of(flight_, model_, family_);
+  if (!height.empty() && model_.units.count(Quantity::altitude) == 0) {
+    std::vector<double> expected = some_values(flight_, family_, height, Quantity::altitude);
+    if (const double middle = median(expected); middle > 11000.0) max_of_height += 1e-5 * (middle - 11000.0);
+    if (!are_feet(static_pressure_, expected)) {
+      std::transform(expected.begin(), expected.end(), expected.begin(), standard_pressure);
+      of_height = ratio_of(static_pressure_, expected);
+    }
+  }
+  bool is_confirmed = false;
+  std::optional<ImpossiblePressure> contradicted;
+  const auto compare = [&](const PressurePair& pair, bool is_measured) {
+    const double ratio = ratio_of(
+        static_pressure_, some_values(flight_, family_, pair.static_pressure, Quantity::static_pressure));
+    is_confirmed = is_confirmed || (is_measured && std::abs(ratio - 1.0) <= max_of_other);
+    const bool other_is_wrong =
+        std::abs(of_height - 1.0) <= max_of_height && std::abs(of_height / ratio - 1.0) > max_of_height;
+    if (!contradicted && std::abs(ratio - 1.0) > max_of_other && !other_is_wrong)
+      contradicted = finding(Quantity::static_pressure, ratio, pair.static_pressure);
+  };
+  each_other_system(&PressurePair::static_pressure, Quantity::static_pressure, compare);
+  if (std::abs(of_height - 1.0) > max_of_height) {
+    const ImpossiblePressure wrong = finding(Quantity::static_pressure, of_height, "the height " + height);
+    // Two systems may be wrong by the same unit; by other amounts the height is.
+    if (!is_confirmed || !wrong.unit.empty()) return wrong;
+  }
+  return is_confirmed ? std::nullopt : contradicted;
+}
+
+std::optional<ImpossiblePressure> PressureCheck::dynamic_pressure() const {
+  constexpr double flown = 20.0;  // hPa
+  if (!is_in_doubt(Quantity::dynamic_pressure)) return std::nullopt;
+  const std::vector<double> recorded = values_of(Quantity::dynamic_pressure);
+  bool is_confirmed = false;
+  std::optional<ImpossiblePressure> contradicted;
+  const auto compare = [&](const PressurePair& pair, bool is_measured) {
+    const std::vector<double> other =
+        some_values(flight_, family_, pair.static_pressure, Quantity::static_pressure);
+    std::vector<double> expected =
+        some_values(flight_, family_, pair.dynamic_pressure, Quantity::dynamic_pressure);
+    if (!(std::abs(ratio_of(static_pressure_, other) - 1.0) <= max_of_other)) return;
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      expected[i] = expected[i] > flown ? other[i] + expected[i] - static_pressure_[i] : nan;
+    const double ratio = ratio_of(recorded, expected);
+    is_confirmed = is_confirmed || (is_measured && std::abs(ratio - 1.0) <= max_of_dynamic);
+    if (!contradicted && std::abs(ratio - 1.0) > max_of_dynamic)
+      contradicted = finding(Quantity::dynamic_pressure, ratio, pair.name());
+  };
+  each_other_system(&PressurePair::dynamic_pressure, Quantity::dynamic_pressure, compare);
+  return is_confirmed ? std::nullopt : contradicted;
+}
+
 }  // namespace
 
 std::optional<ImpossiblePressure> impossible_pressure(const Flight& flight, const ModelDefinition& model) {
-  const auto named = model.variables.find(Quantity::static_pressure);
-  if (named == model.variables.end() || model.units.count(Quantity::static_pressure) != 0)
-    return std::nullopt;
-  const std::string& variable = named->second;
-  const VariableNaming& family = family_of(model, flight);
-  if (!family.unit_of(variable).empty()) return std::nullopt;
-  const std::vector<double> pressure = some_values(flight, family, variable, Quantity::static_pressure);
-  if (pressure.empty()) return std::nullopt;
-  const auto finding = [&](double ratio, const std::string& against) {
-    return ImpossiblePressure{ratio, against, unit_that_fits(stated_unit(flight, family, variable), ratio)};
-  };
-  const std::string height = height_of(flight, model, family);
-  if (!height.empty() && model.units.count(Quantity::altitude) == 0) {
-    std::vector<double> expected = some_values(flight, family, height, Quantity::altitude);
-    double most = 0.1;
-    if (const double middle = median(expected); middle > 11000.0) most += 1e-5 * (middle - 11000.0);
-    const bool is_wrong_height = are_feet(pressure, expected);
-    std::transform(expected.begin(), expected.end(), expected.begin(), standard_pressure);
-    const double ratio = ratio_of(pressure, expected);
-    if (std::abs(ratio - 1.0) > most && !is_wrong_height) return finding(ratio, "the height " + height);
-  }
-  for (const auto* pairs : {&family.measured, &family.processed}) {
-    for (const PressurePair& pair : *pairs) {
-      if (pair.static_pressure == variable) continue;
-      const double ratio =
-          ratio_of(pressure, some_values(flight, family, pair.static_pressure, Quantity::static_pressure));
-      if (std::abs(ratio - 1.0) > 0.05) return finding(ratio, pair.static_pressure);
-    }
-  }
-  return std::nullopt;
+  const PressureCheck check(flight, model);
+  const std::optional<ImpossiblePressure> wrong = check.static_pressure();
+  return wrong ? wrong : check.dynamic_pressure();
 }
 
 void require_possible_pressure(const Flight& flight, const ModelDefinition& model) {
   const std::optional<ImpossiblePressure> wrong = impossible_pressure(flight, model);
-  // Where no unit fits, the other sensor may be the one that is wrong: inspect lists it.
-  if (!wrong || wrong->unit.empty()) return;
-  const std::string& variable = model.variables.at(Quantity::static_pressure);
+  if (!wrong) return;
+  const std::string& variable = model.variables.at(wrong->role);
   const std::string unit = flight.variable(variable).units;
   throw Error(
       Error::Code::unit,
-      fmt::format(
-          "{}: {} in {} is {:.3g} times what {} says{}; state the right unit in the [units] of the model, "
-          "static_pressure = {}, or name another variable there; the unit that a model states is believed",
-          flight.path().string(), variable, quote(unit), wrong->ratio, wrong->against,
-          wrong->unit.empty() ? "" : fmt::format(", as if it were in {}", wrong->unit),
-          wrong->unit.empty() ? quote(unit) : fmt::format("\"{}\"", wrong->unit)));
+      fmt::format("{}: {} in {} is {:.3g} times what {} says{}; state the right unit in the [units] of the "
+                  "model, {} = {}, or name another variable there; the unit that a model states is believed",
+                  flight.path().string(), variable, quote(unit), wrong->ratio, wrong->against,
+                  wrong->unit.empty() ? "" : fmt::format(", as if it were in {}", wrong->unit),
+                  info_of(wrong->role).name,
+                  wrong->unit.empty() ? quote(unit) : fmt::format("\"{}\"", wrong->unit)));
 }
 
 }  // namespace pcor::internal

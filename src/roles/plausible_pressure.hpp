@@ -8,16 +8,20 @@
 
 namespace pcor::internal {
 
-/// A static pressure that cannot be right.
+/// A static or dynamic pressure that cannot be right.
 struct ImpossiblePressure {
+  Quantity role = Quantity::static_pressure;
   double ratio = 1.0;   ///< of the recorded pressure to the one that is expected, the median
   std::string against;  ///< "the height GGALT"
   std::string unit;     ///< in which it would be right; empty where none makes it so
 };
 
 /// Holds the static pressure of a model against the height, within 10 % of the standard atmosphere, more
-/// above the tropopause, and against the static pressures of other systems, within 5 %. Nothing where it
-/// agrees, where the flight has neither, or where the model states the unit itself: that is believed.
+/// above the tropopause, and against the static pressures of other systems, within 5 %; and the dynamic
+/// pressure against the total pressures of other systems, within 10 %. Empty if
+/// one of them agrees, unless the height shows that all are in a wrong unit; if the height shows that the
+/// other system is wrong; if the flight has neither; or if the model states the unit itself, which is
+/// accepted.
 std::optional<ImpossiblePressure> impossible_pressure(const Flight& flight, const ModelDefinition& model);
 
 /// @throws Error that names the variable, its unit, what speaks against it, and what to write into the model

@@ -119,7 +119,7 @@ TEST(LowPass, IsLateByItsDelay) {
       const Result result = filter(250.0 + 0.01 * i);
       if (i < static_cast<int>(filter.delay())) {
         EXPECT_TRUE(std::isnan(result.value)) << "no sample is due";
-        EXPECT_FALSE(result.window_incomplete);
+        EXPECT_TRUE(result.window_incomplete);
       } else if (i >= 2 * static_cast<int>(filter.delay())) {
         // Rounding of 250 K is 3e-14 K, and hundreds of departures are added up.
         EXPECT_NEAR(result.value, 250.0 + 0.01 * (i - static_cast<double>(filter.delay())), 1e-12);
@@ -233,6 +233,20 @@ TEST(LowPass, ForgetsWhatWasBeforeAReset) {
       const Result expected = fresh(value), found = used(value);
       EXPECT_TRUE(found.value == expected.value || (std::isnan(found.value) && std::isnan(expected.value)));
       EXPECT_EQ(found.window_incomplete, expected.window_incomplete);
+    }
+  }
+}
+
+TEST(LowPass, SaysThatNoSampleHasLeftItYet) {
+  for (const double rate : rates) {
+    Filter filter(rate);
+    for (int begin = 0; begin < 2; ++begin) {
+      for (std::size_t i = 0; i < 3 * filter.delay(); ++i) {
+        const Result result = filter(260.0);
+        EXPECT_TRUE(i >= filter.delay() || std::isnan(result.value)) << i;
+        EXPECT_EQ(std::isnan(result.value), result.window_incomplete) << i;
+      }
+      filter.reset();
     }
   }
 }

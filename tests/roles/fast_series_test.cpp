@@ -56,6 +56,29 @@ double rms_of_difference(const std::vector<double>& found, double shift, double 
   return std::sqrt(squares / count);
 }
 
+// A ramp of 2 a second; with samples of another interval its rate would be another.
+TEST(RateOf, UnevenRecordsGiveTheRightRateOrNone) {
+  std::mt19937 engine(1);
+  std::uniform_real_distribution<double> early(-0.4, 0.4);
+  std::vector<std::vector<double>> all{seconds(100), seconds(100), {}};
+  for (int i = 0; i < 90; ++i) {
+    all[0].push_back(all[0].back() + 0.25);
+    all[1].push_back(all[1].back() + 1.2);
+  }
+  for (int i = 0; i < 500; ++i) all[2].push_back(i + early(engine));
+  for (const std::vector<double>& time : all) {
+    FastSeries ramp;
+    for (const double each : time) ramp.values.push_back(2.0 * each);
+    std::size_t found = 0;
+    for (const double rate : rate_of(ramp, time, 1.0, 2.0)) {
+      if (std::isnan(rate)) continue;
+      EXPECT_NEAR(rate, 2.0, 0.25);  // two samples, the fewest, may be a tenth off and are even
+      ++found;
+    }
+    EXPECT_EQ(found > 80, time.size() < 200);
+  }
+}
+
 TEST(ShortestPeriod, IsTheWholeBandOfWhatHasNoNoise) {
   EXPECT_EQ(signal_band_of(wandering(4000), seconds(4000), 1.0).min_period, 2.0);
 }

@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <pcor/base/error.hpp>
@@ -26,6 +28,28 @@ class PlausiblePressure : public testing::Test {
       if (*other != '\0') maker.series(other, *other == 'G' ? "m" : "hPa", std::vector<double>(50, value));
     }
     return Flight(path);
+  }
+
+  /// Three systems, each of a static and a dynamic pressure, at a height of 3000 m.
+  Flight flight_of(const std::vector<std::array<double, 2>>& systems, double height = 3000.0) {
+    const std::vector<std::array<const char*, 2>> names{{"PSFD", "QCF"}, {"PSFRD", "QCFR"}, {"PS_A", "QC_A"}};
+    const auto path = folder_.path() / "flight.nc";
+    {
+      test::NetcdfMaker maker(path);
+      maker.time(test::sequence(0, 50));
+      maker.series("GGALT", "m", std::vector<double>(50, height));
+      for (std::size_t i = 0; i < systems.size(); ++i) {
+        for (std::size_t k = 0; k < 2; ++k)
+          maker.series(names[i][k], "hPa", std::vector<double>(50, systems[i][k]));
+      }
+    }
+    return Flight(path);
+  }
+
+  static ModelDefinition model_of_pair() {
+    ModelDefinition model = PlausiblePressure::model();
+    model.variables[Quantity::dynamic_pressure] = "QCF";
+    return model;
   }
 
   static ModelDefinition model() {
@@ -56,6 +80,48 @@ TEST_F(PlausiblePressure, AnotherSystemContradictsAboveFivePercent) {
   EXPECT_TRUE(impossible_pressure(flight("hPa", 700.0, "PSFRD", 760.0), model()));
   EXPECT_FALSE(impossible_pressure(flight("hPa", 700.0, "PSFRD", 710.0), model()));
   EXPECT_FALSE(impossible_pressure(flight("hPa", 700.0), model())) << "nothing to hold it against";
+}
+
+TEST_F(PlausiblePressure, OtherSystemThatHeightContradictsIsNoError) {
+  EXPECT_FALSE(impossible_pressure(flight_of({{700.0, 60.0}, {7.0, 60.0}}), model_of_pair())) << "Pa";
+  EXPECT_FALSE(impossible_pressure(flight_of({{700.0, 60.0}, {910.0, 60.0}}), model_of_pair())) << "a gain";
+  EXPECT_FALSE(impossible_pressure(flight_of({{700.0, 60.0}, {701.0, 60.0}}, 0.0), model_of_pair()))
+      << "a height of zero";
+}
+
+TEST_F(PlausiblePressure, UnitWrongInAllSystemsIsFoundByHeight) {
+  const auto kilopascals = impossible_pressure(flight_of({{70.0, 60.0}, {70.0, 60.0}}), model());
+  ASSERT_TRUE(kilopascals);
+  EXPECT_EQ(kilopascals->unit, "kPa");
+  const auto pascals = impossible_pressure(flight_of({{70000.0, 60.0}, {70000.0, 60.0}}), model());
+  ASSERT_TRUE(pascals);
+  EXPECT_EQ(pascals->unit, "Pa");
+}
+
+TEST_F(PlausiblePressure, UnitsOfAviationAreNamed) {
+  for (const auto& [unit, hectopascals] :
+       {std::pair{"mmHg", 1.333224}, {"inHg", 33.8639}, {"psi", 68.9476}}) {
+    const auto wrong = impossible_pressure(flight_of({{700.0 / hectopascals, 60.0}}), model());
+    ASSERT_TRUE(wrong) << unit;
+    EXPECT_EQ(wrong->unit, unit);
+  }
+}
+
+TEST_F(PlausiblePressure, DynamicPressureIsHeldAgainstTotalPressures) {
+  const auto wrong = impossible_pressure(flight_of({{700.0, 45.0}, {698.0, 62.0}}), model_of_pair());
+  ASSERT_TRUE(wrong);
+  EXPECT_EQ(wrong->role, Quantity::dynamic_pressure);
+  EXPECT_EQ(wrong->unit, "mmHg");
+  EXPECT_NEAR(wrong->ratio, 0.75, 1e-9);
+  EXPECT_FALSE(impossible_pressure(flight_of({{700.0, 60.0}, {695.0, 65.0}}), model_of_pair()))
+      << "static errors cancel in the total pressure";
+  EXPECT_FALSE(impossible_pressure(flight_of({{700.0, 60.0}, {700.0, 30.0}, {700.0, 61.0}}), model_of_pair()))
+      << "two against one";
+  EXPECT_FALSE(impossible_pressure(flight_of({{700.0, 60.0}, {700.0, 0.5}}), model_of_pair()))
+      << "a pitot that is closed";
+  ModelDefinition stated = model_of_pair();
+  stated.units[Quantity::dynamic_pressure] = "hPa";
+  EXPECT_FALSE(impossible_pressure(flight_of({{700.0, 45.0}, {698.0, 62.0}}), stated));
 }
 
 }  // namespace

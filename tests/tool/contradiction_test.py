@@ -97,6 +97,45 @@ class Pasting(Changed):
                     commands += self.paste_all(result.stdout)
         self.assertGreater(commands, 15)
 
+    def test_commands_of_studies(self):
+        name, model = "-$(touch pwned) 'x'; touch pwned.nc", "-`touch pwned`; touch pwned.toml"
+        shutil.copy(ONE, self.work / name)
+        biased = comparison_test.with_a0(0.03)(comparison_test.MODEL)
+        (self.work / model).write_text(biased)
+        scenario = "-;touch pwned.toml"
+        (self.work / scenario).write_text(comparison_test.SCENARIO)
+        commands = {}
+        for arguments in (("check", f"--model={model}", "--", name),
+                          ("diagnose", f"--model={model}", "--try=k * ENGTRQ / 100", "--", name),
+                          ("improve", f"--model={model}", "--output=-best;touch pwned.toml", "--force", "--", name),
+                          ("add", f"--model={model}", "--output=-more;touch pwned.toml", f"--flight={name}", "static-lag"),
+                          ("simulate", "--output=-made;touch pwned.nc", "--", scenario)):
+            with self.subTest(arguments[0]):
+                result = self.here(*arguments)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                text = result.stdout.replace("MODEL.toml", f"'./{model}'").replace("FLIGHT.nc", "'./-made;touch pwned.nc'")
+                commands[arguments[0]] = self.paste_all(text)
+        self.assertEqual([command for command, count in commands.items() if count == 0], [])
+
+    def test_names_of_results(self):
+        shutil.copy(ONE, self.work / "one.nc")
+        result = self.here("process", "one.nc", "-m", PUBLISHED, "-o", "out.nc", "--suffix", "_X;touch pwned")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.paste(re.search(r": (ncdump .*) \| less$", result.stdout, flags=re.M).group(1))
+        self.assertEqual(self.log.read_text().splitlines(), ["-v", "PCOR_X;touch pwned", "out.nc"])
+
+    def test_a_name_beside_one_that_is_absent(self):
+        name = "x;touch pwned.nc"
+        def change(flight):
+            flight.renameVariable("PSFD", "ABSENT")
+            for variable in flight.variables.values():
+                if getattr(variable, "units", "") in ("hPa", "mbar"):
+                    variable.units = "m"
+        self.changed(change).rename(self.work / name)
+        result = self.here("process", name, "-m", PUBLISHED, "-o", "out.nc")
+        self.assertEqual(result.returncode, 1)
+        self.paste(re.search(r"ncdump -h .*?(?=; )|$", result.stderr).group())
+
     def test_commands_that_are_a_result(self):
         for name in HOSTILE[:4]:
             shutil.copy(ONE, self.work / name)
@@ -127,22 +166,70 @@ class Pasting(Changed):
                     self.assertEqual(len(words), 3, words)
 
 
+class Frozen(Changed):
+    """GOTEX rf06, in which a minute of one variable is held at one value."""
+
+    HELD = {"PSFD": slice(1500, 1560), "ATTACK": slice(2000, 2060)}
+
+    def setUp(self):
+        super().setUp()
+        folder = os.environ.get("PCOR_FLIGHTS", "")
+        self.original = os.path.join(folder, "GOTEX-rf06-C130-2004.nc")
+        if not folder or not os.path.exists(self.original):
+            self.skipTest("no GOTEX-rf06-C130-2004.nc in $PCOR_FLIGHTS")
+
+    def test_a_minute_is_missing_and_has_its_bit(self):
+        model = self.write("attack.toml", PUBLISHED.read_text().replace("[variables]", '[variables]\nattack = "ATTACK"', 1)
+                           + '\n[[effect]]\nid = "mine"\nwhere = "static"\nformula = "k * attack"\nunit = "hPa"\n'
+                             'parameters = { k = 0.1 }\n')
+        flight, output = self.path / "flight.nc", self.path / "out.nc"
+        bit = 1 << 18
+        clean = self.processed(self.original, model, output)
+        shutil.copyfile(self.original, flight)
+        with netCDF4.Dataset(flight, "r+") as file:
+            for name, held in self.HELD.items():
+                file[name][held] = file[name][held.start]
+        for options in ((), ("--keep-frozen",)):
+            pressure, flags = self.processed(flight, model, output, *options)
+            frozen = numpy.zeros(len(flags), bool)
+            for held in self.HELD.values():
+                frozen[held] = True
+            numpy.testing.assert_array_equal((flags & bit) != 0, frozen)
+            numpy.testing.assert_array_equal(pressure[~frozen], clean[0][~frozen])
+            self.assertEqual(numpy.isnan(pressure[frozen]).all(), not options)
+        self.assertFalse((clean[1] & bit).any())
+
+    def processed(self, flight, model, output, *options):
+        self.done("process", flight, "-m", model, "-o", output, "--suffix", "_NEW", *options)
+        with netCDF4.Dataset(output) as file:
+            return numpy.ma.filled(file["PSXC_NEW"][:], numpy.nan), file["PCORFLAG_NEW"][:].astype(int)
+
+
 class Times(Changed):
     def test_impossible_ones_are_refused(self):
         with netCDF4.Dataset(ONE) as flight:
             day = flight["Time"].units.split("since ")[1][:10]
-        for of_day in ("00:00:00 +25:00", "00:00:00 -99", "00:00:00 +9999", "00:60:00", "25:00:00", "00:00:00 +05:75"):
+        for of_day in (" 00:00:00 +25:00", " 00:00:00 -99", " 00:00:00 +9999", " 00:60:00", " 25:00:00", " 00:00:00 +05:75",
+                       "-99", "-05", "+05:00", " -1:00:00", " +0030"):
             with self.subTest(of_day):
-                flight = self.with_units(f"seconds since {day} {of_day}")
+                flight = self.with_units(f"seconds since {day}{of_day}")
                 self.refused("process", flight, "-m", PUBLISHED, "-o", self.path / "out.nc", words=[of_day, "ncatted"])
                 flight.unlink()
+
+    def test_an_impossible_begin_is_not_taken(self):
+        def change(flight):
+            flight["Time"].units = "seconds since 1850-01-01"
+            flight["Time"][:] = flight["Time"][:] - flight["Time"][0]
+            flight.TimeInterval = "99:99:99-99:99:99"
+        self.refused("process", self.changed(change), "-m", PUBLISHED, "-o", self.path / "out.nc", words=["ncatted"])
 
     def test_possible_ones_are_what_they_say(self):
         with netCDF4.Dataset(ONE) as flight:
             units = flight["Time"].units
         day = units.split("since ")[1][:10]
         for of_day, hours in (("00:00:00", 0), ("00:00:00 +0000", 0), ("00:00:00 UTC", 0), ("00:00", 0), ("", 0),
-                              ("T00:00:00Z", 0), ("00:00:00.0", 0), ("00:00:00 +01:00", -1), ("01:00:00 +0", 1)):
+                              ("T00:00:00Z", 0), ("00:00:00.0", 0), ("00:00:00 +01:00", -1), ("01:00:00 +0", 1), ("+0000", 0),
+                              ("00:00:00,0 UTC", 0), (", 00:00:00 UTC", 0)):
             with self.subTest(of_day):
                 flight = self.with_units(f"seconds since {day} {of_day}".replace(" T", "T"))
                 begins = self.json_of("inspect", flight)["flights"][0]["begin"]
@@ -214,6 +301,27 @@ class Attributes(Changed):
         self.assertRegex(result.stderr, r"3000000 records in \d+ bytes")
 
 
+    def test_few_bytes_are_not_many_samples(self):
+        path = self.path / "large.nc"
+        with netCDF4.Dataset(path, "w") as flight:
+            flight.createDimension("Time", 190000)
+            flight.createDimension("sps1000", 1000)
+            seconds = flight.createVariable("Time", "i4", ("Time",), zlib=True, complevel=9, shuffle=True)
+            seconds.units = "seconds since 2011-11-17 00:00:00 +0000"
+            seconds[:] = numpy.arange(190000)
+            for name, unit, value in (("PSFD", "hPa", 700), ("QCF", "hPa", 60), ("QCR", "hPa", 60), ("ADIFR", "hPa", 5),
+                                      ("TTRR", "degC", 5), ("EDPC", "hPa", 5)):
+                variable = flight.createVariable(name, "f4", ("Time", "sps1000"), zlib=True)
+                variable.units = unit
+                variable[:100] = value
+        self.assertLess(path.stat().st_size, 1000000)
+        result = subprocess.run([TOOL, "process", path, "-m", PUBLISHED, "-o", self.path / "out.nc"],
+                                capture_output=True, text=True,
+                                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (600 << 20, 600 << 20)))
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr, r"190000000 samples in a file of \d+ bytes")
+
+
 class Reports(Changed):
     def test_no_control_and_no_direction(self):
         signs = "\x1b[31m\x07\u202e\u2066\u2028\ufeff"
@@ -222,6 +330,10 @@ class Reports(Changed):
 
         def change(flight):
             flight.setncattr("ProjectName", f"project {signs}")
+        table = self.path / "table.csv"
+        self.done("compare", ONE, "-m", model, "--table", table)
+        self.assertEqual([sign for sign in signs[:2] + "\u202e\u2066\u2028\ufeff"
+                          if sign in table.read_text(encoding="utf-8") and sign != "["], [])
         for arguments in (("compare", self.changed(change), "-m", model), ("inspect", self.changed(change))):
             page = self.path / "page.html"
             self.done(*arguments, "--report", page)

@@ -56,6 +56,17 @@ class Disks(HostileTest):
         self.assertEqual(result.stdout, "status 1, left: \n")
         self.assertRegex(result.stderr, r"\Apcor: .*out\.nc.*full.*; make room or choose another output\n\Z")
 
+    def test_a_full_disk_after_another_refusal(self):
+        """HDF5 closes what it cannot write when the program ends."""
+        script = 'mount -t tmpfs -o size=300k none "$1" && head -c 100k /dev/zero > "$1/filled" && ' \
+                 '"$0" process "$2" -m "$3" -o "$1/out.nc" --all --quiet; echo "status $?, left: $(ls -A "$1")"'
+        result = subprocess.run(["unshare", "-rm", "sh", "-c", script, TOOL, self.path, FLIGHT, LAW],
+                                capture_output=True, text=True)
+        if "status" not in result.stdout or "mount:" in result.stderr:
+            self.skipTest("no disk can be made here")
+        self.assertEqual(result.stdout, "status 1, left: filled\n")
+        self.assertRegex(result.stderr, r"\Apcor: .*it has a variable TASX already.*\n\Z")
+
     def test_a_limit_of_the_length_of_files_is_told(self):
         for command in (("simulate", SCENARIO), ("process", FLIGHT, "-m", LAW)):
             for most in (0, 4096, 100000):

@@ -42,11 +42,21 @@ nlohmann::ordered_json as_json(const std::vector<PartStatistics>& parts) {
   return result;
 }
 
+nlohmann::ordered_json as_json(const LineFit& fit) {
+  return {{"slope", fit.slope},
+          {"slope_stderr", fit.slope_error},
+          {"offset_hpa", fit.offset},
+          {"rms_hpa", fit.rms},
+          {"mean_difference_hpa", fit.mean_difference},
+          {"samples", fit.samples}};
+}
+
 nlohmann::ordered_json as_json(const ModelComparison& model) {
   nlohmann::ordered_json result{{"name", model.name}, {"reference", model.reference}};
   result.update(as_json(model.all));
   result["rms_over_noise"] = model.all.rms_over_noise();
   result["r2"] = model.r_squared;
+  if (model.static_pressure.samples > 0) result["static_pressure"] = as_json(model.static_pressure);
   result["flaps_out"] = as_json(model.flaps_out);
   result["samples_per_independent"] = model.autocorrelation_time;
   result["reference_stderr_hpa"] = model.reference_error;
@@ -73,16 +83,7 @@ nlohmann::ordered_json as_json(const Comparison& comparison) {
   for (const Comparison& further : comparison.further) {
     for (const ModelComparison& model : further.models) result["models"].push_back(as_json(model));
   }
-  const auto line = [](const LineFit& fit) {
-    return nlohmann::ordered_json{{"slope", fit.slope},
-                                  {"slope_stderr", fit.slope_error},
-                                  {"offset_hpa", fit.offset},
-                                  {"rms_hpa", fit.rms},
-                                  {"mean_difference_hpa", fit.mean_difference},
-                                  {"samples", fit.samples}};
-  };
-  if (comparison.total_pressure) result["total_pressure"] = line(*comparison.total_pressure);
-  if (comparison.is_static_pressure) result["static_pressure"] = line(comparison.static_pressure);
+  if (comparison.total_pressure) result["total_pressure"] = as_json(*comparison.total_pressure);
   result["masks"] = masks_as_json(comparison.masks);
   nlohmann::ordered_json intervals = nlohmann::ordered_json::array();
   for (const auto& [flight, interval] : comparison.intervals) {
@@ -160,7 +161,8 @@ std::filesystem::path residual_file(const Options& options, std::size_t number) 
          (wanted.stem().string() + "-" + flight.stem().string() + wanted.extension().string());
 }
 
-void print(const Comparison& comparison, const ChosenReferences& references, const Options& options) {
+void print(const Comparison& comparison, const std::vector<ComparedModel>& contenders,
+           const ChosenReferences& references, const Options& options) {
   print_references(references);
   if (comparison.is_static_pressure) {
     say("residual = static pressure of the reference ({}) less that of the model\n", comparison.reference);
@@ -188,7 +190,9 @@ void print(const Comparison& comparison, const ChosenReferences& references, con
   const auto best = std::min_element(
       comparison.models.begin(), comparison.models.end(),
       [](const ModelComparison& a, const ModelComparison& b) { return a.all.rms < b.all.rms; });
-  const std::string& model = options.models[static_cast<std::size_t>(best - comparison.models.begin())];
+  const auto contender = std::find_if(contenders.begin(), contenders.end(),
+                                      [&best](const ComparedModel& each) { return each.name == best->name; });
+  const std::string& model = options.models[static_cast<std::size_t>(contender - contenders.begin())];
   if (comparison.models.size() > 1) say("The least rms has {}. ", best->name);
   const std::string flights = advised_command_line(options.comparison);
   if (best->all.rms_over_noise() < 1.15) {
@@ -331,7 +335,7 @@ void run(const Options& options) {
   together.appear();
   if (!wants_text(options.common)) return;
   print(levels, contenders);
-  print(comparison, references, options);
+  print(comparison, contenders, references, options);
 }
 
 }  // namespace

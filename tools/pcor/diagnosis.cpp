@@ -137,7 +137,8 @@ void add_candidate_options(CLI::App& command, CandidateOptions& options) {
   add_list_option(
       command, "--try", options.formulas,
       "test an effect of your own too: its formula, hPa at the static ports, with a coefficient k and "
-      "variables by netCDF name or by role: 'k * ENGTRQ / 100'; they are called try-1, try-2 ...")
+      "variables by netCDF name or by role: 'k * ENGTRQ / 100'; they are called try-1, try-2 ... "
+      "in alphabetical order")
       ->type_name("FORMULA");
   command
       .add_option("--candidates", options.file,
@@ -196,8 +197,10 @@ std::vector<ModelEffect> candidate_formulas(const CandidateOptions& options, con
   std::sort(variables.begin(), variables.end());
   variables.erase(std::unique(variables.begin(), variables.end()), variables.end());
   const std::string place = flights.size() == 1 ? flights.path(0).string() : "any of the flights";
+  std::vector<std::string> formulas = options.formulas;
+  std::sort(formulas.begin(), formulas.end());
   std::size_t number = 0;
-  for (const std::string& formula : options.formulas) {
+  for (const std::string& formula : formulas) {
     do ++number;
     while (!is_new(fmt::format("try-{}", number)));
     candidates.push_back(formula_effect(fmt::format("try-{}", number), formula, "--try"));

@@ -7,12 +7,14 @@
 
 #include <pcor/base/atomic_file.hpp>
 #include <pcor/base/error.hpp>
+#include <pcor/base/message.hpp>
 
 namespace pcor::tool {
 namespace {
 
-std::string escaped(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+std::string escaped(const std::string& cell) {
+  const std::string text = sanitize_line(cell);
+  if (text.find_first_of(",\"") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char letter : text) {
     if (letter == '"') quoted += '"';

@@ -125,7 +125,7 @@ void print_flags(const Flags& flagged) {
 }
 
 void print_hint(const ProcessedFlight& flight) {
-  say("To look at the result: ncdump -v {} {} | less\n", flight.summary.outputs.front(),
+  say("To look at the result: ncdump -v {} {} | less\n", shell_quote(flight.summary.outputs.front()),
       shell_path(flight.output.string()));
 }
 

@@ -81,7 +81,9 @@ RefitOptions refit_options(const Options& options, const FlightSet& holdout) {
   refit.loss = *loss_named(options.loss);
   refit.fix = options.held.fix;
   refit.free = options.held.free;
-  for (const std::string& stage : options.stages) refit.stages.push_back(parse_stage(stage));
+  std::vector<std::string> stages = options.stages;
+  std::sort(stages.begin(), stages.end());  // the last digits do not depend on their order
+  for (const std::string& stage : stages) refit.stages.push_back(parse_stage(stage));
   refit.fit_reference = !options.reference_output.empty();
   refit.use_prior = options.prior;
   refit.search = options.search;

@@ -40,6 +40,9 @@ struct ModelComparison {
   /// 1 - sum of squared residuals / sum of squared deviations of the reference's delta-p from its mean; NaN
   /// for a reference that is not a static pressure.
   double r_squared = 0.0;
+  /// Fit of the corrected static pressure of the reference against that of the model, as distances from the
+  /// line (memo, figure 2), if the reference is a static pressure.
+  LineFit static_pressure{};
   double autocorrelation_time = 1.0;
   /// Standard deviation of the common bias due to the calibration of the reference and of the thermometer,
   /// hPa, in addition to `Statistics::bias_error`: typical sizes (`ParameterInfo::doubt`), or `[uncertainty]`
@@ -52,18 +55,19 @@ struct ModelComparison {
   Statistics flaps_out;              ///< samples excluded because of flaps
 };
 
-/// Residuals of one flight, one value for each record.
+/// Residuals of one flight, one value for each record. A quantity with one value for all models belongs to
+/// the first model by name, whatever the order on the command line.
 struct FlightResiduals {
   std::shared_ptr<const FlightSamples> samples;
   /// Mask of the first model; used samples are common to all models.
   std::vector<Mask> mask;
   std::vector<std::vector<double>> values;     ///< residuals of each model, hPa; NaN for unused samples
   std::vector<std::vector<double>> flaps_out;  ///< residuals of samples excluded only because of flaps
-  std::vector<std::vector<double>> reference_defects;  ///< delta-p of the reference for each model, hPa
-  std::vector<std::vector<double>> model_defects;      ///< delta-p of each model, hPa
-  std::vector<double> static_pressure;                 ///< measured, hPa
-  std::vector<double> corrected_pressure;              ///< static pressure of the first model, hPa
-  std::vector<double> total_pressure;                  ///< p_m + q_m of the first model, hPa
+  std::vector<std::vector<double>> reference_defects;    ///< delta-p of the reference for each model, hPa
+  std::vector<std::vector<double>> model_defects;        ///< delta-p of each model, hPa
+  std::vector<std::vector<double>> corrected_pressures;  ///< static pressure of each model, hPa
+  std::vector<double> static_pressure;                   ///< measured, hPa
+  std::vector<double> total_pressure;                    ///< p_m + q_m of the first model, hPa
   /// Total pressure p_m + q_m of the reference, hPa, if it is a static system; otherwise empty.
   std::vector<double> reference_total_pressure;
   std::vector<double> mach;           ///< Mach number from the first model's corrected pressures
@@ -82,9 +86,6 @@ struct Comparison {
   /// Fit of the total pressure of the reference against that of the model, if the reference is a static
   /// system: static defects cancel (memo, figure 1).
   std::optional<LineFit> total_pressure{};
-  /// Fit of the corrected static pressure of the reference against that of the first model, as distances from
-  /// the line (memo, figure 2), if the reference is a static pressure.
-  LineFit static_pressure;
   std::array<std::size_t, mask_count> masks{};  ///< samples with each mask, over all flights
   std::vector<std::string> notes;               ///< notes for the user, one sentence each
   /// Comparisons with further references of the models.
@@ -107,10 +108,11 @@ struct ComparedModel {
   References references;
 };
 
-/// Compares the models with the first reference of the first model over the flights, then with each further
-/// reference that any model has. References with equal names are the same; a model without that reference is
-/// excluded from its comparison. A sample is used if all models of the comparison have a residual, so that
-/// their statistics are comparable. A further reference without usable samples only adds a note.
+/// Compares the models with the first reference of the first model (by name) over the flights, then with each
+/// further reference that any model has. References with equal names are the same; a model without that
+/// reference is excluded from its comparison. A sample is used if all models of the comparison have a
+/// residual, so that their statistics are comparable. A further reference without usable samples only adds a
+/// note.
 ///
 /// @throws Error if a flight cannot be read, a variable is absent, the flights are of different aircraft, or
 /// no sample remains: the message lists the number of samples of each mask.

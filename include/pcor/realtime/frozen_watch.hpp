@@ -18,6 +18,8 @@ inline constexpr std::array always_varying{Quantity::static_pressure,
                                            Quantity::radome_dynamic_pressure,
                                            Quantity::attack_differential_pressure,
                                            Quantity::sideslip_differential_pressure,
+                                           Quantity::attack,
+                                           Quantity::sideslip,
                                            Quantity::recovery_temperature,
                                            Quantity::ambient_temperature,
                                            Quantity::lams_airspeed};

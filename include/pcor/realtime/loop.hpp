@@ -152,7 +152,7 @@ class Loop {
       step = time - previous_time_;
       if (clock_.is_uneven(step)) {
         if (look_ahead_) uneven_ = look_ahead_->window();
-        if (low_pass_ != nullptr) low_pass_->break_window();
+        if (low_pass_ != nullptr) low_pass_->reset();
       }
     }
     started_ = true;

@@ -33,6 +33,7 @@ namespace pcor {
 /// the sum of the weights used is less than half, the value is missing, with the bit
 /// `filter_window_incomplete` of that earlier sample, not of the current one. An incomplete window filters
 /// less. Implausible results of overshoot are missing, too. After a reset all earlier samples are missing.
+/// The bit is set until the first sample after a reset leaves the filter.
 ///
 /// Source: memo, recommendation 6; window: Oppenheim and Schafer, Discrete-Time Signal Processing, ch. 7.
 class LowPass final : public Functor {
@@ -60,14 +61,7 @@ class LowPass final : public Functor {
 
   void reset() noexcept override {
     std::fill(samples_.begin(), samples_.end(), missing<double>());
-    broken_ = 0;
-  }
-
-  /// Clears the window, as after a step of another length. Values missing because of this have the bit
-  /// `filter_window_incomplete`.
-  void break_window() noexcept {
-    reset();
-    broken_ = delay();
+    young_ = delay();
   }
 
   void compute(State<double>& state, QualityFlags& flags) noexcept override {
@@ -76,8 +70,8 @@ class LowPass final : public Functor {
     next_ = (next_ + 1) % length_;
     const double* const centre = samples_.data() + next_ + delay();
     const double value = plausible_or_missing(filtered_, filtered(centre));
-    flags.set(is_missing(value) && (broken_ > 0 || !is_missing(*centre)), Quality::filter_window_incomplete);
-    if (broken_ > 0) --broken_;
+    flags.set(is_missing(value) && (young_ > 0 || !is_missing(*centre)), Quality::filter_window_incomplete);
+    if (young_ > 0) --young_;
     state[filtered_] = value;
   }
 
@@ -118,7 +112,7 @@ class LowPass final : public Functor {
   std::size_t length_;
   std::vector<double> samples_;
   std::size_t next_ = 0;
-  std::size_t broken_ = 0;  // samples until the window holds no step of another length
+  std::size_t young_ = delay();  // samples until there is one in the middle of the window
 };
 
 }  // namespace pcor
