@@ -40,11 +40,14 @@ std::vector<NamedDoubt> second_doubts(const ModelFile& system, const Reference& 
   std::vector<NamedDoubt> doubts;
   add(doubts, doubts_of(system, pressure_calibration), prefix);
   if (!reference.sees_static_defect()) return doubts;
-  const StatedUncertainty& stated = system.uncertainty;
-  if (stated.static_defect.value_or(0.0) > 0.0)
-    doubts.push_back({{"psfd-bias", 0, *stated.static_defect}, prefix + "static_defect"});
-  if (stated.static_defect_ratio.value_or(0.0) > 0.0)
-    doubts.push_back({{"psfd-gain", 0, *stated.static_defect_ratio}, prefix + "static_defect_ratio"});
+  const auto add_stated = [&](const char* effect, const std::optional<double>& size, const char* name) {
+    if (!(size.value_or(0.0) > 0.0)) return;
+    NamedDoubt& added = doubts.emplace_back();
+    added.doubt = {effect, 0, *size};
+    added.name = prefix + name;
+  };
+  add_stated("psfd-bias", system.uncertainty.static_defect, "static_defect");
+  add_stated("psfd-gain", system.uncertainty.static_defect_ratio, "static_defect_ratio");
   return doubts;
 }
 
