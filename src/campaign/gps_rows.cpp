@@ -330,7 +330,7 @@ GpsRows wind_rows(const FlightSamples& samples, const ModelFile& file, const std
   add_rises(result, z);
   const Eigen::Index count = as_index(wanted.size());
   const Eigen::Index records = as_index(size);
-  result.rows = Eigen::MatrixXd::Constant(2 * records, count + gps_nuisance_count + 1, nan);
+  result.rows = RowByRow::Constant(2 * records, count + gps_nuisance_count + 1, nan);
   result.defect = Eigen::MatrixXd::Zero(as_index(used.size()), count);
   const ModelSamples calm = without_gusts(samples, file, parameters, air, airspeed);
   const ModelOnSamples calm_law(file, calm);
@@ -414,7 +414,7 @@ GpsRows height_rows(const FlightSamples& samples, const ModelFile& file, const s
   result.rise.resize(size, 0.0);
   const Eigen::Index count = as_index(wanted.size());
   const Eigen::Index columns = count + gps_nuisance_count;
-  result.rows = Eigen::MatrixXd::Constant(as_index(size), columns + 1, nan);
+  result.rows = RowByRow::Constant(as_index(size), columns + 1, nan);
   result.defect = Eigen::MatrixXd::Zero(as_index(used.size()), count);
   std::vector<bool> takes_part(size, false);
   for (const std::size_t i : used) takes_part[i] = true;

@@ -10,6 +10,7 @@
 #include <pcor/laws/model_file.hpp>
 #include <pcor/residuals/reference.hpp>
 #include <pcor/residuals/samples.hpp>
+#include "numerics/latent_filter.hpp"
 
 namespace pcor::internal {
 
@@ -57,7 +58,7 @@ struct GpsRows {
   std::vector<double> north;
   std::vector<double> warmth;  ///< height: 1/T, 1/K
   std::vector<bool> is_break;  ///< height: the height since the sample before is not known
-  Eigen::MatrixXd rows;        ///< wind: of the east, then of the north component of all samples
+  RowByRow rows;               ///< wind: of the east, then of the north component of all samples
   Eigen::MatrixXd defect;      ///< derivatives of the corrected static pressure by the wanted coefficients
 };
 

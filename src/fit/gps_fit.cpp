@@ -115,7 +115,7 @@ class GpsSolver {
   }
 
   /// An effect of the user's own has no typical size: its prior is wide.
-  void widen(GpsPrior& prior, const Eigen::MatrixXd& white) const {
+  void widen(GpsPrior& prior, const RowByRow& white) const {
     for (Eigen::Index k = 0; k < count_; ++k) {
       if (prior.deviation[k] > 0.0) continue;
       const double length = white.col(k).norm();
